@@ -23,8 +23,8 @@ typedef struct {
 } Mesh;
 
 /* The operator of a layer on a mesh (solver/body/tables.py): a table `product` (M columns, (n + 1) n rows), or NULL, and
-   the matrix is formed of J (G, n + 1) and phi (G, n) in blocks of 3 and 4; besides tables J and phi_columns. */
-typedef struct { const double *product, *J, *J_blocks, *phi_blocks, *phi_columns; } Rows;
+   the matrix is formed of J and phi: J_rows (n + 1, G), and tables of J and phi by G columns and of phi by n columns. */
+typedef struct { const double *product, *J_rows, *J, *phi, *phi_columns; } Rows;
 
 /* One octave of h/a and class of stiffness on a mesh: k (M,), spread (M, G), and J at the points between (G, m). */
 typedef struct { int64_t few, all; const double *k, *spread; Rows own, fine; const double *J_fine, *J_more, *J_profile; }

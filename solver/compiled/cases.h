@@ -46,15 +46,15 @@ static V missed_ring(const Group *c) {
     V ring = added_in_ring(springs, s1, all(1.0)) + added_in_ring(asperities, s1, beta);
     return pick(blind, enclosing[c->b->control] * ring, all(0));
 }
-static V moved_edge(const Group *c, const V *q_start, const V *g_start) {
+static V moved_edge(const Group *c) {
     const Equation *e = &c->fine;
     V largest = all(0), shift = all(0);
-    for (int64_t i = 0; i < e->n; i++) largest = most(q_start[i], largest);
+    for (int64_t i = 0; i < e->n; i++) largest = most(c->q_start[i], largest);
     for (int64_t i = 0; i < e->n; i++) {
         double s2 = e->s[i] * e->s[i];
-        V Z = 2 * c->law.A_star / (c->on.a * c->on.a), share = clip(Z * g_start[i] / s2, all(0.0), all(1.0));
-        V floor = most(q_start[i], 0.02 * s2 * largest);
-        V moved = (1 - share) * size_of(e->q[i] - q_start[i]) / floor + share * size_of(e->g[i] / g_start[i] - 1);
+        V Z = 2 * c->law.A_star / (c->on.a * c->on.a), share = clip(Z * c->g_start[i] / s2, all(0.0), all(1.0));
+        V floor = most(c->q_start[i], 0.02 * s2 * largest);
+        V moved = (1 - share) * size_of(e->q[i] - c->q_start[i]) / floor + share * size_of(e->g[i] / c->g_start[i] - 1);
         shift = most(s2 * pick(moved > 1e-8, moved, all(0.0)), shift);
     }
     return shift;
@@ -122,7 +122,7 @@ static V tension(Group *c) {
     return below / size_of(load);
 }
 /* The state on the finer mesh after one step there; y, q and g before it; and P'/D' of the branch of solutions. */
-static V refine(Group *c, V *y_start, V *q_start, V *g_start) {
+static V refine(Group *c) {
     Equation *f = &c->fine;
     int64_t n = f->n;
     f->eta = c->on.eta;
@@ -132,11 +132,11 @@ static V refine(Group *c, V *y_start, V *q_start, V *g_start) {
     V d_eta = advance(c, f), of_P, of_D;
     V P = along(c, f, LOAD, c->d_eta, &of_P), D = along(c, f, DEPTH, c->d_eta, &of_D);
     for (int64_t i = 0; i < n; i++) {
-        q_start[i] = f->q[i];
-        g_start[i] = f->g[i];
+        c->q_start[i] = f->q[i];
+        c->g_start[i] = f->g[i];
         f->q[i] += f->dq[i] * c->step[i];
         f->g[i] += f->dg[i] * c->step[i];
-        y_start[i] = f->y[i];
+        c->y_start[i] = f->y[i];
         f->y[i] += c->step[i];
     }
     f->Kq[n] = dot(c->K + n * n, f->q, n) + f->slope[n] * d_eta;
@@ -146,15 +146,15 @@ static V refine(Group *c, V *y_start, V *q_start, V *g_start) {
     return (P + of_P) / (D + of_D);
 }
 /* The error of the profiles, over their largest: what the step on the finer mesh changes. */
-static V of_profiles(const Group *c, const V *y_start, const V *q_start, V margin) {
+static V of_profiles(const Group *c, V margin) {
     const Equation *f = &c->fine;
     V change = all(0), largest = all(0), other = all(0), most_area = all(0);
     for (int64_t i = 0; i < f->n; i++) {
-        change = most(size_of(f->q[i] - q_start[i]), change);
+        change = most(size_of(f->q[i] - c->q_start[i]), change);
         largest = most(f->q[i], largest);
         if (c->b->law == SMOOTH) continue;
         V new = area_of(&c->law, f->y[i], f->q[i]);
-        other = most(size_of(new - area_of(&c->law, y_start[i], q_start[i])), other);
+        other = most(size_of(new - area_of(&c->law, c->y_start[i], c->q_start[i])), other);
         most_area = most(new, most_area);
     }
     if (c->b->law == SMOOTH) other = size_of(against(c->mesh->at_edge, c->on.q, c->on.n)), most_area = largest;
@@ -185,14 +185,14 @@ static void profile(Group *c, States *s) {
 static void finish(Group *c, States *s) {
     const Batch *b = c->b;
     int64_t n = c->on.n, rough = b->law != SMOOTH;
-    V y_start[MOST_NODES], q_start[MOST_NODES], g_start[MOST_NODES], smallest, largest;
+    V smallest, largest;
     load_state(c, s);
     if (b->layered) kernel_at(c, c->on.a);
     curves(c, &c->on);
     c->on.Kq[n] = of_cases(s->edge_q, c->index);
     Quantities coarse = quantities(c, &c->on);
     before_points(c);
-    V slope = refine(c, y_start, q_start, g_start), change = all(0), probe = all(0);
+    V slope = refine(c), change = all(0), probe = all(0);
     Quantities fine = quantities(c, &c->fine);
     for (int i = 0; i < JUDGED; i++) {
         V of = size_of(coarse.value[i] / fine.value[i] - 1);
@@ -204,7 +204,7 @@ static void finish(Group *c, States *s) {
     for (int64_t i = 1; i < n; i++) smallest = least(c->on.q[i], smallest), largest = most(c->on.q[i], largest);
     V centre = c->on.q[n - 1], around = all(0);
     for (int64_t i = 0; i < c->fine.n; i++)
-        if (c->fine.s[i] >= 0.9) around = most(size_of(c->fine.q[i] - q_start[i]), around);
+        if (c->fine.s[i] >= 0.9) around = most(size_of(c->fine.q[i] - c->q_start[i]), around);
     around /= centre;
     change = pick((around > most(change, all(1e-8))) & (smallest > 0), around, change);
     if (!rough) change = most(change, (b->control == RADIUS ? 3.0 : 1.0) * unseen(c, c->on.a, c->on.s[0]));
@@ -217,7 +217,7 @@ static void finish(Group *c, States *s) {
     }
     V error = most(margin * change, floor), pulls = all(0);
     if (rough) {
-        V moved = 2 * moved_edge(c, q_start, g_start);
+        V moved = 2 * moved_edge(c);
         error = most(error, missed_ring(c));
         V both = pick(blind, 2 * least(error, moved), all(0.0));
         error = most(most(error, moved), both);
@@ -234,7 +234,7 @@ static void finish(Group *c, States *s) {
     bad |= wanting & slow & (error > 100 * c->rtol) & (all(n) >= 48);
     for (int i = 0; i < 7; i++) bad |= ~is_finite(coarse.value[i]);
     I solved = ~bad & ~wanting;
-    V profile = any(solved) ? most(error, of_profiles(c, y_start, q_start, margin)) : error;
+    V profile = any(solved) ? most(error, of_profiles(c, margin)) : error;
     if (any(solved & fixed)) {                                                 /* P'/D' of this mesh, as the other numbers */
         V of_P, of_D;
         evaluate(c, &c->on);

@@ -4,6 +4,7 @@
    takes the widest that the processor has (solver/compiled/library.py). */
 #include "batch.h"
 #include <stdlib.h>
+#include <string.h>
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -15,4 +16,4 @@
 
 #define SOLVE_(name) roughcoat_##name
 #define SOLVE(name) SOLVE_(name)
-int SOLVE(NAME)(const Batch *b, int64_t most_points, int64_t most_waves) { return solve(b, most_points, most_waves); }
+int SOLVE(NAME)(const Batch *b, int64_t most) { return solve(b, most); }

@@ -39,7 +39,7 @@ class Mesh(Structure):
 class Rows(Structure):
     """As in batch.h."""
 
-    _fields_ = [(name, c_void_p) for name in ("product", "J", "J_blocks", "phi_blocks", "phi_columns")]
+    _fields_ = [(name, c_void_p) for name in ("product", "J_rows", "J", "phi", "phi_columns")]
 
 
 class Table(Structure):
@@ -93,7 +93,7 @@ def _variant(name: str) -> Callable | None:
     if has is None or not has():
         return None
     function = getattr(_library(), f"roughcoat_{name}")
-    function.argtypes, function.restype = [POINTER(Batch), c_int64, c_int64], c_int
+    function.argtypes, function.restype = [POINTER(Batch), c_int64], c_int
     return function
 
 
@@ -103,7 +103,7 @@ def available() -> tuple[str, ...]:
 
 
 def core() -> Callable | None:
-    """The function ``core(batch, most_points, most_waves)`` of the variant that is chosen; None: the numpy path.
+    """The function ``core(batch, most)`` of the variant that is chosen; None: the numpy path.
 
     ValueError for a choice that does not exist, or that is not available here.
     """

@@ -1,29 +1,31 @@
 /* Newton's method on the meshes of the ladder: solver/contact of numpy, a case in each lane. */
 #define EPS 2.220446049250313e-16
 #define MOST_NODES 96
+#define ROOM 128                                /* for the nodes, or the few k, and what `combine` writes behind them */
 #define KINDS 512                               /* more than there are octaves, two classes, two interfaces */
+#define WAVES 4096                              /* numbers k of a quadrature: MOST_WAVES of tables.py */
 
 /* The equation on one mesh at a state: arrays over the nodes; Kq and its slope by ln a have the edge last. */
 typedef struct {
     int64_t n;
     const double *s, *w, *half_space;
     const Rows *rows;
-    V eta, a, X, Y, Z, load;
-    V *y, *q, *g, *dq, *dg, *Kq, *slope, *F;
+    V eta, a, X, Y, Z, load, y[ROOM], q[ROOM], g[ROOM], dq[ROOM], dg[ROOM], Kq[ROOM], slope[ROOM], F[ROOM];
 } Equation;
 
-/* Cases in the lanes, and room to compute them. */
+/* Cases in the lanes, and room to compute them: `most` points, of which `room` has five times as many. */
 typedef struct {
     const Batch *b;
     const Mesh *mesh;
-    const Table *table, *tables[KINDS / 2];        /* that of the group; those of the mesh */
+    const Table *table, *tables[KINDS / 2];                                    /* of the group; of the mesh */
     int64_t index[W];
     int count;
     Law law;
     Layer layer;
-    V value, E, C, rtol;
+    V value, E, C, rtol, *points, *pressures, *room;
+    V L1[ROOM], uL[ROOM], d_eta[ROOM], step[ROOM], missed[ROOM], y_start[ROOM], q_start[ROOM], g_start[ROOM];
+    V K[ROOM * ROOM], A[ROOM * ROOM], weights[WAVES], slopes[WAVES], waves[WAVES];
     Equation on, fine;
-    V *K, *A, *L1, *uL, *weights, *slopes, *waves, *d_eta, *step, *missed, *points, *pressures, *room;
 } Group;
 
 /* What each case has come to. `rung` -1: it is no longer here. */
@@ -107,35 +109,18 @@ ALONE static void kernel_at(Group *c, V a) {
     V h_a = c->layer.h / a;
     for (int64_t i = 0; i < c->table->few; i++) c->L1[i] = decaying(&c->layer, c->table->k[i] * h_a, c->uL + i);
 }
-/* What a layer adds to K on a fine mesh, for which there is no table of products. */
-static ALONE void summed(const Group *c, const Equation *e, const V *weights, V *K) {
-    int64_t n = e->n, G = c->table->all;
-    const double *J = e->rows->J_blocks;
-    for (int64_t i = 0; i <= n; i += 3, J += 3 * G) {
-        const double *f = e->rows->phi_blocks;
-        for (int64_t j = 0; j < n; j += 4) {
-            V a0 = all(0), a1 = a0, a2 = a0, a3 = a0, b0 = a0, b1 = a0, b2 = a0, b3 = a0, d0 = a0, d1 = a0, d2 = a0, d3 = a0;
-            for (int64_t g = 0; g < G; g++, f += 4) {
-                V w = weights[g], x = J[3 * g] * w, y = J[3 * g + 1] * w, z = J[3 * g + 2] * w;
-                a0 += f[0] * x; a1 += f[1] * x; a2 += f[2] * x; a3 += f[3] * x;
-                b0 += f[0] * y; b1 += f[1] * y; b2 += f[2] * y; b3 += f[3] * y;
-                d0 += f[0] * z; d1 += f[1] * z; d2 += f[2] * z; d3 += f[3] * z;
-            }
-            V *one = K + i * n + j, *two = one + n, *three = two + n;
-            one[0] = a0; one[1] = a1; one[2] = a2; one[3] = a3;
-            two[0] = b0; two[1] = b1; two[2] = b2; two[3] = b3;
-            three[0] = d0; three[1] = d1; three[2] = d2; three[3] = d3;
-        }
-    }
-}
 /* K, the row of the edge under it, and K q. */
 static void form(Group *c, Equation *e) {
     int64_t n = e->n, size = n * (n + 1);
     V *K = c->K;
     if (c->b->layered && e->rows->product) combine(c, e->rows->product, c->table->few, size, c->L1, K);
     else if (c->b->layered) {
-        combine(c, c->table->spread, c->table->few, c->table->all, c->L1, c->weights);
-        summed(c, e, c->weights, K);
+        int64_t G = c->table->all;
+        combine(c, c->table->spread, c->table->few, G, c->L1, c->weights);
+        for (int64_t i = 0; i <= n; i++) {                                     /* what is written behind a row is lost */
+            for (int64_t g = 0; g < G; g++) c->room[g] = e->rows->J_rows[i * G + g] * c->weights[g];
+            combine(c, e->rows->phi, G, n, c->room, K + i * n);
+        }
     }
     for (int64_t i = 0; i < size; i++) K[i] = c->b->layered ? K[i] + e->half_space[i] : all(e->half_space[i]);
     for (int64_t i = 0; i <= n; i++) e->Kq[i] = dot(K + i * n, e->q, n);

@@ -19,7 +19,7 @@ from ..punches import PARABOLOID
 from ..solution import Solution
 from ..status import Status
 from .library import OF_MESH, OF_TABLE, Batch, core, pointer
-from .tables import MOST_WAVES, mesh_for, table_for
+from .tables import mesh_for, table_for
 
 #: The laws and controls of the core, in the order of batch.h.
 _LAWS, _CONTROLS = ("disc_cell", "power_law", "smooth"), ("P", "a", "D")
@@ -100,13 +100,13 @@ def _solved(function, cases, rtol, nodes, x):
     shared |= {"octaves": OCTAVES[1] - OCTAVES[0] + 1, "columns": points, "ladder": pointer(ladder)}
     shared |= {"shrink": pointer(shrink), "place": pointer(place)}
     shared |= {"mesh": OF_MESH(address(mesh_for)), "table": OF_TABLE(address(table_for))}
-    most_points = max(3 * _MESHES[-1], len(inner))
+    most = -(-max(3 * _MESHES[-1], len(inner)) // 32) * 32
     rows = inputs | {"p": p, "lam": lam, "nodes": last_nodes, "iterations": iterations}
     rows |= {"fixed": np.ascontiguousarray(nodes, dtype=np.int64)}
     for low in range(0, size, _CHUNK):
         own = {name: pointer(values, low) for name, values in rows.items()}
         own |= {"size": min(_CHUNK, size - low), "scalars": pointer(scalars.T, low)}
-        if not function(byref(Batch(**shared, **own)), most_points, MOST_WAVES):
+        if not function(byref(Batch(**shared, **own)), most):
             raise MemoryError("no memory for the compiled core")
         if raised:
             raise raised[0]

@@ -62,40 +62,25 @@ static void on_rung(Group *c, States *s, int64_t r) {
     if ((count = those(b, s, r, 2))) by_kinds(c, s, s->list, count, 1, finish);
     if (b->points && !b->layered && (count = those(b, s, r, 3))) by_kinds(c, s, s->list, count, 1, profile);
 }
-static V *room_of(V **room, int64_t count) { V *at = *room; *room += count; return at; }
-
-static void equation_in(Equation *e, V **room) {
-    V **arrays[] = {&e->y, &e->q, &e->g, &e->dq, &e->dg, &e->Kq, &e->slope, &e->F};
-    for (int i = 0; i < 8; i++) *arrays[i] = room_of(room, MOST_NODES + 32);
-}
-/* Solve the cases; 0 if there is no memory. `most_points` and `most_waves`: the largest numbers of points and k. */
-static int solve(const Batch *b, int64_t most_points, int64_t most_waves) {
-    int64_t n = MOST_NODES + 32, size = b->size, large = ((most_points > n ? most_points : n) + 31) / 32 * 32;
-    int64_t vectors = 20 * n + 2 * n * n + 5 * most_waves + 8 * large + 256;
-    if (5 * large > most_waves) vectors += 5 * large;
-    char *block = malloc((size_t)vectors * sizeof(V) + 64 + (size_t)size * (MOST_NODES * 8 + 11 * 8));
+/* Solve the cases; 0 if there is no memory. `most` points of profiles and others, a multiple of 32. */
+static int solve(const Batch *b, int64_t most) {
+    int64_t size = b->size, vectors = 2 * most + (5 * most > WAVES ? 5 * most : WAVES);
+    char *block = malloc(64 + sizeof(Group) + (size_t)vectors * sizeof(V) + (size_t)size * (MOST_NODES + 11) * 8);
     if (!block) return 0;
-    V *room = (V *)(((uintptr_t)block + 63) & ~(uintptr_t)63), *begun = room;
-    Group c = {.b = b};
-    equation_in(&c.on, &room);
-    equation_in(&c.fine, &room);
-    c.K = room_of(&room, n * n); c.A = room_of(&room, n * n);
-    c.L1 = room_of(&room, 128); c.uL = room_of(&room, 128);
-    c.weights = room_of(&room, most_waves); c.slopes = room_of(&room, most_waves); c.waves = room_of(&room, most_waves);
-    c.d_eta = room_of(&room, n); c.step = room_of(&room, n); c.missed = room_of(&room, n);
-    c.points = room_of(&room, large); c.pressures = room_of(&room, large);
-    c.room = room;
-    double *numbers = (double *)(begun + vectors);
-    States s = {.scalars = b->scalars};
-    s.y = numbers; numbers += size * MOST_NODES;
+    Group *c = (Group *)(((uintptr_t)block + 63) & ~(uintptr_t)63);
+    memset(&c->layer, 0, sizeof(Layer));
+    c->b = b;
+    c->points = (V *)(c + 1), c->pressures = c->points + most, c->room = c->pressures + most;
+    double *numbers = (double *)(c->points + vectors);
+    States s = {.scalars = b->scalars, .y = numbers}, *states = &s;
     double **arrays[] = {&s.eta, &s.a, &s.soft, &s.residual, &s.before, &s.edge_q};
+    numbers += size * MOST_NODES;
     for (int i = 0; i < 6; i++, numbers += size) *arrays[i] = numbers;
-    int64_t *whole = (int64_t *)numbers;
-    s.list = whole; s.sorted = whole + size; s.rung = whole + 2 * size;
-    s.count = (int32_t *)(whole + 3 * size); s.fresh = s.count + size;
+    s.list = (int64_t *)numbers, s.sorted = s.list + size, s.rung = s.sorted + size;
+    s.count = (int32_t *)(s.rung + size), s.fresh = s.count + size;
     for (int64_t i = 0; i < size; i++) s.list[i] = i, s.count[i] = 0, s.fresh[i] = 1, s.rung[i] = 0;
-    by_kinds(&c, &s, s.list, size, 0, begin);
-    for (int64_t r = 0; r + 1 < b->rungs; r++) on_rung(&c, &s, r);
+    by_kinds(c, states, s.list, size, 0, begin);
+    for (int64_t r = 0; r + 1 < b->rungs; r++) on_rung(c, states, r);
     free(block);
     return 1;
 }

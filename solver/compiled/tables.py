@@ -68,11 +68,11 @@ def _mesh(mesh, profile):
     return Made((made, arrays))
 
 
-def _blocks(columns, width=8, together=4):
-    """The numbers of an array (r, c), `width` of c together and zeros behind the last: (blocks, r, width), the number of
-    blocks a multiple of `together`."""
-    padded = np.pad(columns, ((0, 0), (0, -columns.shape[1] % (width * together))))
-    return padded.reshape(len(columns), -1, width).transpose(1, 0, 2)
+def _blocks(array):
+    """The numbers of an array (r, c), 8 of c together and zeros behind the last: (blocks, r, 8), four blocks or eight or
+    so."""
+    padded = np.pad(array, ((0, 0), (0, -array.shape[1] % 32)))
+    return padded.reshape(len(array), -1, 8).transpose(1, 0, 2)
 
 
 def _table(mesh, octave, stiffness, profile):
@@ -88,7 +88,7 @@ def _table(mesh, octave, stiffness, profile):
         J, phi, columns = of_mesh.J, of_mesh.phi, at(_blocks(of_mesh.phi.T))
         if mesh.n <= _PRODUCT:
             return of_mesh, Rows(at(_blocks(of_mesh.product)), None, None, None, columns)
-        return of_mesh, Rows(None, at(_blocks(J)), at(_blocks(J, 3, 1)), at(_blocks(phi, 4, 1)), columns)
+        return of_mesh, Rows(None, at(J.T), at(_blocks(J)), at(_blocks(phi)), columns)
 
     (of_mesh, own), (_, fine) = rows(mesh), rows(finer_mesh(mesh))
     if of_mesh.spread.shape[1] > MOST_WAVES:

@@ -34,7 +34,8 @@ typedef struct {
     int64_t size, stride, points, rungs;   /* stride: between the scalars of a case */
     int32_t control, law, layered, octaves, first_octave, steps;
     const int64_t *ladder;
-    const double *value, *rtol, *p_star, *A_star, *beta, *ratio, *E, *C, *h, *m, *n, *nu1, *nu2, *bonded;
+    const double *value, *rtol, *p_star, *A_star, *beta, *ratio, *E, *C;
+    const double *h, *m, *n, *bonded, *c1, *c2, *one_c1, *one_c2, *plus_c1, *one_c1c2;
     const int64_t *fixed;                   /* (size,), number of nodes, or 0: chosen by rtol */
     const double *shrink;                   /* (points,), s at a profile's radius over the s that is solved there */
     const int64_t *place;                   /* (points,), the column of p and lam of each of these */

@@ -65,7 +65,7 @@ static V completed(Group *c, V area, V error) {
     double s1 = e->s[0];
     V first = area_of(&c->law, e->y[0], e->q[0]), last = area_of(&c->law, e->y[e->n - 1], e->q[e->n - 1]);
     error = most(error, pick(first > 0.05, 8.0 * s1 * s1 / 2 * first / area, all(0.0)));
-    I sharp = (last > 0.7) | (c->law.beta < 0.45);
+    I sharp = (last > 0.7) | (c->law.beta < 0.45);                             /* beta is 1 but of power laws */
     if (!any(sharp)) return error;
     const Points *p = &c->mesh->more;
     V other = all(0);
@@ -74,13 +74,13 @@ static V completed(Group *c, V area, V error) {
         other += p->w[i] * area_of(&c->law, c->points[i], curve_of(&c->law, c->points[i]).q);
     return pick(sharp, most(error, 2 * size_of(other / area - 1)), error);
 }
-static void load_state(Group *c, const States *s) {
-    c->on.eta = of_cases(s->eta, c->index);
-    c->on.a = of_cases(s->a, c->index);
-    for (int64_t i = 0; i < c->on.n; i++) EACH(l) c->on.y[i][l] = s->y[c->index[l] * MOST_NODES + i];
+static void load_state(Group *c, State *s) {
+    c->on.eta = OF_STATES(s, eta);
+    c->on.a = OF_STATES(s, a);
+    for (int64_t i = 0; i < c->on.n; i++) EACH(l) c->on.y[i][l] = s[c->index[l]].y[i];
 }
-/* A step of Newton's method for each case of a group. A case that has closed is marked by `count` below 0. */
-static void sweep(Group *c, States *s, int last) {
+/* A step of Newton's method for each case of a group. A case that has closed goes on to the next stage. */
+static void sweep(Group *c, State *s) {
     load_state(c, s);
     if (c->b->layered) kernel_at(c, c->on.a);
     evaluate(c, &c->on);
@@ -90,24 +90,24 @@ static void sweep(Group *c, States *s, int last) {
     for (int l = 0; l < c->count; l++) {
         int64_t i = c->index[l];
         if (done[l]) {
-            s->residual[i] = residual[l];
-            s->edge_q[i] = c->on.Kq[c->on.n][l];
-            s->fresh[i] = 2;
+            s[i].residual = residual[l];
+            s[i].edge_q = c->on.Kq[c->on.n][l];
+            s[i].stage = AT_FINISH;
         }
-        if (apart[l] && done[l]) s->rung[i] = -1;
-        if (!done[l] && (last || !(residual[l] == residual[l]))) s->rung[i] = -1;
-        advances |= !done[l] && s->rung[i] >= 0;
+        if (apart[l] && done[l]) s[i].rung = -1;
+        if (!done[l] && (c->last || !(residual[l] == residual[l]))) s[i].rung = -1;
+        advances |= !done[l] && s[i].rung >= 0;
     }
     if (!advances) return;
     d_eta = advance(c, &c->on);
     V eta = c->on.eta + d_eta, a = vexp(eta);
     for (int l = 0; l < c->count; l++) {
         int64_t i = c->index[l];
-        if (done[l] || s->rung[i] < 0) continue;
-        s->count[i]++;
-        s->eta[i] = eta[l];
-        s->a[i] = a[l];
-        for (int64_t k = 0; k < c->on.n; k++) s->y[i * MOST_NODES + k] = c->on.y[k][l] + c->step[k][l];
+        if (done[l] || s[i].rung < 0) continue;
+        s[i].count++;
+        s[i].eta = eta[l];
+        s[i].a = a[l];
+        for (int64_t k = 0; k < c->on.n; k++) s[i].y[k] = c->on.y[k][l] + c->step[k][l];
     }
 }
 /* The part of the load that is tensile, of a smooth punch. */
@@ -175,21 +175,21 @@ static void profiles(Group *c, I shown) {
         }
     }
 }
-static void profile(Group *c, States *s) {
+static void profile(Group *c, State *s) {
     load_state(c, s);
     curves(c, &c->on);
     before_points(c);
     profiles(c, all(1.0) == 1.0);
 }
 /* What becomes of a group of cases that have closed: each is solved, goes on to the finer mesh, or is handed back. */
-static void finish(Group *c, States *s) {
+static void finish(Group *c, State *s) {
     const Batch *b = c->b;
     int64_t n = c->on.n, rough = b->law != SMOOTH;
     V smallest, largest;
     load_state(c, s);
     if (b->layered) kernel_at(c, c->on.a);
     curves(c, &c->on);
-    c->on.Kq[n] = of_cases(s->edge_q, c->index);
+    c->on.Kq[n] = OF_STATES(s, edge_q);
     Quantities coarse = quantities(c, &c->on);
     before_points(c);
     V slope = refine(c), change = all(0), probe = all(0);
@@ -228,7 +228,7 @@ static void finish(Group *c, States *s) {
     judged = ~bad & (~wanting | fixed);
     if (rough && any(judged)) error = pick(judged, completed(c, coarse.value[Ar_An_], error), error);
     wanting = (wanting | (error > c->rtol)) & ~fixed;
-    V before = of_cases(s->before, c->index);
+    V before = OF_STATES(s, before);
     I slow = error > 0.5 * before;
     bad |= ~is_finite(error) | (wanting & (floor > c->rtol) & (error <= pick(slow, 30 * floor, floor)));
     bad |= wanting & slow & (error > 100 * c->rtol) & (all(n) >= 48);
@@ -245,32 +245,32 @@ static void finish(Group *c, States *s) {
     if (b->layered && b->points && any(solved)) profiles(c, solved);           /* its tables are at hand */
     for (int l = 0; l < c->count; l++) {
         int64_t k = c->index[l];
-        if (s->rung[k] < 0 || bad[l]) {
-            s->rung[k] = -1;
+        if (s[k].rung < 0 || bad[l]) {
+            s[k].rung = -1;
             continue;
         }
         if (wanting[l]) {
-            s->before[k] = error[l];
-            s->rung[k]++;
-            s->eta[k] = c->fine.eta[l];
-            s->a[k] = c->fine.a[l];
-            s->fresh[k] = 0;
-            for (int64_t i = 0; i < c->fine.n; i++) s->y[k * MOST_NODES + i] = c->fine.y[i][l];
+            s[k].before = error[l];
+            s[k].rung++;
+            s[k].eta = c->fine.eta[l];
+            s[k].a = c->fine.a[l];
+            s[k].stage = AT_STEPS;
+            for (int64_t i = 0; i < c->fine.n; i++) s[k].y[i] = c->fine.y[i][l];
             continue;
         }
-        double *to = s->scalars + k;
+        double *to = b->scalars + k;
         for (int i = 0; i < 7; i++) to[i * b->stride] = coarse.value[i][l];
         to[dP_dD_ * b->stride] = slope[l];
-        to[residual_ * b->stride] = s->residual[k];
+        to[residual_ * b->stride] = s[k].residual;
         to[error_ * b->stride] = error[l];
         to[profile_error_ * b->stride] = profile[l];
         b->nodes[k] = (int32_t)n;
-        b->iterations[k] = s->count[k];
-        s->fresh[k] = 3;
+        b->iterations[k] = s[k].count;
+        s[k].stage = AT_PROFILES;
     }
 }
 /* Radius, softness and first mesh of a group of cases. */
-static void begin(Group *c, States *s) {
+static void begin(Group *c, State *s) {
     const Batch *b = c->b;
     V a = c->value, soft = all(1.0), P = c->value, e = all(1.5), gamma = all(1.351283845031745);
     if (b->law != DISC_CELL) e = 1 / c->law.beta, gamma = all(1.0);
@@ -300,23 +300,23 @@ static void begin(Group *c, States *s) {
     for (int l = 0; l < c->count; l++) {
         int64_t i = c->index[l], r = 0;
         while (b->fixed[i] ? b->ladder[r] != b->fixed[i] : b->ladder[r] < 32 && b->ladder[r] < wanted[l]) r++;
-        s->rung[i] = a[l] - a[l] == 0 && wanted[l] == wanted[l] ? r : -1;
-        s->fresh[i] = 1;
-        s->eta[i] = eta[l];
-        s->a[i] = b->control == RADIUS ? vexp(eta)[l] : a[l];
-        s->soft[i] = soft[l];
-        s->before[i] = __builtin_inf();
+        s[i].rung = a[l] - a[l] == 0 && wanted[l] == wanted[l] ? r : -1;
+        s[i].stage = AT_GUESS;
+        s[i].eta = eta[l];
+        s[i].a = b->control == RADIUS ? vexp(eta)[l] : a[l];
+        s[i].soft = soft[l];
+        s[i].before = __builtin_inf();
     }
 }
-static void first_guess(Group *c, States *s) {
-    V a = of_cases(s->a, c->index), soft = of_cases(s->soft, c->index);
+static void first_guess(Group *c, State *s) {
+    V a = OF_STATES(s, a), soft = OF_STATES(s, soft);
     V X = 8 / PI * c->law.p_star / (a * c->E), Y = 2 * c->C * c->law.p_star / (a * a), Z = 2 * c->law.A_star / (a * a);
     for (int64_t i = 0; i < c->on.n; i++) {
         double at = c->on.s[i];
         V base = (X * soft * (PI * PI / 16) * at + Y) / (at * at);
         V more = c->b->law == SMOOTH ? all(0.0) : 1 / sparse_of(&c->law, at * at / Z);
         V y = guess_of(&c->law, 1 / (base + more));
-        for (int l = 0; l < c->count; l++) s->y[c->index[l] * MOST_NODES + i] = y[l];
+        for (int l = 0; l < c->count; l++) s[c->index[l]].y[i] = y[l];
     }
-    for (int l = 0; l < c->count; l++) s->fresh[c->index[l]] = 0;
+    for (int l = 0; l < c->count; l++) s[c->index[l]].stage = AT_STEPS;
 }

@@ -17,7 +17,7 @@ import numpy as np
 #: Name of the file, without its suffix; its variants, the widest first; and the variable that chooses one.
 NAME, VARIANTS, VARIABLE = "_core", ("avx512", "avx2", "sse2"), "ROUGHCOAT_CORE"
 
-_LAYERED = ("h", "m", "n", "nu1", "nu2", "bonded")
+_LAYERED = ("h", "m", "n", "bonded", "c1", "c2", "one_c1", "one_c2", "plus_c1", "one_c1c2")
 
 
 class Points(Structure):

@@ -19,7 +19,7 @@ typedef struct {
     const Mesh *mesh;
     const Table *table, *tables[KINDS / 2];                                    /* of the group; of the mesh */
     int64_t index[W];
-    int count;
+    int count, last;                                                           /* no step follows the last */
     Law law;
     Layer layer;
     V value, E, C, rtol, *points, *pressures, *room;
@@ -28,13 +28,11 @@ typedef struct {
     Equation on, fine;
 } Group;
 
-/* What each case has come to. `rung` -1: it is no longer here. */
-typedef struct {
-    int64_t *list, *sorted, *rung;
-    int32_t *count, *fresh;
-    double *y, *eta, *a, *soft, *residual, *before, *edge_q, *scalars;
-} States;
+/* What each case has come to. Of `rung` -1 it is handed back; `stage` says what comes next on its mesh. */
+typedef struct { double *y, eta, a, soft, residual, before, edge_q; int64_t rung; int32_t count, stage; } State;
+enum { AT_STEPS, AT_GUESS, AT_FINISH, AT_PROFILES };
 
+#define OF_STATES(s, name) ({ V v_; EACH(l) v_[l] = (s)[c->index[l]].name; v_; })
 static inline V of_cases(const double *values, const int64_t *index) {
     V v;
     EACH(l) v[l] = values[index[l]];
@@ -42,24 +40,16 @@ static inline V of_cases(const double *values, const int64_t *index) {
 }
 static inline void load_cases(Group *c, const int64_t *index, int count) {
     const Batch *b = c->b;
+    Layer *of = &c->layer;
+    const double *from[] = {b->value, b->rtol, b->E, b->C, b->p_star, b->A_star, b->beta, b->ratio, b->n, b->m, b->h, b->c1,
+                            b->c2, b->one_c1, b->one_c2, b->plus_c1, b->one_c1c2};
+    V *to[] = {&c->value, &c->rtol, &c->E, &c->C, &c->law.p_star, &c->law.A_star, &c->law.beta, &c->law.ratio, &of->n, &of->m,
+               &of->h, &of->c1, &of->c2, &of->one_c1, &of->one_c2, &of->plus_c1, &of->one_c1c2};
     c->count = count;
     EACH(l) c->index[l] = index[l < count ? l : count - 1];
-    c->value = of_cases(b->value, c->index);
-    c->rtol = of_cases(b->rtol, c->index);
-    c->E = of_cases(b->E, c->index);
-    c->C = of_cases(b->C, c->index);
-    c->law = (Law){b->law, of_cases(b->p_star, c->index), of_cases(b->A_star, c->index), all(1.0), all(1.0)};
-    if (b->law == POWER_LAW) {
-        c->law.beta = of_cases(b->beta, c->index);
-        c->law.ratio = of_cases(b->ratio, c->index);
-    }
-    if (!b->layered) return;
-    c->layer.n = of_cases(b->n, c->index);
-    c->layer.m = of_cases(b->m, c->index);
-    c->layer.h = of_cases(b->h, c->index);
-    c->layer.bonded = b->bonded[c->index[0]] != 0;
-    c->layer.stiff = b->n[c->index[0]] > 2;
-    if (c->layer.bonded) bond(&c->layer, of_cases(b->nu1, c->index), of_cases(b->nu2, c->index));
+    of->bonded = b->layered && b->bonded[index[0]] != 0;
+    of->stiff = b->layered && b->n[index[0]] > 2;
+    for (int i = 0; i < (of->bonded ? 17 : b->layered ? 11 : 8); i++) *to[i] = of_cases(from[i], c->index);
 }
 static inline V softness(const Group *c, V a) {
     return c->b->layered ? whole(&c->layer, 1.5 * c->layer.h / a) : all(1.0);
@@ -147,8 +137,8 @@ static ALONE void curves(const Group *c, Equation *e) {
     e->Y = 2 * c->C * c->law.p_star / (a * a);
     e->Z = 2 * c->law.A_star / (a * a);
     for (int64_t i = 0; i < e->n; i++) {
-        Curve curve = curve_of(&c->law, e->y[i]);
-        e->q[i] = curve.q; e->g[i] = curve.g; e->dq[i] = curve.dq; e->dg[i] = curve.dg;
+        Curve v = curve_of(&c->law, e->y[i]);
+        e->q[i] = v.q; e->g[i] = v.g; e->dq[i] = v.dq; e->dg[i] = v.dg;
     }
     e->load = against(e->w, e->q, e->n);
 }

@@ -12,6 +12,7 @@ from ..contact.error import STEEP
 from ..contact.newton import LIMIT
 from ..contact.results import apart
 from ..edges import FREE
+from ..kernels.closed_form import bond_constants
 from ..kernels.two_layers import TwoLayers
 from ..laws import LAWS
 from ..numerics.ladder import LADDER
@@ -71,9 +72,13 @@ def _solved(function, cases, rtol, nodes, x):
     inputs = {"value": cases.value, "rtol": rtol, "p_star": law.p_star, "A_star": law.A_star, "E": body.E, "C": body.C}
     if law.law.name == "power_law":
         inputs |= dict(zip(("beta", "ratio"), (own[:, 0] for own in law.own), strict=True))
+    else:
+        inputs |= dict.fromkeys(("beta", "ratio"), np.ones(size))
     layered = isinstance(body, Hankel)
     if layered:
-        inputs |= {"h": body.h, "m": body.m} | body.kernel._asdict()
+        kernel = body.kernel
+        inputs |= {"h": body.h, "m": body.m, "n": kernel.n, "bonded": kernel.bonded}
+        inputs |= bond_constants(kernel.n, kernel.nu1, kernel.nu2)._asdict()
     inputs = {name: np.ascontiguousarray(values, dtype=float) for name, values in inputs.items()}
     scalars, (p, lam) = np.empty((len(_SCALARS), size)), np.zeros((2, size, points))
     last_nodes, iterations = np.zeros((2, size), dtype=np.int32)

@@ -1,14 +1,10 @@
 /* What becomes of the cases: where they begin, their errors, and their numbers. solver/contact: start.py, error.py,
    results.py, answer.py, adaptive.py. A case for which anything but convergence may come out is handed back. */
 typedef struct { V value[7]; } Quantities;                                     /* a, P, D, p0, p_max, Ar_An, A0 */
-
 static Quantities quantities(const Group *c, const Equation *e) {              /* (5), (11)-(14) */
     int64_t n = e->n, last = n - 1;
-    V a = e->a, area = all(0), load = all(0);
-    for (int64_t i = 0; i < n; i++) {
-        area += e->w[i] * area_of(&c->law, e->y[i], e->q[i]);
-        load += e->w[i] * e->q[i];
-    }
+    V a = e->a, area = all(0), load = against(e->w, e->q, n);
+    for (int64_t i = 0; i < n; i++) area += e->w[i] * area_of(&c->law, e->y[i], e->q[i]);
     return (Quantities){{a, 2 * PI * a * a * c->law.p_star * load, a * a / 2 * (1 + e->X * e->Kq[n]),
                          c->law.p_star * e->q[last], c->law.p_star * peak_of(&c->law, e->y[last], e->q[last]), 2 * area,
                          c->law.A_star * e->g[last]}};
@@ -52,7 +48,7 @@ static V moved_edge(const Group *c) {
     for (int64_t i = 0; i < e->n; i++) largest = most(c->q_start[i], largest);
     for (int64_t i = 0; i < e->n; i++) {
         double s2 = e->s[i] * e->s[i];
-        V Z = 2 * c->law.A_star / (c->on.a * c->on.a), share = clip(Z * c->g_start[i] / s2, all(0.0), all(1.0));
+        V share = clip(c->on.Z * c->g_start[i] / s2, all(0.0), all(1.0));
         V floor = most(c->q_start[i], 0.02 * s2 * largest);
         V moved = (1 - share) * size_of(e->q[i] - c->q_start[i]) / floor + share * size_of(e->g[i] / c->g_start[i] - 1);
         shift = most(s2 * pick(moved > 1e-8, moved, all(0.0)), shift);
@@ -84,60 +80,44 @@ static void sweep(Group *c, State *s) {
     load_state(c, s);
     if (c->b->layered) kernel_at(c, c->on.a);
     evaluate(c, &c->on);
-    V residual, d_eta = all(0);
+    V residual;
     I apart, done = closed(c, &c->on, &residual, &apart);
     int advances = 0;
     for (int l = 0; l < c->count; l++) {
         int64_t i = c->index[l];
-        if (done[l]) {
-            s[i].residual = residual[l];
-            s[i].edge_q = c->on.Kq[c->on.n][l];
-            s[i].stage = AT_FINISH;
-        }
-        if (apart[l] && done[l]) s[i].rung = -1;
-        if (!done[l] && (c->last || !(residual[l] == residual[l]))) s[i].rung = -1;
+        if (done[l]) s[i].residual = residual[l], s[i].edge_q = c->on.Kq[c->on.n][l], s[i].stage = AT_FINISH;
+        if (done[l] ? apart[l] : c->last || !(residual[l] == residual[l])) s[i].rung = -1;
         advances |= !done[l] && s[i].rung >= 0;
     }
     if (!advances) return;
-    d_eta = advance(c, &c->on);
-    V eta = c->on.eta + d_eta, a = vexp(eta);
+    V eta = c->on.eta + advance(c, &c->on), a = vexp(eta);
     for (int l = 0; l < c->count; l++) {
         int64_t i = c->index[l];
         if (done[l] || s[i].rung < 0) continue;
-        s[i].count++;
-        s[i].eta = eta[l];
-        s[i].a = a[l];
+        s[i].count++, s[i].eta = eta[l], s[i].a = a[l];
         for (int64_t k = 0; k < c->on.n; k++) s[i].y[k] = c->on.y[k][l] + c->step[k][l];
     }
 }
 /* The part of the load that is tensile, of a smooth punch. */
 static V tension(Group *c) {
     const Points *p = &c->mesh->between;
-    V below = all(0), load = all(0);
+    V below = all(0);
     combine(c, p->basis, c->on.n, p->m, c->on.q, c->points);
-    for (int64_t i = 0; i < p->m; i++) {
-        below += p->w[i] * most(-c->points[i], all(0.0));
-        load += p->w[i] * c->points[i];
-    }
-    return below / size_of(load);
+    for (int64_t i = 0; i < p->m; i++) below += p->w[i] * most(-c->points[i], all(0.0));
+    return below / size_of(against(p->w, c->points, p->m));
 }
 /* The state on the finer mesh after one step there; y, q and g before it; and P'/D' of the branch of solutions. */
 static V refine(Group *c) {
     Equation *f = &c->fine;
     int64_t n = f->n;
-    f->eta = c->on.eta;
-    f->a = c->on.a;
+    f->eta = c->on.eta, f->a = c->on.a;
     interpolate(c, &c->mesh->fine, c->b->layered ? c->table->J_fine : 0, 1e-8, f->y);
     evaluate(c, f);
     V d_eta = advance(c, f), of_P, of_D;
     V P = along(c, f, LOAD, c->d_eta, &of_P), D = along(c, f, DEPTH, c->d_eta, &of_D);
     for (int64_t i = 0; i < n; i++) {
-        c->q_start[i] = f->q[i];
-        c->g_start[i] = f->g[i];
-        f->q[i] += f->dq[i] * c->step[i];
-        f->g[i] += f->dg[i] * c->step[i];
-        c->y_start[i] = f->y[i];
-        f->y[i] += c->step[i];
+        c->y_start[i] = f->y[i], c->q_start[i] = f->q[i], c->g_start[i] = f->g[i];
+        f->y[i] += c->step[i], f->q[i] += f->dq[i] * c->step[i], f->g[i] += f->dg[i] * c->step[i];
     }
     f->Kq[n] = dot(c->K + n * n, f->q, n) + f->slope[n] * d_eta;
     f->eta += d_eta;
@@ -175,17 +155,10 @@ static void profiles(Group *c, I shown) {
         }
     }
 }
-static void profile(Group *c, State *s) {
-    load_state(c, s);
-    curves(c, &c->on);
-    before_points(c);
-    profiles(c, all(1.0) == 1.0);
-}
 /* What becomes of a group of cases that have closed: each is solved, goes on to the finer mesh, or is handed back. */
 static void finish(Group *c, State *s) {
     const Batch *b = c->b;
     int64_t n = c->on.n, rough = b->law != SMOOTH;
-    V smallest, largest;
     load_state(c, s);
     if (b->layered) kernel_at(c, c->on.a);
     curves(c, &c->on);
@@ -200,7 +173,7 @@ static void finish(Group *c, State *s) {
         probe += of;
     }
     slope *= fine.value[P_] / fine.value[D_];
-    smallest = largest = c->on.q[0];
+    V smallest = c->on.q[0], largest = smallest;
     for (int64_t i = 1; i < n; i++) smallest = least(c->on.q[i], smallest), largest = most(c->on.q[i], largest);
     V centre = c->on.q[n - 1], around = all(0);
     for (int64_t i = 0; i < c->fine.n; i++)
@@ -235,38 +208,28 @@ static void finish(Group *c, State *s) {
     for (int i = 0; i < 7; i++) bad |= ~is_finite(coarse.value[i]);
     I solved = ~bad & ~wanting;
     V profile = any(solved) ? most(error, of_profiles(c, margin)) : error;
-    if (any(solved & fixed)) {                                                 /* P'/D' of this mesh, as the other numbers */
+    if (any(solved & fixed)) {                                        /* P'/D' of this mesh, as the other numbers */
         V of_P, of_D;
         evaluate(c, &c->on);
         advance(c, &c->on);
         V P = along(c, &c->on, LOAD, c->d_eta, &of_P), D = along(c, &c->on, DEPTH, c->d_eta, &of_D);
-        slope = pick(fixed, coarse.value[P_] / coarse.value[D_] * (P + of_P) / (D + of_D), slope);
+        slope = pick(fixed, coarse.value[P_] / coarse.value[D_] * ((P + of_P) / (D + of_D)), slope);
     }
-    if (b->layered && b->points && any(solved)) profiles(c, solved);           /* its tables are at hand */
+    if (b->points && any(solved)) profiles(c, solved);
     for (int l = 0; l < c->count; l++) {
         int64_t k = c->index[l];
-        if (s[k].rung < 0 || bad[l]) {
-            s[k].rung = -1;
-            continue;
-        }
-        if (wanting[l]) {
-            s[k].before = error[l];
-            s[k].rung++;
-            s[k].eta = c->fine.eta[l];
-            s[k].a = c->fine.a[l];
-            s[k].stage = AT_STEPS;
+        if (bad[l]) s[k].rung = -1;
+        else if (wanting[l]) {
+            s[k].rung++, s[k].stage = AT_STEPS, s[k].before = error[l];
+            s[k].eta = c->fine.eta[l], s[k].a = c->fine.a[l];
             for (int64_t i = 0; i < c->fine.n; i++) s[k].y[i] = c->fine.y[i][l];
-            continue;
         }
+        if (bad[l] || wanting[l]) continue;
         double *to = b->scalars + k;
         for (int i = 0; i < 7; i++) to[i * b->stride] = coarse.value[i][l];
-        to[dP_dD_ * b->stride] = slope[l];
-        to[residual_ * b->stride] = s[k].residual;
-        to[error_ * b->stride] = error[l];
-        to[profile_error_ * b->stride] = profile[l];
-        b->nodes[k] = (int32_t)n;
-        b->iterations[k] = s[k].count;
-        s[k].stage = AT_PROFILES;
+        to[dP_dD_ * b->stride] = slope[l], to[residual_ * b->stride] = s[k].residual;
+        to[error_ * b->stride] = error[l], to[profile_error_ * b->stride] = profile[l];
+        b->nodes[k] = (int32_t)n, b->iterations[k] = s[k].count, s[k].rung = -1;
     }
 }
 /* Radius, softness and first mesh of a group of cases. */
@@ -276,8 +239,9 @@ static void begin(Group *c, State *s) {
     if (b->law != DISC_CELL) e = 1 / c->law.beta, gamma = all(1.0);
     if (b->control == DEPTH) a = root(1.5 * P);
     if (b->control == LOAD) {
-        V springs = 4 * c->C * P / PI, alone = P / (2 * PI * c->law.p_star) * power(2 * c->law.A_star * gamma, e) * (2 * e + 2);
-        V spots = b->law == SMOOTH ? all(0.0) : power(alone, 4 / (2 + 2 * e)), hertz = 0.75 * P / c->E;
+        V springs = 4 * c->C * P / PI, both = power(2 * c->law.A_star * gamma, e) * (2 * e + 2);
+        V hertz = 0.75 * P / c->E, alone = P / (2 * PI * c->law.p_star) * both;
+        V spots = b->law == SMOOTH ? all(0.0) : power(alone, 4 / (2 + 2 * e));
         for (int i = 0; i < 7; i++) {
             a = root(root(power(hertz * soft, all(4.0 / 3)) + springs + spots));
             if (!b->layered) break;
@@ -301,10 +265,7 @@ static void begin(Group *c, State *s) {
         int64_t i = c->index[l], r = 0;
         while (b->fixed[i] ? b->ladder[r] != b->fixed[i] : b->ladder[r] < 32 && b->ladder[r] < wanted[l]) r++;
         s[i].rung = a[l] - a[l] == 0 && wanted[l] == wanted[l] ? r : -1;
-        s[i].stage = AT_GUESS;
-        s[i].eta = eta[l];
-        s[i].a = b->control == RADIUS ? vexp(eta)[l] : a[l];
-        s[i].soft = soft[l];
+        s[i].eta = eta[l], s[i].a = b->control == RADIUS ? vexp(eta)[l] : a[l], s[i].soft = soft[l];
         s[i].before = __builtin_inf();
     }
 }

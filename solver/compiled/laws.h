@@ -1,11 +1,11 @@
 /* Micro laws and the two kernels of a layer, a case in each lane: solver/laws, solver/kernels/closed_form.py. */
 typedef struct { V q, g, dq, dg; } Curve;
 typedef struct { int name; V p_star, A_star, beta, ratio; } Law;
-
 #define PI 3.14159265358979323846
 static inline V spot_curve(V y, V *dq, V *g, V *dg) {                          /* (6), (7); returns q */
     V sin2 = 1 / (1 + y * y), sine = root(sin2), cosine = y * sine, theta = angle(y);
-    V cos2 = cosine * cosine, sc = sine * cosine, inverse = 1 / (theta + sc), slope = cos2 * inverse, q = slope * cosine;
+    V cos2 = cosine * cosine, sc = sine * cosine, inverse = 1 / (theta + sc), slope = cos2 * inverse;
+    V q = slope * cosine;
     *dq = sin2 * slope * (3 * sine + 2 * q);
     if (!g) return q;
     V z = 4 * theta * theta;
@@ -59,13 +59,11 @@ static inline V peak_of(const Law *law, V y, V q) {                            /
     if (law->name == POWER_LAW) y = spot_from_pressure(spot);
     return (3 / PI / root(1 + 1 / (y * y)) + 2 / PI * spot * (PI / 2 - angle(y))) / law->ratio;
 }
-
 /* c1 to one_c1c2: the constants of a bond, bond_constants of closed_form.py; not used without one. */
 typedef struct { int bonded, stiff; V n, m, h, c1, c2, one_c1, one_c2, plus_c1, one_c1c2; } Layer;
-
 static inline V nested(V z, const double *inverse) {
-    V total = 1 + z * inverse[7];
-    for (int i = 6; i >= 0; i--) total = 1 + z * inverse[i] * total;
+    V total = all(1.0);
+    for (int i = 7; i >= 0; i--) total = 1 + z * inverse[i] * total;
     return total;
 }
 /* The gap (1 - e)^2 - 4 u^2 e and the excess e (sinh 2u - 2u), by their series where u is small. */

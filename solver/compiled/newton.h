@@ -4,7 +4,6 @@
 #define ROOM 128                                /* for the nodes, or the few k, and what `combine` writes behind them */
 #define KINDS 512                               /* more than there are octaves, two classes, two interfaces */
 #define WAVES 4096                              /* numbers k of a quadrature: MOST_WAVES of tables.py */
-
 /* The equation on one mesh at a state: arrays over the nodes; Kq and its slope by ln a have the edge last. */
 typedef struct {
     int64_t n;
@@ -12,7 +11,6 @@ typedef struct {
     const Rows *rows;
     V eta, a, X, Y, Z, load, y[ROOM], q[ROOM], g[ROOM], dq[ROOM], dg[ROOM], Kq[ROOM], slope[ROOM], F[ROOM];
 } Equation;
-
 /* Cases in the lanes, and room to compute them: `most` points, of which `room` has five times as many. */
 typedef struct {
     const Batch *b;
@@ -27,11 +25,9 @@ typedef struct {
     V K[ROOM * ROOM], A[ROOM * ROOM], weights[WAVES], slopes[WAVES], waves[WAVES];
     Equation on, fine;
 } Group;
-
-/* What each case has come to. Of `rung` -1 it is handed back; `stage` says what comes next on its mesh. */
+/* What each case has come to. Of `rung` -1 it has ended or is handed back; `stage` says what comes next on its mesh. */
 typedef struct { double *y, eta, a, soft, residual, before, edge_q; int64_t rung; int32_t count, stage; } State;
-enum { AT_STEPS, AT_GUESS, AT_FINISH, AT_PROFILES };
-
+enum { AT_STEPS, AT_GUESS, AT_FINISH };
 #define OF_STATES(s, name) ({ V v_; EACH(l) v_[l] = (s)[c->index[l]].name; v_; })
 static inline V of_cases(const double *values, const int64_t *index) {
     V v;
@@ -41,10 +37,10 @@ static inline V of_cases(const double *values, const int64_t *index) {
 static inline void load_cases(Group *c, const int64_t *index, int count) {
     const Batch *b = c->b;
     Layer *of = &c->layer;
-    const double *from[] = {b->value, b->rtol, b->E, b->C, b->p_star, b->A_star, b->beta, b->ratio, b->n, b->m, b->h, b->c1,
-                            b->c2, b->one_c1, b->one_c2, b->plus_c1, b->one_c1c2};
-    V *to[] = {&c->value, &c->rtol, &c->E, &c->C, &c->law.p_star, &c->law.A_star, &c->law.beta, &c->law.ratio, &of->n, &of->m,
-               &of->h, &of->c1, &of->c2, &of->one_c1, &of->one_c2, &of->plus_c1, &of->one_c1c2};
+    const double *from[] = {b->value, b->rtol, b->E, b->C, b->p_star, b->A_star, b->beta, b->ratio, b->n, b->m, b->h,
+                            b->c1, b->c2, b->one_c1, b->one_c2, b->plus_c1, b->one_c1c2};
+    V *to[] = {&c->value, &c->rtol, &c->E, &c->C, &c->law.p_star, &c->law.A_star, &c->law.beta, &c->law.ratio,
+               &of->n, &of->m, &of->h, &of->c1, &of->c2, &of->one_c1, &of->one_c2, &of->plus_c1, &of->one_c1c2};
     c->count = count;
     EACH(l) c->index[l] = index[l < count ? l : count - 1];
     of->bonded = b->layered && b->bonded[index[0]] != 0;
@@ -54,8 +50,8 @@ static inline void load_cases(Group *c, const int64_t *index, int count) {
 static inline V softness(const Group *c, V a) {
     return c->b->layered ? whole(&c->layer, 1.5 * c->layer.h / a) : all(1.0);
 }
-/* For few cases the lanes hold neighbours of a table in place of cases: F has four. The order of each sum is that of many
-   cases, and so are its bits. */
+/* For few cases the lanes hold neighbours of a table in place of cases: F has four. The order of each sum is that of
+   many cases, and so are its bits. */
 typedef double F __attribute__((vector_size(32), aligned(8)));
 /* Sums (rows) of the columns (count) of a table, each times one x. The table has blocks of 8 rows, four together. */
 ALONE static void combine(const Group *c, const double *t, int64_t count, int64_t rows, const V *x, V *out) {
@@ -107,7 +103,7 @@ static void form(Group *c, Equation *e) {
     else if (c->b->layered) {
         int64_t G = c->table->all;
         combine(c, c->table->spread, c->table->few, G, c->L1, c->weights);
-        for (int64_t i = 0; i <= n; i++) {                                     /* what is written behind a row is lost */
+        for (int64_t i = 0; i <= n; i++) {                                    /* what is written behind a row is lost */
             for (int64_t g = 0; g < G; g++) c->room[g] = e->rows->J_rows[i * G + g] * c->weights[g];
             combine(c, e->rows->phi, G, n, c->room, K + i * n);
         }
@@ -132,10 +128,8 @@ static void slopes(Group *c, Equation *e) {
     combine(c, e->rows->J, G, n + 1, c->room, e->slope);
 }
 static ALONE void curves(const Group *c, Equation *e) {
-    V a = e->a;
-    e->X = 8 / PI * c->law.p_star / (a * c->E);
-    e->Y = 2 * c->C * c->law.p_star / (a * a);
-    e->Z = 2 * c->law.A_star / (a * a);
+    V a = e->a, a2 = a * a;
+    e->X = 8 / PI * c->law.p_star / (a * c->E), e->Y = 2 * c->C * c->law.p_star / a2, e->Z = 2 * c->law.A_star / a2;
     for (int64_t i = 0; i < e->n; i++) {
         Curve v = curve_of(&c->law, e->y[i]);
         e->q[i] = v.q; e->g[i] = v.g; e->dq[i] = v.dq; e->dg[i] = v.dg;
@@ -158,8 +152,7 @@ static inline V control_residual(const Group *c, const Equation *e) {
 static inline V along(const Group *c, const Equation *e, int control, const V *t, V *by_eta) {
     int64_t n = e->n;
     *by_eta = all(control == RADIUS ? 1.0 : 2.0);
-    if (control == RADIUS) return all(0);
-    if (control == LOAD) return against(e->w, t, n) / e->load;
+    if (control != DEPTH) return control == RADIUS ? all(0) : against(e->w, t, n) / e->load;
     V edge = e->X * e->Kq[n], depth = 1 + edge;
     *by_eta += (e->X * e->slope[n] - edge) / depth;
     return e->X * dot(c->K + n * n, t, n) / depth;
@@ -171,29 +164,16 @@ static I eliminate(V *A, V *r, V *t, int64_t n) {
         V *top = A + k * n, inverse = 1 / top[k];
         sound &= top[k] > 0;
         top[k] = inverse;
-        int64_t i = k + 1;
-        for (; i + 2 <= n; i += 2) {
-            V *one = A + i * n, *two = one + n, f = one[k] * inverse, h = two[k] * inverse;
-            for (int64_t j = k + 1; j < n; j++) {
-                V x = top[j];
-                one[j] -= f * x;
-                two[j] -= h * x;
-            }
-            r[i] -= f * r[k]; r[i + 1] -= h * r[k];
-            t[i] -= f * t[k]; t[i + 1] -= h * t[k];
-        }
-        for (; i < n; i++) {
-            V *one = A + i * n, f = one[k] * inverse;
-            for (int64_t j = k + 1; j < n; j++) one[j] -= f * top[j];
-            r[i] -= f * r[k];
-            t[i] -= f * t[k];
+        for (int64_t i = k + 1; i < n; i++) {
+            V *row = A + i * n, f = row[k] * inverse;
+            for (int64_t j = k + 1; j < n; j++) row[j] -= f * top[j];
+            r[i] -= f * r[k], t[i] -= f * t[k];
         }
     }
     for (int64_t k = n - 1; k >= 0; k--) {
         V x = r[k], z = t[k];
         for (int64_t j = k + 1; j < n; j++) x -= A[k * n + j] * r[j], z -= A[k * n + j] * t[j];
-        r[k] = x * A[k * n + k];
-        t[k] = z * A[k * n + k];
+        r[k] = x * A[k * n + k], t[k] = z * A[k * n + k];
     }
     return sound;
 }
@@ -232,9 +212,7 @@ static ALONE I closed(const Group *c, const Equation *e, V *residual, I *apart) 
     for (int64_t i = 0; i < e->n; i++) {
         I bare = (e->q[i] >= 0) & (e->q[i] < 1e-16 * largest);
         V gap = pick(bare, most(e->F[i] - e->Z * e->g[i], all(0)), all(0)), F = pick(gap > 0, all(0), size_of(e->F[i]));
-        high = most(gap, high);
-        top = most(F, top);
-        sum += F;
+        high = most(gap, high), top = most(F, top), sum += F;
     }
     V G = size_of(control_residual(c, e));
     *residual = pick(is_finite(sum + G), most(top, G), all(__builtin_nan("")));

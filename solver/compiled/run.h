@@ -1,6 +1,5 @@
 /* The cases of a batch, in groups that share a mesh, a table and the interface of the layer. */
 typedef struct { State *states; int64_t *list, *sorted; } Run;
-
 static int kind_of(const Batch *b, const State *s, int64_t i, int by_octave) {
     if (!b->layered) return 0;
     int kind = (b->n[i] > 2 ? 2 : 0) + (b->bonded[i] != 0);
@@ -8,7 +7,7 @@ static int kind_of(const Batch *b, const State *s, int64_t i, int by_octave) {
     union { double value; uint64_t bits; } h_a = {b->h[i] / s[i].a};
     int64_t octave = (int64_t)(h_a.bits >> 52) - 1023 - b->first_octave;
     if (octave >= b->octaves) octave = b->octaves - 1;
-    return octave < 0 ? -1 : kind + 4 * (int)octave;                           /* a film, or not a number: handed back */
+    return octave < 0 ? -1 : kind + 4 * (int)octave;                          /* a film, or not a number: handed back */
 }
 static void by_kinds(Group *c, const Run *run, int64_t count, int by_octave, void (*work)(Group *, State *)) {
     const Batch *b = c->b;
@@ -20,10 +19,9 @@ static void by_kinds(Group *c, const Run *run, int64_t count, int by_octave, voi
         else ends[kind + 1]++;
     }
     for (int k = 0; k < KINDS; k++) ends[k + 1] += ends[k];
-    int64_t total = ends[KINDS];
     for (int64_t j = 0; j < count; j++)
         if (s[list[j]].rung >= 0) order[ends[kind_of(b, s, list[j], by_octave)]++] = list[j];
-    for (int k = 0; k < KINDS && from < total; from = ends[k++]) {
+    for (int k = 0; k < KINDS; from = ends[k++]) {
         if (ends[k] == from) continue;
         const Table **of_kind = c->tables + k / 2;
         int needed = b->layered && by_octave;
@@ -56,12 +54,12 @@ static void on_rung(Group *c, Run *run, int64_t r) {
     c->last = 0;
     for (int done = 0; done <= b->steps && at_stage(c, run, r, AT_STEPS, sweep); done++) c->last = done + 1 == b->steps;
     at_stage(c, run, r, AT_FINISH, finish);
-    if (b->points && !b->layered) at_stage(c, run, r, AT_PROFILES, profile);
 }
 /* Solve the cases; 0 if there is no memory. `most` points of profiles and others, a multiple of 32. */
 static int solve(const Batch *b, int64_t most) {
     int64_t size = b->size, vectors = 2 * most + (5 * most > WAVES ? 5 * most : WAVES);
-    char *block = malloc(64 + sizeof(Group) + (size_t)vectors * sizeof(V) + (size_t)size * (sizeof(State) + 16 + MOST_NODES * 8));
+    int64_t bytes = 64 + (int64_t)sizeof(Group) + vectors * (int64_t)sizeof(V);
+    char *block = malloc((size_t)(bytes + size * (int64_t)(sizeof(State) + 16 + MOST_NODES * 8)));
     if (!block) return 0;
     Group *c = (Group *)(((uintptr_t)block + 63) & ~(uintptr_t)63);
     memset(&c->layer, 0, sizeof(Layer));

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 
-
 from .compiled import newton as compiled
 from .contact import picard as approximations
 from .contact.answer import answer

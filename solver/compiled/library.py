@@ -1,12 +1,12 @@
 """The library of the compiled core: found beside this file if it was built, and loaded when the first cases come.
 
-The environment variable ROUGHCOAT_CORE says which path computes: "numpy", or the core with the vectors "sse2", "avx2" or
-"avx512". Without it that is the core with the widest vectors that the processor has, or numpy where no core was built.
+The environment variable ROUGHCOAT_CORE says which path computes: "numpy", or the core with the vectors "sse2", "avx2"
+or "avx512". Without it that is the core with the widest vectors of the processor, or numpy where no core was built.
 """
 
 import os
 from collections.abc import Callable
-from ctypes import CDLL, CFUNCTYPE, POINTER, Structure, c_double, c_int, c_int32, c_int64, c_void_p
+from ctypes import CDLL, CFUNCTYPE, POINTER, Structure, c_int, c_int32, c_int64, c_void_p
 from functools import lru_cache
 from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path

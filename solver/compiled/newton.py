@@ -65,59 +65,67 @@ def _taken(cases, nodes):
 
 def _solved(function, cases, rtol, nodes, x):
     """:class:`~solver.solution.Solution` by the core; `nodes` is 0 of the cases that are handed back."""
-    size, points, law, body = len(rtol), len(x), cases.law, cases.body
-    s = np.sqrt((1 - x) * (1 + x))
-    inner = np.flatnonzero(s > 0)
-    solved_at = apart(s[inner], law.rough)
+    size, points, s = len(rtol), len(x), np.sqrt((1 - x) * (1 + x))
+    place = np.flatnonzero(s > 0)
+    solved_at = apart(s[place], cases.law.rough)
+    shrink, ladder = s[place] / solved_at, np.array([*_MESHES, _FINER], dtype=np.int64)
+    scalars, (p, lam) = np.empty((len(_SCALARS), size)), np.zeros((2, size, points))
+    last, iterations = np.zeros((2, size), dtype=np.int32)
+    rows = _inputs(cases, rtol) | {"p": p, "lam": lam, "nodes": last, "iterations": iterations}
+    rows["fixed"] = np.ascontiguousarray(nodes, dtype=np.int64)
+    given = _Given(solved_at.tobytes())
+    shared = {"stride": size, "points": len(place), "rungs": len(ladder), "control": _CONTROLS.index(cases.control)}
+    shared |= {"law": _LAWS.index(cases.law.law.name), "layered": isinstance(cases.body, Hankel), "steps": LIMIT}
+    shared |= {"octaves": OCTAVES[1] - OCTAVES[0] + 1, "first_octave": OCTAVES[0], "columns": points}
+    shared |= {"ladder": pointer(ladder), "shrink": pointer(shrink), "place": pointer(place)}
+    shared |= {"mesh": OF_MESH(given.address_of(mesh_for)), "table": OF_TABLE(given.address_of(table_for))}
+    for low in range(0, size, _CHUNK):
+        own = {name: pointer(values, low) for name, values in rows.items()}
+        own |= {"size": min(_CHUNK, size - low), "scalars": pointer(scalars.T, low)}
+        if not function(byref(Batch(**shared, **own)), -(-max(3 * _MESHES[-1], len(place)) // 32) * 32):
+            raise MemoryError("no memory for the compiled core")
+        given.raise_what_was_raised()
+    values = dict(zip(_SCALARS, scalars, strict=True))
+    missed = values["error"] > rtol  # on a mesh that the case asks for
+    values["status"] = np.where(missed, Status.TOLERANCE_NOT_MET, Status.CONVERGED).astype(np.int8)
+    values |= {"model_used": np.zeros(size, dtype=np.int8), "nodes": last, "iterations": iterations}
+    values |= {name: np.full(size, np.nan) for name in ("plastic_share", "model_error")}
+    return Solution(**values, p=p, lam=lam)
+
+
+def _inputs(cases, rtol):
+    """Name in batch.h -> contiguous array (B,) of the numbers of the cases."""
+    law, body, one = cases.law, cases.body, np.ones(len(rtol))
     inputs = {"value": cases.value, "rtol": rtol, "p_star": law.p_star, "A_star": law.A_star, "E": body.E, "C": body.C}
-    if law.law.name == "power_law":
-        inputs |= dict(zip(("beta", "ratio"), (own[:, 0] for own in law.own), strict=True))
-    else:
-        inputs |= dict.fromkeys(("beta", "ratio"), np.ones(size))
-    layered = isinstance(body, Hankel)
-    if layered:
+    beta, ratio = (own[:, 0] for own in law.own) if law.law.name == "power_law" else (one, one)
+    inputs |= {"beta": beta, "ratio": ratio}
+    if isinstance(body, Hankel):
         kernel = body.kernel
         inputs |= {"h": body.h, "m": body.m, "n": kernel.n, "bonded": kernel.bonded}
         inputs |= bond_constants(kernel.n, kernel.nu1, kernel.nu2)._asdict()
-    inputs = {name: np.ascontiguousarray(values, dtype=float) for name, values in inputs.items()}
-    scalars, (p, lam) = np.empty((len(_SCALARS), size)), np.zeros((2, size, points))
-    last_nodes, iterations = np.zeros((2, size), dtype=np.int32)
-    place, shrink = inner.astype(np.int64), s[inner] / solved_at
-    ladder = np.array([*_MESHES, _FINER], dtype=np.int64)
-    s_bytes, held, raised = solved_at.tobytes(), [], []
+    return {name: np.ascontiguousarray(values, dtype=float) for name, values in inputs.items()}
 
-    def address(make):
-        """A callback: the address of what `make` returns, or 0. What it raises would be lost in C, and is raised later."""
+
+class _Given:
+    """What the core asks for while it solves, and what is raised meanwhile: in a callback of C that would be lost."""
+
+    def __init__(self, s_bytes):
+        self.s_bytes, self.held, self.raised = s_bytes, [], []
+
+    def address_of(self, make):
+        """A callback: the address of what `make` returns, or 0. What it has returned is there until the call ends."""
 
         def of(*key):
             try:
-                made = None if raised else make(*key, s_bytes)
+                made = None if self.raised else make(*key, self.s_bytes)
             except BaseException as error:  # Ctrl-C too
-                raised.append(error)
+                self.raised.append(error)
                 return 0
-            held.append(made)
+            self.held.append(made)
             return made.address if made else 0
 
         return of
 
-    shared = {"stride": size, "points": len(inner), "rungs": len(ladder), "control": _CONTROLS.index(cases.control)}
-    shared |= {"law": _LAWS.index(law.law.name), "layered": layered, "first_octave": OCTAVES[0], "steps": LIMIT}
-    shared |= {"octaves": OCTAVES[1] - OCTAVES[0] + 1, "columns": points, "ladder": pointer(ladder)}
-    shared |= {"shrink": pointer(shrink), "place": pointer(place)}
-    shared |= {"mesh": OF_MESH(address(mesh_for)), "table": OF_TABLE(address(table_for))}
-    most = -(-max(3 * _MESHES[-1], len(inner)) // 32) * 32
-    rows = inputs | {"p": p, "lam": lam, "nodes": last_nodes, "iterations": iterations}
-    rows |= {"fixed": np.ascontiguousarray(nodes, dtype=np.int64)}
-    for low in range(0, size, _CHUNK):
-        own = {name: pointer(values, low) for name, values in rows.items()}
-        own |= {"size": min(_CHUNK, size - low), "scalars": pointer(scalars.T, low)}
-        if not function(byref(Batch(**shared, **own)), most):
-            raise MemoryError("no memory for the compiled core")
-        if raised:
-            raise raised[0]
-    values = dict(zip(_SCALARS, scalars, strict=True))
-    missed = values["error"] > rtol  # on a mesh that the case asks for
-    integers = {"status": np.where(missed, Status.TOLERANCE_NOT_MET, Status.CONVERGED).astype(np.int8)}
-    integers |= {"model_used": np.zeros(size, dtype=np.int8), "nodes": last_nodes, "iterations": iterations}
-    rest = {name: np.full(size, np.nan) for name in ("plastic_share", "model_error")}
-    return Solution(**values, **integers, **rest, p=p, lam=lam)
+    def raise_what_was_raised(self):
+        if self.raised:
+            raise self.raised[0]

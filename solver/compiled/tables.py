@@ -69,8 +69,7 @@ def _mesh(mesh, profile):
 
 
 def _blocks(array):
-    """The numbers of an array (r, c), 8 of c together and zeros behind the last: (blocks, r, 8), four blocks or eight or
-    so."""
+    """The numbers of an array (r, c), 8 of c together, zeros behind the last: (blocks, r, 8), four or eight or so."""
     padded = np.pad(array, ((0, 0), (0, -array.shape[1] % 32)))
     return padded.reshape(len(array), -1, 8).transpose(1, 0, 2)
 

@@ -132,7 +132,7 @@ def cornered(ev, rows):
 
 
 def apart(s, rough):
-    """The points (m,) at which the pressure at s (m,) > 0 is solved: those of a smooth punch are apart from the edge."""
+    """The points (m,) where the pressure at s (m,) > 0 is solved: those of a smooth punch are apart from the edge."""
     return s if rough else np.maximum(s, _APART)
 
 

@@ -12,8 +12,8 @@ X = np.array([0.0, 0.3, 0.95, 1.0])
 
 
 def contacts(size: int, seed: int, **change) -> Problem:
-    """Layers of n from 1e-3 to 1e3, both interfaces, h/a from a film to a half-space, some of them on rigid bases or under
-    elastic punches; all three laws and bases, three tolerances. Given by their load."""
+    """Layers of n from 1e-3 to 1e3, both interfaces, h/a from a film to a half-space, some of them on rigid bases or
+    under elastic punches; all three laws and bases, three tolerances. Given by their load."""
     random = np.random.default_rng(seed)
 
     def between(low, high):

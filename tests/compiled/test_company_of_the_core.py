@@ -26,8 +26,8 @@ def test_the_same_bits_in_any_company(variant):
 
 
 def handed_back(variant, problem) -> np.ndarray:
-    """(B,) bool: the smooth cases on thin layers and half-spaces, which have a way of their own, and those that the core
-    does not finish."""
+    """(B,) bool: the smooth cases on thin layers and half-spaces, which have a way of their own, and those that the
+    core does not finish."""
     with pytest.MonkeyPatch.context() as patched:
 
         def left(cases, rtol, nodes, limit, x):

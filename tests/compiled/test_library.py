@@ -37,10 +37,10 @@ def without(monkeypatch):
 
 def built(folder, **environment) -> list[str]:
     """Names of the files that `setup.py build_ext` leaves; it does not fail."""
-    command = [sys.executable, "setup.py", "--quiet", "build_ext", "--build-lib", folder / "lib", "--build-temp", folder]
-    done = subprocess.run(
-        command, cwd=ROOT, env=os.environ | environment, capture_output=True, text=True, timeout=300
-    )
+    folders = "--build-lib", folder / "lib", "--build-temp", folder
+    command = [sys.executable, "setup.py", "--quiet", "build_ext", *folders]
+    environment = os.environ | environment
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     return [path.name for path in (folder / "lib").rglob("*") if path.is_file()]
 

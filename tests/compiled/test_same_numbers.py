@@ -13,9 +13,9 @@ from solver.compiled.library import available
 from solver.contact import adaptive
 
 pytestmark = pytest.mark.skipif(not available(), reason="no compiled core was built here")
-#: Relative difference of the numbers. Rounding of a stiff plate is n times that of its base, so its pressures move by up
-#: to this much more (:func:`rounding`). numpy's own move as much with the number of cases in a batch: of 12 plates of n =
-#: 164 to 987 by up to 6.5e-12, and from the core's by up to 2.1e-12.
+#: Relative difference of the numbers. Rounding of a stiff plate is n times that of its base, so that its pressures move
+#: by more (:func:`rounding`). numpy's own do so with the number of cases in a batch: of 12 smooth plates of n = 164 to
+#: 987 by up to 6.5e-12, and by up to 2.1e-12 from those of the core.
 SAME = 1e-12
 #: Of error and profile_error, which are differences of two solutions: so much more than :func:`rounding`.
 OF_ERRORS = 300.0

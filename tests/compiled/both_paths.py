@@ -1,11 +1,21 @@
 """Random contacts of every kind that the compiled core takes, and their solutions by it and by numpy."""
 
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+from ctypes import CDLL
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from solver import Problem, Solution, solve
+from solver.compiled import library
 from solver.compiled.library import VARIABLE
 
+ROOT = Path(__file__).resolve().parents[2]
 #: What the core computes of a case; all are numbers.
 SCALARS = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD")
 X = np.array([0.0, 0.3, 0.95, 1.0])
@@ -44,3 +54,38 @@ def by(path: str, problem: Problem, x=X) -> Solution:
     with pytest.MonkeyPatch.context() as patched:
         patched.setenv(VARIABLE, path)
         return solve(problem, x)
+
+
+def compiler() -> bool:
+    """Whether there is a C compiler that setuptools would take."""
+    command = os.environ.get("CC") or sysconfig.get_config_var("CC") or "cc"
+    program = shutil.which(command.split()[0])
+    return bool(program) and subprocess.run([program, "--version"], capture_output=True).returncode == 0
+
+
+def built(folder: Path, **environment: str) -> list[str]:
+    """Names of the files that `setup.py build_ext` leaves; it does not fail."""
+    folders = "--build-lib", folder / "lib", "--build-temp", folder
+    command = [sys.executable, "setup.py", "--quiet", "build_ext", *folders]
+    environment = os.environ | environment
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    return [path.name for path in (folder / "lib").rglob("*") if path.is_file()]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def of_the_sources(tmp_path_factory):
+    """The core of these tests is that of the sources as they are now, if there is a compiler: also of a mutant's. Built
+    once for each process of pytest, in some seconds."""
+    if not compiler():
+        yield
+        return
+    folder = tmp_path_factory.mktemp("core")
+    (name,) = built(folder)
+    (path,) = Path(folder, "lib").rglob(name)
+    fresh = CDLL(str(path))
+    with pytest.MonkeyPatch.context() as patched:
+        library._variant.cache_clear()
+        patched.setattr(library, "_library", lambda: fresh)
+        yield
+    library._variant.cache_clear()

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from both_paths import by, contacts
+from both_paths import by, contacts, of_the_sources  # noqa: F401
 
 from solver.compiled import newton
 from solver.compiled.library import available

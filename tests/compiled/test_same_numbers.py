@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from both_paths import SCALARS, X, by, contacts
+from both_paths import SCALARS, X, by, contacts, of_the_sources  # noqa: F401
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solver import Problem, Status
@@ -61,6 +61,25 @@ def test_numbers_on_a_mesh_that_is_asked_for(nodes):
     core, numpy = by("", problem), by("numpy", problem)
     assert_same(problem, core, numpy)
     assert {Status.CONVERGED, Status.TOLERANCE_NOT_MET} & {*core.status.tolist()}
+
+
+#: Few asperities on a thin layer that yields as springs.
+SPRINGS = {"micro": "power_law", "B": 1e-8, "beta": 1.0, "Ra": 1e-7, "Nbar": 1e3, "n": 1.0, "m": 0.0}
+SPRINGS |= {"base": "thin_layer", "bonding": "frictionless"}
+#: What random contacts seldom have. Springs that yield more than the body only in a ring which no mesh sees; smooth punches on layers whose short waves no mesh sees; stiff layers under long waves, where the kernel has a
+#: series, for it would lose all digits.
+SELDOM = {
+    "rings of springs": SPRINGS | {"h": np.geomspace(1e-8, 1e-2, 40) * 0.05, "P": 1e-4, "rtol": 1e-3},
+    "short waves": {"micro": "smooth", "base": "layered", "n": 0.003, "m": 0.0, "P": 1e-3, "h": 4e-4, "rtol": 0.1},
+    "long waves": {"micro": "smooth", "base": "layered", "n": 1e3, "bonding": "bonded", "P": 1e-2, "h": 1e-2},
+    "long waves without friction": {"micro": "disc_cell", "base": "layered", "n": 1e3, "bonding": "frictionless"},
+}
+
+
+@pytest.mark.parametrize("name", SELDOM)
+def test_numbers_of_what_is_seldom(name):
+    problem = contacts(40, 12, **SELDOM[name])
+    assert_same(problem, by("", problem), by("numpy", problem))
 
 
 def assert_same(problem, core, numpy):

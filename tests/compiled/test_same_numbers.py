@@ -66,8 +66,8 @@ def test_numbers_on_a_mesh_that_is_asked_for(nodes):
 #: Few asperities on a thin layer that yields as springs.
 SPRINGS = {"micro": "power_law", "B": 1e-8, "beta": 1.0, "Ra": 1e-7, "Nbar": 1e3, "n": 1.0, "m": 0.0}
 SPRINGS |= {"base": "thin_layer", "bonding": "frictionless"}
-#: What random contacts seldom have. Springs that yield more than the body only in a ring which no mesh sees; smooth punches on layers whose short waves no mesh sees; stiff layers under long waves, where the kernel has a
-#: series, for it would lose all digits.
+#: What random contacts seldom have: springs that yield more than the body only in a ring which no mesh sees; layers
+#: hardly thicker than films; stiff layers under long waves, where the kernel has a series, for it would lose digits.
 SELDOM = {
     "rings of springs": SPRINGS | {"h": np.geomspace(1e-8, 1e-2, 40) * 0.05, "P": 1e-4, "rtol": 1e-3},
     "short waves": {"micro": "smooth", "base": "layered", "n": 0.003, "m": 0.0, "P": 1e-3, "h": 4e-4, "rtol": 0.1},

@@ -4,19 +4,18 @@ Times are processor times, the shortest of several by turns with stacked `numpy.
 else is said.
 """
 
-import os
 import time
 from contextlib import contextmanager
 from itertools import product
 
 import numpy as np
 import xarray as xr
-from benchmark_cases import X, by_turns, coatings, problem, rated, systems
+from benchmark_cases import X, by_turns, coatings, on_path, problem, rated, systems
 
 import study
 from solver import Problem, solve
 from solver.body import hankel
-from solver.compiled.library import VARIABLE, available
+from solver.compiled.library import available
 from solver.contact import newton, start
 
 ROUGH = {"Nbar": 250_000.0, "Ra": 0.004}
@@ -66,17 +65,6 @@ def workloads() -> list[dict]:
             rows.append(row | {"kiloflops_per_case": sum(flops) / len(cases) / 1e3,
                                "measured_over_floor": 1 / found["cases_per_second"] / floor})  # fmt: skip
     return rows
-
-
-@contextmanager
-def on_path(path: str):
-    """A path of the solver while it is open: "numpy", or a variant of the compiled core."""
-    before = os.environ.get(VARIABLE, "")
-    os.environ[VARIABLE] = path
-    try:
-        yield
-    finally:
-        os.environ[VARIABLE] = before
 
 
 def flops_per_second() -> float:

@@ -120,9 +120,9 @@ lint: $(READY) ## ruff, and mypy for the public names
 clean: ## remove figures and tables that the program draws, and caches; results and .venv stay
 	@if [ -x $(VENV)/bin/python ]; then $(VENV)/bin/python tools/clean.py; fi
 
-# Wheels only: nothing is compiled on the user's machine. setuptools is one of the pinned packages. A Python newer than
-# the lock has no wheels of some pinned versions; there pip takes the newest ones, and needs no compiler either.
-$(READY): requirements.lock pyproject.toml $(wildcard setup.py)
+# Wheels only: a compiler is needed for nothing, and used for the optional core of the solver. setuptools is one of the
+# pinned packages. A Python newer than the lock has no wheels of some pinned versions; there pip takes the newest ones.
+$(READY): requirements.lock pyproject.toml $(wildcard setup.py solver/compiled/*.c solver/compiled/*.h)
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "roughcoat needs Python 3.11 or newer; name one: make setup PYTHON=python3.12"; exit 1; }
 	$(PYTHON) -m venv $(VENV)

@@ -7,14 +7,29 @@ of the package `study`, so that `roughcoat plot --run fig03` works in any folder
 An editable install goes without them: `study` finds them in the repository. So all packages lie where their names say,
 and setuptools installs the path of the repository. Otherwise it would install a finder, which Python asks last: a
 user's folder `study` with nothing but data in it would be imported in place of the package.
+
+The compiled core of the solver is optional: without a compiler, or with one that knows no vectors, nothing fails, and
+numpy computes (solver/compiled).
 """
 
 import sys
 
-from setuptools import find_packages, setup
+from setuptools import Extension, find_packages, setup
 
 DATA = {} if "editable_wheel" in sys.argv else {"study.studies": "studies", "study.docs": "docs"}
 
 PACKAGES = find_packages(include=["roughcoat*", "solver*", "study*"])
 
-setup(packages=[*PACKAGES, *DATA], package_dir={"": ".", **DATA})
+FOLDER = "solver/compiled"
+
+#: Loaded by ctypes: it is no module of Python. Each of the sources is the core for one kind of vectors.
+CORE = Extension(
+    "solver.compiled._core",
+    sources=[f"{FOLDER}/{vectors}.c" for vectors in ("sse2", "avx2", "avx512")],
+    depends=[f"{FOLDER}/{name}.h" for name in ("batch", "lanes", "laws", "newton", "cases", "run", "core")],
+    # -Wno-psabi: functions with vectors in their arguments are all static. -O2 after what Python was built with.
+    extra_compile_args=["-std=gnu11", "-O2", "-fno-math-errno", "-ffp-contract=fast", "-Wno-psabi", "-g0"],
+    optional=True,
+)
+
+setup(packages=[*PACKAGES, *DATA], package_dir={"": ".", **DATA}, ext_modules=[CORE])

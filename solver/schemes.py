@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .contact import adaptive
+from .compiled import newton as compiled
 from .contact import picard as approximations
 from .contact.answer import answer
 from .numerics.ladder import start_nodes
@@ -38,7 +38,7 @@ def scheme(function):
 @scheme
 def newton(part, x):
     """Newton's method, on the mesh that meets rtol."""
-    return adaptive.solve_newton(as_cases(part), part.rtol, part.nodes, int(part.max_iterations[0]), x)
+    return compiled.solve_newton(as_cases(part), part.rtol, part.nodes, int(part.max_iterations[0]), x)
 
 
 @scheme

@@ -61,7 +61,8 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
     for mask, way in (is_judged, judged), (is_auto, cheapest), (~(is_judged | is_auto), solve_named):
         index = np.flatnonzero(mask & ~invalid)
         if len(index):
-            pieces.append((index, way(problem.take(index), radii)))
+            part = problem if len(index) == len(problem) else problem.take(index)
+            pieces.append((index, way(part, radii)))
     solution = Solution.join(*size, pieces)
     if yields:
         solution = replace(solution, plastic_share=plastic_share(problem, solution.lam[:, len(x) :]))

@@ -20,6 +20,7 @@ from line_study import computed, file, quiet  # noqa: F401
 from screens import impatient, stderr  # noqa: F401
 
 from solver import laws
+from solver.compiled.library import VARIABLE, available
 from study import open_results
 from study.files.lock import held
 from study.inputs.laws import update_vocabulary
@@ -62,6 +63,22 @@ def laws_as_they_were() -> Iterator[None]:
         del laws.LAWS[name]
         laws._declare(laws.LAWS)
         update_vocabulary()
+
+
+@pytest.fixture
+def numpy_path(monkeypatch) -> None:
+    """The solver without its compiled core, for tests that look into the numpy path."""
+    monkeypatch.setenv(VARIABLE, "numpy")
+
+
+@pytest.fixture(scope="module", params=["core", "numpy"])
+def each_path(request) -> Iterator[str]:
+    """The path of the solver: each test that asks is run on both."""
+    if request.param == "core" and not available():
+        pytest.skip("no compiled core was built here")
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setenv(VARIABLE, "numpy" if request.param == "numpy" else "")
+        yield request.param
 
 
 @pytest.fixture(scope="session")

@@ -97,8 +97,13 @@ class Answer(NamedTuple):
 @lru_cache(maxsize=32)
 def _between(mesh):
     """The polynomials of a mesh (n, m) at _DENSER times as many points, and the weights (m,) of ∫ · s ds there."""
-    s, w = gauss_rule(_DENSER * mesh.order, mesh.breaks)
+    s, w = denser_rule(mesh)
     return mesh.basis(s).T, w * s
+
+
+def denser_rule(mesh):
+    """Points s and weights (m,) of ∫₀¹ · ds at which tension between the nodes of a mesh is looked for."""
+    return gauss_rule(_DENSER * mesh.order, mesh.breaks)
 
 
 def is_tension(tension, error):

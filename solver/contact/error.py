@@ -45,7 +45,7 @@ _SATURATED, _SHARP = 0.7, 0.45
 _TIMES, _MORE = 2, 4
 #: If the exponent of the displacement is below this, λ rises sharply where pressure begins. Then Ar/An is compared with
 #: the quadrature for corners: "steep" of tests/contact/errors/test_error_bars.py. Panels enclose that place.
-_STEEP = 0.1
+STEEP = 0.1
 #: Under a law with corners two meshes may agree by chance. So the error also counts the load that the mesh misses
 #: between its nodes: the sum over the contact, in which opposite signs cancel, and _CHANCE times the largest sum from
 #: the edge to any radius (test_random_heights of tests/contact/errors/test_error_bars.py).
@@ -211,6 +211,11 @@ def completed(ev, Ar_An, error, rows):
     return area, error
 
 
+def another_rule(mesh):
+    """Points s and weights (m,) of ∫₀¹ · ds with which the quadrature of a mesh is compared."""
+    return gauss_rule(_TIMES * mesh.order + _MORE, mesh.breaks)
+
+
 def _with_bends(ev, area, error, rows):
     area, of_area, missed, largest = cornered(ev, rows)
     return area, np.maximum(error + MARGIN * missed + _CHANCE * largest, MARGIN * of_area)
@@ -228,11 +233,11 @@ def _without_bends(ev, area, error, rows):
     _, exponent = law.edge()
     error, sharp = np.maximum(error, ring), np.flatnonzero((ends[:, 1] > _SATURATED) | (exponent < _SHARP))
     if len(sharp):
-        s, w = gauss_rule(_TIMES * mesh.order + _MORE, mesh.breaks)
+        s, w = another_rule(mesh)
         y, law = interpolate(ev, s, rows=rows[sharp]), law.take(sharp)
         other = law.area(y, law.evaluate(y).q) @ (2 * w * s)
         error[sharp] = np.maximum(error[sharp], MARGIN * np.abs(other / area[sharp] - 1))
-    steep = np.flatnonzero((exponent < _STEEP) & (mesh.order == mesh.n))
+    steep = np.flatnonzero((exponent < STEEP) & (mesh.order == mesh.n))
     if len(steep):
         other, of_area, _, _ = cornered(ev, rows[steep])
         error[steep] = np.maximum(error[steep], MARGIN * (np.abs(other / area[steep] - 1) + of_area))

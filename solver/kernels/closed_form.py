@@ -115,7 +115,8 @@ class _Bond(NamedTuple):
     one_c1c2: np.ndarray
 
 
-def _bond(n, nu1, nu2):
+def bond_constants(n, nu1, nu2):
+    """:class:`_Bond` of layers on half-spaces, arrays of one shape."""
     alpha, g1, g2 = n * (1 - nu1) / (1 - nu2), 3 - 4 * nu1, 3 - 4 * nu2
     below1, below2 = 1 + alpha * g2, alpha + g1
     excess = ((n - 1) * (1 - nu1) + (nu2 - nu1)) / (1 - nu2)  # alpha - 1
@@ -148,14 +149,14 @@ def _bonded_below(u, e, rest, bond):
 
 
 def _bonded_whole(u, n, nu1, nu2):
-    bond, e, rest = _bond(n, nu1, nu2), np.exp(-2 * u), -np.expm1(-2 * u)
+    bond, e, rest = bond_constants(n, nu1, nu2), np.exp(-2 * u), -np.expm1(-2 * u)
     _, excess = _gap_and_excess(u, e, rest)
     above = bond.one_c1c2 + 2 * bond.c1 * bond.c2 * excess + 4 * u * bond.c2 * bond.plus_c1 * e  # 1 + 4c2ue - c1c2e²
     return above / _bonded_below(u, e, rest, bond)[0]
 
 
 def _bonded(u, n, nu1, nu2):
-    bond, e, rest = _bond(n, nu1, nu2), np.exp(-2 * u), -np.expm1(-2 * u)
+    bond, e, rest = bond_constants(n, nu1, nu2), np.exp(-2 * u), -np.expm1(-2 * u)
     c1, c2 = bond.c1, bond.c2
     below, d_below = _bonded_below(u, e, rest, bond)
     above = e * (4 * c2 * u * (1 + u) + (n - 1) * bond.one_c1 * bond.one_c2 + 2 * c1 * c2 * rest)  # L - 1 = above/below

@@ -41,7 +41,8 @@ def solve_named(problem, x):
     for mask, way in _ways(scaled, ~no_springs):
         if mask.any():
             index = np.flatnonzero(mask)
-            pieces.append((index, way(scaled.take(index), x)))
+            part = scaled if len(index) == len(scaled) else scaled.take(index)
+            pieces.append((index, way(part, x)))
     solution = Solution.join(*size, pieces)
     missed = (solution.status == Status.CONVERGED) & ~(solution.error <= problem.rtol)
     solution.status[missed] = Status.TOLERANCE_NOT_MET
@@ -109,5 +110,6 @@ def _with_model(problem, solution):
     error = np.where(solved & ~thin, 0.0, np.nan)
     judged = np.flatnonzero(solved & thin)
     if len(judged):
-        error[judged] = closed_form(problem.take(judged), solution.a[judged])
+        part = problem if len(judged) == len(problem) else problem.take(judged)
+        error[judged] = closed_form(part, solution.a[judged])
     return replace(solution, model_used=model_of(problem), model_error=error + error_of_law(problem))

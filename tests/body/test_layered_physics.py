@@ -9,6 +9,8 @@ from solver_cases import MAIN, difference, one, random_cases
 from solver import Problem, Status, solve
 from solver.laws import disc_cell as micro
 
+pytestmark = pytest.mark.usefixtures("each_path")
+
 LAW = pytest.mark.parametrize("law", ["smooth", "disc_cell", "power_law"])
 #: Material of a layer: n, nu1, nu2, bonding.
 SOFT = {"n": 0.5, "nu1": 0.3, "nu2": 0.3, "bonding": "frictionless"}

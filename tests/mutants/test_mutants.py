@@ -85,7 +85,7 @@ def test_enough_mutants_that_are_one_change_of_code_that_compiles():
         text = (ROOT / mutant.file).read_text(encoding="utf-8")
         try:
             changed = mutant.applied(text)
-            if not mutant.file.endswith(".js"):
+            if not mutant.file.endswith((".js", ".h")):
                 tomllib.loads(changed) if mutant.file.endswith(".toml") else ast.parse(changed)
             wrong += [mutant.id] * (changed == text)
         except (ValueError, SyntaxError) as error:

@@ -24,7 +24,7 @@ OURS = {"roughcoat", "solver", "study", "studies"}
 ROOMS = {
     "solver": (
         *("threads", "status", "closed_forms", "numerics", "parameters", "punches", "laws", "kernels", "body"),
-        *("edges", "problem", "solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
+        *("edges", "problem", "solution", "contact", "compiled", "scaling", "estimate", "schemes", "models", "solve"),
         *("sensitivity", "fields", "yields"),
     ),
     "study": (

@@ -1,10 +1,13 @@
 """What the benchmarks share: cases, and how their time is taken."""
 
+import os
 import time
+from contextlib import contextmanager
 
 import numpy as np
 
 from solver import Problem, solve
+from solver.compiled.library import VARIABLE
 
 CASES, REPEATS, SYSTEMS, ORDER = 16_000, 3, 20_000, 17
 X = np.linspace(0.0, 1.0, 5)
@@ -90,3 +93,14 @@ def rated(cases: Problem) -> dict:
     times = by_turns(lambda: solve(cases, X), lambda: np.linalg.solve(matrices, right))
     rate, rate_of_systems = np.array([len(cases), SYSTEMS]) / times
     return {"cases_per_second": rate, "r": rate / rate_of_systems, "systems_17_per_second": rate_of_systems}
+
+
+@contextmanager
+def on_path(path: str):
+    """A path of the solver while it is open: "numpy", or a variant of the compiled core."""
+    before = os.environ.get(VARIABLE, "")
+    os.environ[VARIABLE] = path
+    try:
+        yield
+    finally:
+        os.environ[VARIABLE] = before

@@ -6,17 +6,21 @@ else is said.
 
 import time
 from contextlib import contextmanager
+from itertools import product
 
 import numpy as np
 import xarray as xr
-from benchmark_cases import X, by_turns, coatings, problem, rated, systems
+from benchmark_cases import X, by_turns, coatings, on_path, problem, rated, systems
 
 import study
 from solver import Problem, solve
 from solver.body import hankel
+from solver.compiled.library import available
 from solver.contact import newton, start
 
 ROUGH = {"Nbar": 250_000.0, "Ra": 0.004}
+#: The core with the widest vectors, if there is one, and numpy.
+PATHS = (*available()[:1], "numpy")
 SINGLE = 1000  # single systems, in the time of which latencies are counted
 #: Of the second core: 60,000 layered cases.
 GRID = {
@@ -46,17 +50,20 @@ WORKLOADS = {
 
 
 def workloads() -> list[dict]:
-    """A row for each: cases per second, r, and the time over that of its flops at the rate of a matrix product."""
+    """A row for each on each path: cases per second, r, and the time over that of numpy's flops at the rate of a matrix
+    product."""
     rows, per_flop = [], 1 / flops_per_second()
     for name, make in WORKLOADS.items():
         cases = make()
-        found = rated(cases)
-        with counted() as flops:
+        with on_path("numpy"), counted() as flops:
             solve(cases, X)
         floor = sum(flops) * per_flop / len(cases)
-        row = {"workload": name, "cases_per_second": found["cases_per_second"], "r": found["r"]}
-        rows.append(row | {"kiloflops_per_case": sum(flops) / len(cases) / 1e3,
-                           "measured_over_floor": 1 / found["cases_per_second"] / floor})  # fmt: skip
+        for path in PATHS:
+            with on_path(path):
+                found = rated(cases)
+            row = {"workload": name, "path": path, "cases_per_second": found["cases_per_second"], "r": found["r"]}
+            rows.append(row | {"kiloflops_per_case": sum(flops) / len(cases) / 1e3,
+                               "measured_over_floor": 1 / found["cases_per_second"] / floor})  # fmt: skip
     return rows
 
 
@@ -91,10 +98,10 @@ def latency() -> list[dict]:
     """Milliseconds of a call with 1, 10 and 100 cases, and that over SINGLE single solutions of 17 unknowns."""
     (matrix,), (right,) = systems(1)
     ordinary = problem("disc_cell", "layered", 1e-6, 100)
-    rows = []
-    for name, whole in {"ordinary layered": ordinary, "random coatings": coatings(100)}.items():
-        for size in (1, 10, 100):
-            part = whole.take(np.arange(size))
+    rows, kinds = [], {"ordinary layered": ordinary, "random coatings": coatings(100)}
+    for name, size, path in product(kinds, (1, 10, 100), PATHS):
+        with on_path(path):
+            part = kinds[name].take(np.arange(size))
             grid = labelled(part)
 
             def single():
@@ -102,7 +109,7 @@ def latency() -> list[dict]:
                     np.linalg.solve(matrix, right)
 
             times = by_turns(single, lambda: solve(part), lambda: study.solve(**grid))  # noqa: B023
-            row = {"cases": f"{size} {name}", "single_systems_ms": 1e3 * times[0]}
+            row = {"cases": f"{size} {name}", "path": path, "single_systems_ms": 1e3 * times[0]}
             row |= {"solver_ms": 1e3 * times[1], "study_ms": 1e3 * times[2]}
             rows.append(row | {"solver_over_systems": times[1] / times[0], "study_over_systems": times[2] / times[0]})
     return rows

@@ -15,12 +15,20 @@ from solver_cases import ALL_KINDS, difference, random_cases
 
 from solver import Problem, Status, solve
 
+pytestmark = pytest.mark.usefixtures("each_path")
+
 RTOLS = (1e-2, 1e-3, 1e-6, 1e-9, 1e-11)
 #: Below this the two solutions that make the truth differ by their rounding.
 NOISE = {"half_space": 1e-13, "thin_layer": 1e-13, "layered": 1e-11}
 SIZE = {"half_space": 360, "thin_layer": 360, "layered": 120}
 ITERATED = [kind for kind in ALL_KINDS if kind != ("half_space", "smooth")]
 kinds = pytest.mark.parametrize(("base", "law"), ITERATED, ids=["-".join(kind) for kind in ITERATED])
+
+
+@pytest.fixture(scope="module", autouse=True)
+def anew(each_path):
+    for kept in (batches, solved, true, measured, films):
+        kept.cache_clear()
 
 
 @cache

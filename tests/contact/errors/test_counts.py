@@ -10,7 +10,7 @@ from solver.contact import driver as loop
 
 
 @pytest.fixture
-def steps(monkeypatch) -> list[int]:
+def steps(monkeypatch, numpy_path) -> list[int]:
     """Grows by the steps of each loop that is run."""
     found = []
 

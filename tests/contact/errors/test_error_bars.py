@@ -10,6 +10,8 @@ from solver_cases import ALL_KINDS, LOAD, MAIN, difference, one, random_cases
 
 from solver import Problem, Status, solve
 
+pytestmark = pytest.mark.usefixtures("each_path")
+
 #: Case, nodes, and the largest part of the truth that the error bar may be.
 CASES = {
     # neither mesh sees the ring at the edge in which asperities yield more than the body: the estimate times _BLIND

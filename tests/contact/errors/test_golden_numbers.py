@@ -31,7 +31,7 @@ def test_the_table_belongs_to_the_numerics_version():
 
 
 @pytest.fixture(scope="module")
-def found():
+def found(each_path):
     """The answers (dict of arrays) to all rows, all of a control in one batch."""
     numbers = {name: np.full(len(ROWS), np.nan) for name in (*golden.EXACT, *golden.ERRORS, *golden.NUMBERS)}
     for control in ("P", "a", "D"):

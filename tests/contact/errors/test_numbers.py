@@ -7,6 +7,8 @@ from solver_cases import BASES, LOAD, ROUGH, difference, one
 
 from solver import Problem, solve
 
+pytestmark = pytest.mark.usefixtures("each_path")
+
 
 def half_of_last_digit(text):
     """Half a unit of the last printed digit."""

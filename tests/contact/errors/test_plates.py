@@ -14,6 +14,8 @@ from solver.contact.start import first_guess
 from solver.numerics.mesh import panel_mesh
 from solver.scaling import as_cases, dimensionless
 
+pytestmark = pytest.mark.usefixtures("each_path")
+
 #: Smooth spheres, of another equation in long double, at a = E1* = 1: P and D to 12 digits or more, p(0) to 2e-12 on
 #: plates and to 4e-11 on films: make_fredholm_reference.py.
 REFERENCE = np.genfromtxt(

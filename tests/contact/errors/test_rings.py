@@ -6,6 +6,8 @@ import pytest
 
 from solver import Problem, Status, solve
 
+pytestmark = pytest.mark.usefixtures("each_path")
+
 NAMES = ("a", "P", "D", "p0")
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 

@@ -14,6 +14,8 @@ from solver.contact import adaptive, driver, panels, picard
 from solver.contact.driver import newton_steps
 from study.inputs.reading import from_tables
 
+pytestmark = pytest.mark.usefixtures("numpy_path")
+
 X = np.linspace(0.0, 1.0, 5)
 #: Relaxed so much that it takes some 500 approximations; and hardly, on springs that carry nearly all: some 20.
 PAPERS = MAIN | {"base": "thin_layer", "micro": "power_law", "scheme": "picard"}

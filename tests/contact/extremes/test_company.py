@@ -9,6 +9,8 @@ from test_extremes import sample
 from solver import Problem, Status, solve
 from solver.laws import heights
 
+pytestmark = pytest.mark.usefixtures("each_path")
+
 NUMBERS = (*JUDGED, "A0", "dP_dD", "p", "lam")
 
 

@@ -10,6 +10,8 @@ from solver_cases import JUDGED, KINDS, LOAD, MAIN, difference, one, random_case
 
 from solver import Problem, Status, solve
 
+pytestmark = pytest.mark.usefixtures("each_path")
+
 kinds = pytest.mark.parametrize(("base", "law"), KINDS, ids=["-".join(kind) for kind in KINDS])
 NUMBERS = (*JUDGED, "A0", "dP_dD", "residual", "error", "p", "lam")
 

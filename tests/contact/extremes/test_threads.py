@@ -44,7 +44,7 @@ def counts() -> set[int]:
 
 
 @pytest.fixture
-def seen(monkeypatch) -> list[set[int]]:
+def seen(monkeypatch, numpy_path) -> list[set[int]]:
     """The counts whenever the solver multiplies or solves."""
     found = []
 

@@ -12,6 +12,8 @@ from numpy.testing import assert_allclose
 from scipy.special import ellipe, ellipk
 from solver_cases import MAIN, one
 
+pytestmark = pytest.mark.usefixtures("each_path")
+
 
 def circle(r, radius):
     """Surface displacement times E* under a uniform unit pressure on a circle, at r (m,) for radii (k,): (m, k)."""

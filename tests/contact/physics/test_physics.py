@@ -8,6 +8,8 @@ from solver_cases import ALL_KINDS, KINDS, LOAD, MAIN, ROUGH, ROUGH_KINDS, diffe
 from solver import Problem, solve
 from solver.laws import disc_cell as micro
 
+pytestmark = pytest.mark.usefixtures("each_path")
+
 _t, _w = np.polynomial.legendre.leggauss(80)
 #: x = sin φ with a rule of its own in φ: ∫ f dx = (WEIGHT cos φ) @ f.
 PHI = np.pi / 4 * (_t + 1)

@@ -1,0 +1,43 @@
+/* What Python and the core share: as in library.py, in the same order. Tables of numbers that are summed over their
+   columns are in blocks of 8 rows: `_blocks` of tables.py. */
+#include <stdint.h>
+enum { LOAD, RADIUS, DEPTH };               /* the control of a batch */
+enum { DISC_CELL, POWER_LAW, SMOOTH };      /* its micro law */
+enum { a_, P_, D_, p0_, p_max_, Ar_An_, A0_, dP_dD_, residual_, error_, profile_error_, SCALARS };
+#define JUDGED 6                            /* the first of these are judged by their relative error */
+/* Points between the nodes of a mesh: s, weights of 2 s ds, kappa, and tables (n columns, m rows) of the polynomials
+   and of the displacement of the half-space (solver/contact/results.py). */
+typedef struct { int64_t m; const double *s, *w, *kappa, *basis, *half_space; } Points;
+/* A mesh of n nodes and the next finer one, `fine`. K (n + 1, n) has the row of the edge last. */
+typedef struct {
+    int64_t n;
+    const double *s, *w, *K, *kappa, *at_edge;
+    const double *fine_s, *fine_w, *fine_K;
+    Points fine, more, between, profile;
+} Mesh;
+/* The operator of a layer on a mesh (solver/body/tables.py): a table `product` (M columns, (n + 1) n rows), or NULL,
+   and the matrix is formed of J_rows (n + 1, G) and of tables of J and phi by G columns and of phi by n columns. */
+typedef struct { const double *product, *J_rows, *J, *phi, *phi_columns; } Rows;
+/* One octave of h/a and class of stiffness on a mesh: k (M,), spread (M, G), and J at the points between (G, m). */
+typedef struct {
+    int64_t few, all;
+    const double *k, *spread;
+    Rows own, fine;
+    const double *J_fine, *J_more, *J_profile;
+} Table;
+typedef struct {
+    int64_t size, stride, points, rungs;   /* stride: between the scalars of a case */
+    int32_t control, law, layered, octaves, first_octave, steps;
+    const int64_t *ladder;
+    const double *value, *rtol, *p_star, *A_star, *beta, *ratio, *E, *C;
+    const double *h, *m, *n, *bonded, *c1, *c2, *one_c1, *one_c2, *plus_c1, *one_c1c2;
+    const int64_t *fixed;                   /* (size,), number of nodes, or 0: chosen by rtol */
+    const double *shrink;                   /* (points,), s at a profile's radius over the s that is solved there */
+    const int64_t *place;                   /* (points,), the column of p and lam of each of these */
+    int64_t columns;                        /* of p and lam */
+    double *scalars;                        /* (SCALARS, stride) */
+    double *p, *lam;                        /* (size, columns) */
+    int32_t *nodes, *iterations;            /* (size,); nodes 0: the case is handed back */
+    const Mesh *(*mesh)(int64_t n);
+    const Table *(*table)(int64_t n, int64_t octave, int64_t stiffness);
+} Batch;

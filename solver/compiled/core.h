@@ -1,0 +1,16 @@
+/* The compiled core: Newton's method for many cases at once. The numpy path (solver/contact) is its reference, and says
+   what is computed and why. Here each case has a lane of a vector and meets no number of another case: so it has the
+   same bits in any company. The files sse2.c, avx2.c and avx512.c compile this for their vectors of W numbers; Python
+   takes the widest that the processor has (solver/compiled/library.py). */
+#include "batch.h"
+#include <stdlib.h>
+#include <string.h>
+#include "lanes.h"
+#include "laws.h"
+#include "newton.h"
+#include "cases.h"
+#include "run.h"
+
+#define SOLVE_(name) roughcoat_##name
+#define SOLVE(name) SOLVE_(name)
+int SOLVE(NAME)(const Batch *b, int64_t most) { return solve(b, most); }

@@ -1,0 +1,118 @@
+"""The library of the compiled core: found beside this file if it was built, and loaded when the first cases come.
+
+The environment variable ROUGHCOAT_CORE says which path computes: "numpy", or the core with the vectors "sse2", "avx2"
+or "avx512". Without it that is the core with the widest vectors of the processor, or numpy where no core was built.
+"""
+
+import os
+from collections.abc import Callable
+from ctypes import CDLL, CFUNCTYPE, POINTER, Structure, c_int, c_int32, c_int64, c_void_p
+from functools import lru_cache
+from importlib.machinery import EXTENSION_SUFFIXES
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+#: Name of the file, without its suffix; its variants, the widest first; and the variable that chooses one.
+NAME, VARIANTS, VARIABLE = "_core", ("avx512", "avx2", "sse2"), "ROUGHCOAT_CORE"
+
+_LAYERED = ("h", "m", "n", "bonded", "c1", "c2", "one_c1", "one_c2", "plus_c1", "one_c1c2")
+
+
+class Points(Structure):
+    """As in batch.h."""
+
+    _fields_ = [("m", c_int64), *((name, c_void_p) for name in ("s", "w", "kappa", "basis", "half_space"))]
+
+
+class Mesh(Structure):
+    """As in batch.h."""
+
+    _fields_ = [
+        ("n", c_int64),
+        *((name, c_void_p) for name in ("s", "w", "K", "kappa", "at_edge", "fine_s", "fine_w", "fine_K")),
+        *((name, Points) for name in ("fine", "more", "between", "profile")),
+    ]
+
+
+class Rows(Structure):
+    """As in batch.h."""
+
+    _fields_ = [(name, c_void_p) for name in ("product", "J_rows", "J", "phi", "phi_columns")]
+
+
+class Table(Structure):
+    """As in batch.h."""
+
+    _fields_ = [
+        *(("few", c_int64), ("all", c_int64), ("k", c_void_p), ("spread", c_void_p), ("own", Rows), ("fine", Rows)),
+        *((name, c_void_p) for name in ("J_fine", "J_more", "J_profile")),
+    ]
+
+
+OF_MESH, OF_TABLE = CFUNCTYPE(c_void_p, c_int64), CFUNCTYPE(c_void_p, c_int64, c_int64, c_int64)
+
+
+class Batch(Structure):
+    """As in batch.h."""
+
+    _fields_ = [
+        *((name, c_int64) for name in ("size", "stride", "points", "rungs")),
+        *((name, c_int32) for name in ("control", "law", "layered", "octaves", "first_octave", "steps")),
+        *((name, c_void_p) for name in ("ladder", "value", "rtol", "p_star", "A_star", "beta", "ratio", "E", "C")),
+        *((name, c_void_p) for name in (*_LAYERED, "fixed", "shrink", "place")),
+        *(("columns", c_int64), ("scalars", c_void_p), ("p", c_void_p), ("lam", c_void_p)),
+        *(("nodes", c_void_p), ("iterations", c_void_p), ("mesh", OF_MESH), ("table", OF_TABLE)),
+    ]
+
+
+def pointer(array: np.ndarray, start: int = 0) -> int:
+    """The address of a contiguous array, from its row `start` on."""
+    return array.ctypes.data + start * (array.strides[0] if array.ndim else 0)
+
+
+@lru_cache(maxsize=1)
+def _library() -> Any:
+    """The library, None if it was not built or cannot be loaded."""
+    for suffix in EXTENSION_SUFFIXES:
+        path = Path(__file__).with_name(NAME + suffix)
+        if path.exists():
+            try:
+                return CDLL(str(path))
+            except OSError:
+                return None
+    return None
+
+
+@lru_cache(maxsize=len(VARIANTS))
+def _variant(name: str) -> Callable | None:
+    """The function of a variant; None if the library has none for this kind of processor, or this processor lacks its
+    vectors."""
+    has = getattr(_library(), f"roughcoat_has_{name}", None)
+    if has is None or not has():
+        return None
+    function = getattr(_library(), f"roughcoat_{name}")
+    function.argtypes, function.restype = [POINTER(Batch), c_int64], c_int
+    return function
+
+
+def available() -> tuple[str, ...]:
+    """Names of the variants that can be used here, the widest vectors first; none where no core was built."""
+    return tuple(name for name in VARIANTS if _variant(name))
+
+
+def core() -> Callable | None:
+    """The function ``core(batch, most)`` of the variant that is chosen; None: the numpy path.
+
+    ValueError for a choice that does not exist, or that is not available here.
+    """
+    choice = os.environ.get(VARIABLE, "")
+    if choice == "numpy":
+        return None
+    if not choice:
+        return next((function for function in map(_variant, VARIANTS) if function), None)
+    if choice not in VARIANTS or not (function := _variant(choice)):
+        allowed = ", ".join(("numpy", *available()))
+        raise ValueError(f"{VARIABLE} = {choice}: must be one of {allowed} here, or not set")
+    return function

@@ -19,10 +19,12 @@ class Sampler(NamedTuple):
         as the cases of users are; `random` is a numpy Generator
     few : number of few nodes of each class of stiffness of :mod:`~solver.body.wave_rule`. A test finds them: with so
         many nodes, the others leave out no more than rounding
+    samples : number of random kernels that choose those of each class
     """
 
     draw: Callable
     few: tuple[int, ...]
+    samples: tuple[int, ...] = (200, 200, 200, 200)
 
 
 class Kernel(Protocol):

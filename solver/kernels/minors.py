@@ -1,0 +1,137 @@
+"""The recursion of :mod:`.stack`: the minors x = (UW, WS, -US, WT, TS) of a wave, from below a layer to above it.
+
+Tractions are in G1, the shear modulus of the top layer, and z = k h_j. In a layer of the shear modulus G, dx/dζ = B x
+with g = G1/G, c = g (1 - 2ν)/(2(1 - ν)), d = 2/(g (1 - ν)), e = ν/(1 - ν) and
+
+        [0  0  c  g  0]
+        [0  0 -e  1  0]        B⁵ = 4 B³, therefore
+    B = [0  2  0  0  g]        exp(zB) = 1 + z B + z²/2 B² + (sinh 2z - 2z)/8 B³ + (cosh 2z - 1 - 2z²)/16 B⁴.
+        [d -2e 0  0  c]
+        [0  0  d  0  0]
+
+X (B, 5, S, M) are x at M wave numbers, S = 1, or x and its derivative by ln k, S = 2. Only ratios count.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+#: Where 2z is below 1, sinh 2z - 2z and cosh 2z - 1 - 2z² are taken from this many further terms of their series.
+_TERMS = 9
+
+
+class Layer(NamedTuple):
+    """B to B⁴ of one layer, one below the other, (B, 20, 5)."""
+
+    powers: np.ndarray
+
+    @classmethod
+    def of(cls, g, nu):
+        """g : G1/G (B,); nu : Poisson ratio (B,)."""
+        B, one = np.zeros((len(g), 5, 5)), 1 - nu
+        B[:, 0, 2] = B[:, 3, 4] = g * (1 - 2 * nu) / (2 * one)
+        B[:, 0, 3] = B[:, 2, 4] = g
+        B[:, 1, 2], B[:, 1, 3], B[:, 2, 1] = -nu / one, 1.0, 2.0
+        B[:, 3, 0] = B[:, 4, 2] = 2 / (g * one)
+        B[:, 3, 1] = 2 * B[:, 1, 2]
+        two = B @ B
+        return cls(np.concatenate([B, two, B @ two, two @ two], axis=1))
+
+    def applied(self, X):
+        """B X to B⁴ X, (B, 4, 5, S, M)."""
+        return (self.powers @ X.reshape(len(X), 5, -1)).reshape(len(X), 4, *X.shape[1:])
+
+    def once(self, x):
+        """B x (B, 5, M)."""
+        return self.powers[:, :5] @ x
+
+
+def base(g, nu, rigid, slopes, count):
+    """X at `count` wave numbers on a half-space with G1/G = 1/g and Poisson ratio nu (B,), or on a rigid base, where
+    `rigid` (B,). `slopes`: with the derivative, which is 0."""
+    minors = np.stack([3 - 4 * nu, 2 * g * (1 - 2 * nu), 4 * g * (1 - nu), 4 * g * (1 - nu), 4 * g * g], axis=1)
+    X = np.zeros((len(g), 5, 1 + slopes, count))
+    X[:, :, 0] = np.where(rigid[:, None], [0.0, 0.0, 0.0, 0.0, 1.0], minors)[:, :, None]
+    return X
+
+
+def scaled(X):
+    """X over the largest of x: so that nothing overflows in many layers."""
+    return X / np.abs(X[:, :, :1]).max(axis=1, keepdims=True)
+
+
+def across(X, free, Kn, Kt):
+    """X above an interface, from that below it. free : (B,), there is no friction; Kn, Kt : (B, M) or None, compliances
+    of springs times G1 k."""
+    if Kn is not None:
+        X = _on_springs(X, Kn, Kt)
+    if free.any():
+        X = np.where(free[:, None, None, None], X[:, [3, 1, 4, 1, 1]] * np.array([1, 0, 1, 0, 0])[:, None, None], X)
+    return X
+
+
+def _on_springs(X, Kn, Kt):
+    out = X.copy()
+    x, above = X[:, :, 0].transpose(1, 0, 2), out[:, :, 0].transpose(1, 0, 2)
+    above[0] += Kn * x[2] + Kt * x[3] + Kn * Kt * x[4]
+    above[2] += Kt * x[4]
+    above[3] += Kn * x[4]
+    if X.shape[2] > 1:  # Kn and Kt are proportional to k
+        dx, above = X[:, :, 1].transpose(1, 0, 2), out[:, :, 1].transpose(1, 0, 2)
+        above[0] += Kn * (dx[2] + x[2]) + Kt * (dx[3] + x[3]) + Kn * Kt * (dx[4] + 2 * x[4])
+        above[2] += Kt * (dx[4] + x[4])
+        above[3] += Kn * (dx[4] + x[4])
+    return out
+
+
+class Top(NamedTuple):
+    """X at the upper side of a layer, times e^(-2z); and what stands below it, for :func:`numerator`: X there, B X to
+    B⁴ X, e^(-2z)."""
+
+    X: np.ndarray
+    under: np.ndarray
+    applied: np.ndarray
+    e: np.ndarray
+
+
+def through(layer, z, X):
+    """The :class:`Top` of a layer with X below it; z (B, M)."""
+    e, applied = np.exp(-2 * z), layer.applied(X)
+    out = e[:, None, None] * X
+    for i, factor in enumerate((z * e, z * z / 2 * e, *_brackets(z, e))):
+        out += factor[:, None, None] * applied[:, i]
+    if X.shape[2] > 1:
+        out[:, :, 1] += z[:, None] * layer.once(out[:, :, 0])
+    return Top(out, X, applied, e)
+
+
+def _brackets(z, e):
+    """(sinh 2z - 2z)/8 and (cosh 2z - 1 - 2z²)/16, times e = e^(-2z)."""
+    y = 2 * z
+    sinh = (1 - e * e) / 16 - (y / 8) * e
+    cosh = (1 - e) ** 2 / 32 - (y * y / 32) * e
+    small = np.nonzero(y < 1)
+    if len(small[0]):
+        y, e = y[small], e[small]
+        square = y * y
+        odd, even = 1.0, 1.0
+        for j in range(2 * _TERMS + 2, 3, -2):
+            odd, even = 1 + square / (j * (j + 1)) * odd, 1 + square / ((j + 1) * (j + 2)) * even
+        sinh[small], cosh[small] = e * y * square / 48 * odd, e * square * square / 384 * even
+    return sinh, cosh
+
+
+def numerator(layer, z, top, one):
+    """x4 - (1 - nu1) x5 at the surface, the part left out that is 0 there, and its derivative by ln k; times e^(-2z).
+    one : 1 - nu1 (B, 1).
+
+    exp(zB) e^(-2z) is P+ + e^(-2z) [1 - B⁴/16 + z (B - B³/4) + z²/2 (B² - B⁴/4)] + e^(-4z) (B⁴ - 2B³)/32, and
+    (0, 0, 0, 1, -(1 - nu1)) P+ = 0.
+    """
+    v1, v2, v3, v4 = top.applied.transpose(1, 0, 2, 3, 4)
+    e, z = top.e[:, None, None], z[:, None, None]
+    half = z * z / 2
+    rest = top.under + z * (v1 - v3 / 4) + half * v2 + (e / 32 - half / 4 - 1 / 16) * v4 - e / 16 * v3
+    rest *= e
+    slope = rest[:, :, 1] + z[:, 0] * layer.once(rest[:, :, 0])
+    return rest[:, 3, 0] - one * rest[:, 4, 0], slope[:, 3] - one * slope[:, 4]

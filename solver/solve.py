@@ -56,6 +56,7 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
     invalid = refused(problem, dimensionless(problem)) | problem.without_scheme()
     is_auto = problem.base == "auto"
     is_judged = (problem.base == "thin_layer") & (problem.model_check == "first_order")
+    is_judged |= problem.base == "thin_stack"
     size = len(problem), len(radii)
     pieces = [(np.arange(len(problem)), Solution.of(*size, status=Status.INVALID_INPUT, model_used=model_of(problem)))]
     for mask, way in (is_judged, judged), (is_auto, cheapest), (~(is_judged | is_auto), solve_named):

@@ -1,7 +1,7 @@
 """The layers of a stack: their names in the table of parameters, and a list of layers as such parameters.
 
-The first layer, at the surface, is the one of a case with one layer: h, n, nu1 and bonding are its numbers, and n = 0 is
-a rigid base here too. What it has besides, and all of the others, is called layers.2.h, counted from 1.
+The first layer, at the surface, is the one of a case with one layer: h, n, nu1 and bonding are its numbers, and n = 0
+is a rigid base here too. What it has besides, and all of the others, is called layers.2.h, counted from 1.
 """
 
 import re
@@ -20,8 +20,8 @@ _GRADED = PROFILES[1:]
 #: Into how many uniform layers each graded one is cut, at the surface in each octave of the depth; 0 : into more and
 #: more, until the answers do not change.
 _SUBLAYERS = Parameter(0, whole=True, interval="[1, 512]", also=(0,), needed_by=STACKED)
-#: What a layer has -> its row in the table of parameters. cn, ct : compliance of the interface below it across and along
-#: it, length over pressure; 0 is a perfect bond, and without friction ct has no effect.
+#: What a layer has -> its row in the table of parameters. cn, ct : compliance of the interface below it, across and
+#: along it, length over pressure; 0 is a perfect bond, and without friction ct has no effect.
 LAYER = {
     "h": Parameter(interval="[1e-12, 1e6]", powers=(0, 1)),
     "n": Parameter(interval="[1e-9, 1e9]"),
@@ -127,6 +127,8 @@ def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
     if count > MOST:
         raise ValueError(f"layers: {count} layers: at most {MOST}")
     register(count)
+    # the name that says that there are layers, if there is one only
+    stack = {full_name(1, "cn"): 0.0} | stack
     return _with_base(others) | _on_base(stack, parameters.get("rigid_base", False))
 
 

@@ -21,7 +21,7 @@ _TERMS = 9
 
 
 class Layer(NamedTuple):
-    """B to B⁴ of one layer, one below the other, (B, 20, 5)."""
+    """B⁰ to B⁵ of one layer, (B, 6, 5, 5)."""
 
     powers: np.ndarray
 
@@ -35,19 +35,23 @@ class Layer(NamedTuple):
         B[:, 3, 0] = B[:, 4, 2] = 2 / (g * one)
         B[:, 3, 1] = 2 * B[:, 1, 2]
         two = B @ B
-        return cls(np.concatenate([B, two, B @ two, two @ two], axis=1))
+        three = B @ two
+        return cls(np.stack([np.broadcast_to(np.eye(5), B.shape), B, two, three, two @ two, 4 * three], axis=1))
 
-    def applied(self, X):
-        """B X to B⁴ X, (B, 4, 5, S, M)."""
-        return (self.powers @ X.reshape(len(X), 5, -1)).reshape(len(X), 4, *X.shape[1:])
+    def combined(self, factors, first=0):
+        """Σ factor_i B^(first + i) at each wave number, (B, 5, 5, M), from five `factors` (B, 5, M)."""
+        return _spread(self.powers[:, first : first + 5], factors)
 
-    def once(self, x):
-        """B x (B, 5, M)."""
-        return self.powers[:, :5] @ x
+
+def _spread(powers, factors):
+    """Σ factor_i power_i (B, ..., M) of five arrays `powers` (B, 5, ...) and `factors` (B, 5, M)."""
+    shape = powers.shape[2:]
+    flat = powers.reshape(len(powers), 5, -1).transpose(0, 2, 1) @ factors
+    return flat.reshape(len(powers), *shape, -1)
 
 
 def base(g, nu, rigid, slopes, count):
-    """X at `count` wave numbers on a half-space with G1/G = 1/g and Poisson ratio nu (B,), or on a rigid base, where
+    """X at `count` wave numbers on a half-space with G1/G = g and Poisson ratio nu (B,), or on a rigid base, where
     `rigid` (B,). `slopes`: with the derivative, which is 0."""
     minors = np.stack([3 - 4 * nu, 2 * g * (1 - 2 * nu), 4 * g * (1 - nu), 4 * g * (1 - nu), 4 * g * g], axis=1)
     X = np.zeros((len(g), 5, 1 + slopes, count))
@@ -56,8 +60,8 @@ def base(g, nu, rigid, slopes, count):
 
 
 def scaled(X):
-    """X over the largest of x: so that nothing overflows in many layers."""
-    return X / np.abs(X[:, :, :1]).max(axis=1, keepdims=True)
+    """X over UW - US + TS, none of which is negative, nor are all 0: so that nothing overflows in many layers."""
+    return X * (1 / (X[:, 0, 0] + X[:, 2, 0] + X[:, 4, 0]))[:, None, None]
 
 
 def across(X, free, Kn, Kt):
@@ -84,54 +88,48 @@ def _on_springs(X, Kn, Kt):
     return out
 
 
-class Top(NamedTuple):
-    """X at the upper side of a layer, times e^(-2z); and what stands below it, for :func:`numerator`: X there, B X to
-    B⁴ X, e^(-2z)."""
-
-    X: np.ndarray
-    under: np.ndarray
-    applied: np.ndarray
-    e: np.ndarray
-
-
 def through(layer, z, X):
-    """The :class:`Top` of a layer with X below it; z (B, M)."""
-    e, applied = np.exp(-2 * z), layer.applied(X)
-    out = e[:, None, None] * X
-    for i, factor in enumerate((z * e, z * z / 2 * e, *_brackets(z, e))):
-        out += factor[:, None, None] * applied[:, i]
+    """X above a layer, times e^(-2z), with X below it; z (B, M)."""
+    out = np.einsum("bijm,bjsm->bism", layer.combined(_exponential(z)), X)
     if X.shape[2] > 1:
-        out[:, :, 1] += z[:, None] * layer.once(out[:, :, 0])
-    return Top(out, X, applied, e)
+        out[:, :, 1] += z[:, None] * (layer.powers[:, 1] @ out[:, :, 0])
+    return out
 
 
-def _brackets(z, e):
-    """(sinh 2z - 2z)/8 and (cosh 2z - 1 - 2z²)/16, times e = e^(-2z)."""
-    y = 2 * z
+def at_surface(layer, z, X):
+    """x4 and x5 above a layer, and their derivatives by ln k, times e^(-2z): (B, 2, S, M), as :func:`through`."""
+    factors = _exponential(z)
+    out = np.einsum("bijm,bjsm->bism", _spread(layer.powers[:, :5, 3:], factors), X)
+    if X.shape[2] > 1:
+        out[:, :, 1] += z[:, None] * np.einsum("bijm,bjm->bim", _spread(layer.powers[:, 1:, 3:], factors), X[:, :, 0])
+    return out
+
+
+def _exponential(z):
+    """Factors (B, 5, M) of B⁰ to B⁴ in exp(zB) e^(-2z)."""
+    e, y = np.exp(-2 * z), 2 * z
     sinh = (1 - e * e) / 16 - (y / 8) * e
     cosh = (1 - e) ** 2 / 32 - (y * y / 32) * e
     small = np.nonzero(y < 1)
     if len(small[0]):
-        y, e = y[small], e[small]
-        square = y * y
+        near, decay = y[small], e[small]
+        square = near * near
         odd, even = 1.0, 1.0
         for j in range(2 * _TERMS + 2, 3, -2):
             odd, even = 1 + square / (j * (j + 1)) * odd, 1 + square / ((j + 1) * (j + 2)) * even
-        sinh[small], cosh[small] = e * y * square / 48 * odd, e * square * square / 384 * even
-    return sinh, cosh
+        sinh[small], cosh[small] = decay * near * square / 48 * odd, decay * square * square / 384 * even
+    return np.stack([e, z * e, z * z / 2 * e, sinh, cosh], axis=1)
 
 
-def numerator(layer, z, top, one):
+def numerator(layer, z, X, nu1):
     """x4 - (1 - nu1) x5 at the surface, the part left out that is 0 there, and its derivative by ln k; times e^(-2z).
-    one : 1 - nu1 (B, 1).
 
     exp(zB) e^(-2z) is P+ + e^(-2z) [1 - B⁴/16 + z (B - B³/4) + z²/2 (B² - B⁴/4)] + e^(-4z) (B⁴ - 2B³)/32, and
     (0, 0, 0, 1, -(1 - nu1)) P+ = 0.
     """
-    v1, v2, v3, v4 = top.applied.transpose(1, 0, 2, 3, 4)
-    e, z = top.e[:, None, None], z[:, None, None]
-    half = z * z / 2
-    rest = top.under + z * (v1 - v3 / 4) + half * v2 + (e / 32 - half / 4 - 1 / 16) * v4 - e / 16 * v3
-    rest *= e
-    slope = rest[:, :, 1] + z[:, 0] * layer.once(rest[:, :, 0])
-    return rest[:, 3, 0] - one * rest[:, 4, 0], slope[:, 3] - one * slope[:, 4]
+    e, half = np.exp(-2 * z), z * z / 2
+    factors = np.stack([e, z * e, half * e, -e * (z / 4 + e / 16), e * (e / 32 - half / 4 - 1 / 16)], axis=1)
+    rows = layer.powers[:, :, 3] - (1 - nu1)[:, None, None] * layer.powers[:, :, 4]
+    both = np.einsum("bjm,bjsm->bsm", _spread(rows[:, :5], factors), X)
+    turned = np.einsum("bjm,bjm->bm", _spread(rows[:, 1:], factors), X[:, :, 0])
+    return both[:, 0], both[:, 1] + z * turned

@@ -38,4 +38,4 @@ def random_stacks(random, stiffness):
 
 
 #: tests/kernels/test_stack.py (test_few_nodes_determine_a_stack) finds what so many nodes leave out.
-SAMPLER = Sampler(random_stacks, (64, 160, 280, 360), samples=(200, 300, 600, 600))
+SAMPLER = Sampler(random_stacks, (52, 120, 240, 360, 0, 88), (200, 300, 600, 600, 0, 300), mild=30.0)

@@ -10,13 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from .kernel import Sampler
-from .minors import Layer, across, base, numerator, scaled, through
+from .minors import Layer, across, at_surface, base, numerator, scaled, through
 from .two_layers import thin_layer_coefficients
 
 #: Below this u, L - 1 is the difference of two terms, none of which is small there.
 _NEAR = 0.7
 #: Values are computed for this many cases times nodes at a time: what stands in between stays in the cache.
-_BLOCK = 4096
+_BLOCK = 2048
 
 
 class Stack(NamedTuple):
@@ -86,8 +86,9 @@ class Stack(NamedTuple):
     def whole(self, u):
         out = np.empty((len(u), u[:1].size))
         for rows, part, values in self._blocks(u.reshape(out.shape)):
-            x = part._surface(values, slopes=False)[1].X
-            out[rows] = x[:, 3, 0] / ((1 - part.nu[:, :1]) * x[:, 4, 0])
+            layer, X = part._under_top(values, slopes=False)
+            x4, x5 = at_surface(layer, values, X)[:, :, 0].transpose(1, 0, 2)
+            out[rows] = x4 / ((1 - part.nu[:, :1]) * x5)
         return out.reshape(u.shape)
 
     def decaying_part(self, u):
@@ -106,25 +107,30 @@ class Stack(NamedTuple):
     def _near_and_far(self, u):
         """L - 1 and u dL/du (B, M). The part of the numerator x4 - (1 - nu1) x5 and its derivative that vanishes but
         does not decay is left out where the rest is small."""
-        layer, top = self._surface(u, slopes=True)
-        x, one = top.X, 1 - self.nu[:, :1]
-        below, d_below = one * x[:, 4, 0], one * x[:, 4, 1]
-        above, d_above = x[:, 3, 0] - below, x[:, 3, 1] - d_below
+        layer, X = self._under_top(u, slopes=True)
+        x4, x5 = at_surface(layer, u, X).transpose(1, 2, 0, 3)
+        one = 1 - self.nu[:, :1]
+        below, d_below = one * x5
+        above, d_above = x4[0] - below, x4[1] - d_below
         if np.any(far := u >= _NEAR):
-            apart, d_apart = numerator(layer, u, top, one)
+            apart, d_apart = numerator(layer, u, X, self.nu[:, 0])
             above, d_above = np.where(far, apart, above), np.where(far, d_apart, d_above)
         L1 = above / below
         return L1, (d_above - L1 * d_below) / below
 
-    def _surface(self, u, slopes):
-        """The top layer (:class:`~.minors.Layer`) and :class:`~.minors.Top`; `slopes`: with derivatives by ln u."""
+    def _under_top(self, u, slopes):
+        """The top layer (:class:`~.minors.Layer`), and X below it; `slopes`: with derivatives by ln u."""
         G = self.n * (1 - self.nu) / 2  # over the modulus of the base
-        X, of_spring = base((1 - self.nu2) / 2 / G[:, 0], self.nu2, self.rigid, slopes, u.shape[1]), (self.cn, self.ct)
+        X = base((1 - self.nu2) / 2 / G[:, 0], self.nu2, self.rigid, slopes, u.shape[1])
         for j in reversed(range(self.n.shape[1])):
-            K = [
-                (1 - self.nu[:, :1]) / 2 * v[:, j, None] * u for v in of_spring if any(w[:, j].any() for w in of_spring)
-            ]
+            X = scaled(across(X, self.free[:, j], *self._springs(j, u)))
             layer = Layer.of(G[:, 0] / G[:, j], self.nu[:, j])
-            top = through(layer, u * self.h[:, j, None], scaled(across(X, self.free[:, j], *(K or (None, None)))))
-            X = top.X
-        return layer, top
+            if j:
+                X = through(layer, u * self.h[:, j, None], X)
+        return layer, X
+
+    def _springs(self, j, u):
+        """G1 k times the compliances below layer j, (B, M) each, or None where there are none."""
+        compliances = self.cn[:, j, None], self.ct[:, j, None]
+        present = any(np.any(v) for v in compliances)
+        return ((1 - self.nu[:, :1]) / 2 * v * u if present else None for v in compliances)

@@ -3,7 +3,9 @@
 import numpy as np
 
 #: The thinnest sublayer of a graded layer at the surface begins this many octaves above its bottom.
-_OCTAVES = 10
+_OCTAVES = 8
+#: Sublayers where nothing says how many.
+_USUAL = 16
 
 
 def refined(layers, sublayers):
@@ -16,7 +18,9 @@ def refined(layers, sublayers):
     graded = (layers["profile"] != "uniform").any(axis=0)
     if not graded.any():
         return layers
-    pieces = [_cut(layers, j, int(sublayers[0])) if graded[j] else _as_it_is(layers, j) for j in range(len(graded))]
+    pieces = [
+        _cut(layers, j, int(sublayers[0]) or _USUAL) if graded[j] else _as_it_is(layers, j) for j in range(len(graded))
+    ]
     return {name: np.concatenate([piece[name] for piece in pieces], axis=1) for name in pieces[0]}
 
 

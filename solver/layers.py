@@ -60,8 +60,9 @@ def full_name(number: int, field: str) -> str:
 
 def numbers_of(names) -> int:
     """The number of layers of a stack, of the `names` of its parameters; 0 if there is no name of a layer."""
-    matches = (_NAME.fullmatch(name) for name in names if name.startswith("layers."))
-    return max((int(match[1]) for match in matches if match), default=0)
+    names = [name for name in names if name.startswith("layers.") or name == "sublayers"]
+    matches = (_NAME.fullmatch(name) for name in names)
+    return max((int(match[1]) for match in matches if match), default=int(bool(names)))
 
 
 def register(count: int) -> None:
@@ -115,6 +116,7 @@ def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
     0.5
     """
     named = {name: value for name, value in parameters.items() if name.startswith("layers.")}
+    parameters = {"sublayers": 0} | parameters if named or "layers" in parameters else parameters
     if "layers" not in parameters and "rigid_base" not in parameters and not named:
         return parameters
     others = {name: v for name, v in parameters.items() if name not in ("layers", "rigid_base") and name not in named}
@@ -127,8 +129,6 @@ def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
     if count > MOST:
         raise ValueError(f"layers: {count} layers: at most {MOST}")
     register(count)
-    # the name that says that there are layers, if there is one only
-    stack = {full_name(1, "cn"): 0.0} | stack
     return _with_base(others) | _on_base(stack, parameters.get("rigid_base", False))
 
 

@@ -12,10 +12,10 @@ from solver.laws.elastic_plastic import TABOR
 
 from .inputs.definition import StudyError
 from .inputs.laws import recall
-from .inputs.scene.changes import RATIOS
+from .inputs.scene.layers import moduli_of
 from .inputs.scene.scales import make_dimensionless
 from .inputs.scene.scene import Scene, over
-from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
+from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY, is_ratio
 from .rules.rule import has_units
 from .specimen.materials import Material, strength_of
 from .terminal import shown
@@ -82,7 +82,8 @@ def _without_coordinates(array: xr.DataArray) -> Any:
 def _scene(inputs: dict[str, Any]) -> Scene:
     """The scene of inputs in SI units. What follows from others is computed again."""
     follows = {ratio for modulus, ratio in (("E1", "n"), ("E_punch", "m")) if modulus in inputs}
-    in_si = [name for name in inputs if name in SCENE or name in RATIOS or VOCABULARY[name].powers != (0, 0)]
+    follows |= {ratio for _, _, ratio in moduli_of(inputs)}
+    in_si = [name for name in inputs if name in SCENE or is_ratio(name) or VOCABULARY[name].powers != (0, 0)]
     others = {name: value for name, value in inputs.items() if name not in {*in_si, *follows}}
     scene = Scene(values={name: inputs[name] for name in in_si}, parameters=others)
     make_dimensionless(scene)

@@ -22,8 +22,8 @@ _BLOCK = 2048
 class Stack(NamedTuple):
     """The :class:`~solver.kernels.kernel.Kernel` of B stacks of N layers, the top first.
 
-    n, nu, h : (B, N), moduli E_j*, Poisson ratios, and thickness over that of the first layer. The unit of moduli is
-        E2*, or any on a rigid base, where the top layer has n = 1 where results shall be in E1*
+    n, nu, depth : (B, N), moduli E_j*, Poisson ratios, and thickness over that of the first layer. The unit of moduli
+        is E2*, or E1* on a rigid base, where the first layer has n = 1
     free, cn, ct : (B, N), the interface below each layer: whether it is frictionless; and its normal and tangential
         compliance times E1*/h1, 0 of a perfect bond
     nu2, rigid : (B,), Poisson ratio of the base, whose modulus is 1, and whether it is rigid
@@ -32,7 +32,7 @@ class Stack(NamedTuple):
 
     n: np.ndarray
     nu: np.ndarray
-    h: np.ndarray
+    depth: np.ndarray
     free: np.ndarray
     cn: np.ndarray
     ct: np.ndarray
@@ -55,14 +55,14 @@ class Stack(NamedTuple):
         frictionless interface, add their parts; so does the normal compliance of springs."""
         of_base = np.where(self.rigid[:, None], 0.0, self.n)
         _, A2 = thin_layer_coefficients(of_base, self.nu, self.nu2[:, None], True)
-        softness, slope = self.n[:, :1] / self.n * self.h, self.cn.sum(axis=1) / 2
+        softness, slope = self.n[:, :1] / self.n * self.depth, self.cn.sum(axis=1) / 2
         held = ~np.logical_or.accumulate(self.free[:, ::-1], axis=1)[:, ::-1]
         slope = slope + np.where(held, softness * A2, 0.0).sum(axis=1)
         group = np.cumsum(self.free[:, ::-1], axis=1)[:, ::-1]  # 0 is bonded to the base, 1 lies upon the lowest slip
         squeezed, one = softness * (1 - 2 * self.nu) / (1 - self.nu) ** 2, self.nu / (1 - self.nu)
         for number in range(1, int(group.max(initial=0)) + 1):
             own = group == number
-            wide, stiff = ((own * v).sum(axis=1) for v in (self.h * one, self.h * self.n / self.n[:, :1]))
+            wide, stiff = ((own * v).sum(axis=1) for v in (self.depth * one, self.depth * self.n / self.n[:, :1]))
             stretched = wide**2 / np.where(stiff > 0, stiff, 1.0)
             slope = slope + ((own * squeezed).sum(axis=1) + stretched) / 2
         return slope
@@ -75,7 +75,7 @@ class Stack(NamedTuple):
         softest = np.maximum((self.n[:, :1] / self.n).max(axis=1), self.L0) + self.cn.max(axis=1) / 2
         bodies = np.hstack([self.n, np.where(self.rigid, np.inf, 1.0)[:, None]])
         under = np.minimum.accumulate(bodies[:, ::-1], axis=1)[:, ::-1][:, 1:]
-        return np.maximum(softest, (self.h * np.maximum(1.0, self.n / under)).sum(axis=1))
+        return np.maximum(softest, (self.depth * np.maximum(1.0, self.n / under)).sum(axis=1))
 
     def take(self, index):
         return Stack(*(field[index] for field in self[:-1]), self.sampler)
@@ -126,7 +126,7 @@ class Stack(NamedTuple):
             X = scaled(across(X, self.free[:, j], *self._springs(j, u)))
             layer = Layer.of(G[:, 0] / G[:, j], self.nu[:, j])
             if j:
-                X = through(layer, u * self.h[:, j, None], X)
+                X = through(layer, u * self.depth[:, j, None], X)
         return layer, X
 
     def _springs(self, j, u):

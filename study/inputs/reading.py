@@ -20,6 +20,7 @@ from .grid import usual_block
 from .identity import digest_of, law_versions
 from .laws import results_of
 from .request import MOST_MESSAGES, Request
+from .scene.layers import axes_in
 from .vocabulary import NUMERICS, absent, suggest
 
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
@@ -30,7 +31,7 @@ KEYS = {
     "axes": None,
 }
 """Section of a study file -> the keys that it may have; None: its keys are names of parameters."""
-SECTIONS = ("title", "kind", "model", "axes", "cases", "sample", "correlations", "numerics", "output")
+SECTIONS = ("title", "kind", "model", "layers", "axes", "cases", "sample", "correlations", "numerics", "output")
 LARGEST_FILE = 32_000_000  # bytes: a million values of an axis are 20 MB
 MOST_TABLES = 100_000  # tables such as [[cases]]: tomllib and the checks take some 50 µs for each
 MOST_PARTS = 50  # of a dotted key; tomllib needs memory by the square of their number, 2.4 GB for 20,000
@@ -83,7 +84,7 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
         from .scene.changes import inputs_of
         from .scene.reading import read as read_scene
 
-        scene = read_scene(request, draft, spreads is True, list(tables.get("axes", ())))
+        scene = read_scene(request, draft, spreads is True, axes_in(tables))
     else:
         for entry in request.inputs.values():
             if not entry.is_wrong:

@@ -16,6 +16,7 @@ import numpy as np
 from solver.parameters import CONTROL, Parameter, among
 from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import allowed as are_within
+from solver.sensitivity import is_ratio as is_ratio_of_solver
 
 from ..terminal import shown
 
@@ -105,6 +106,7 @@ VOCABULARY = entries(_TABLES)
 ROWS = ChainMap(VOCABULARY, SCENE)
 """Rows of SCENE and VOCABULARY, among them the parameters of registered laws."""
 #: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
+#: `inputs.scene.layers` adds those of a stack below the first.
 BODIES = {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")}
 
 
@@ -129,6 +131,11 @@ def names(*roles: str) -> tuple[str, ...]:
     ('P', 'a', 'D')
     """
     return tuple(name for role, table in _TABLES.items() if role in roles for name in table)
+
+
+def is_ratio(name: str) -> bool:
+    """Whether an input is a Poisson ratio: derivatives by it are without the logarithm."""
+    return name == "nu_punch" or is_ratio_of_solver(name)
 
 
 CONTROLS = names("control")

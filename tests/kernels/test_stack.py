@@ -139,7 +139,7 @@ def test_slopes_of_single_layers_add_up():
     stacks = random_ones(2, 30)._replace(free=np.zeros((30, 3), dtype=bool))
     parts = [
         stacks.n[:, 0] / n * h * thin_layer_coefficients(n, nu, stacks.nu2, True)[1]
-        for n, nu, h in zip(stacks.n.T, stacks.nu.T, stacks.h.T, strict=True)
+        for n, nu, h in zip(stacks.n.T, stacks.nu.T, stacks.depth.T, strict=True)
     ]
     assert_allclose(stacks.slope, sum(parts), rtol=1e-13, atol=1e-13)
 

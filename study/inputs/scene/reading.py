@@ -15,7 +15,7 @@ from ...terminal import on_one_line
 from ..draft import Draft
 from ..grid import equal_values
 from ..request import NEEDS_NAMES, Input, Request
-from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY
+from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY, is_ratio
 from .bodies import assumed, with_materials
 from .bounds import beyond_bounds
 from .checks import impossible, missing, moving_tables, same_cases
@@ -74,7 +74,7 @@ def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scen
 def _read(scene: Scene, draft: Draft, entry: Input) -> None:
     """Put the numbers of an input into the scene."""
     name, before = entry.name, len(draft.errors)
-    if name in SCENE or name in _LIMITS or VOCABULARY[name].powers != (0, 0) or entry.has_unit:
+    if name in SCENE or name in _LIMITS or is_ratio(name) or VOCABULARY[name].powers != (0, 0) or entry.has_unit:
         try:
             _add(scene, entry)
         except ValueError as error:
@@ -139,7 +139,7 @@ def _add(scene: Scene, entry: Input) -> None:
         twins = equal_values(name, value.values.tolist(), lambda number: f"{number:g} {unit}".removesuffix(" 1"))
         if twins:
             raise ValueError(twins[0])
-    low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, "must be a number"))
+    low, high, limits = _limits_of(name)
     if name in ("R1", "R2"):
         _refuse(entry, value, value == 0, "must not be 0")
     _refuse(entry, value, ~np.asarray((value > low) & (value <= high)), limits)
@@ -149,6 +149,12 @@ def _add(scene: Scene, entry: Input) -> None:
         _refuse(entry, value, at_limit, f"with its spread it {limits}; at the limit itself give no spread")
         scene.spreads[name] = spread
     scene.values[name] = value
+
+
+def _limits_of(name: str) -> tuple[float, float, str]:
+    """Bounds of an input: it must be above, at most, and words for a message."""
+    of_layer = _POISSON if is_ratio(name) else _POSITIVE if name in SCENE else (-np.inf, np.inf, "must be a number")
+    return _LIMITS.get(name, of_layer if name.startswith("layers.") else (-np.inf, np.inf, "must be a number"))
 
 
 def _refuse(entry: Input, value: Any, where: Any, reason: str) -> None:

@@ -93,6 +93,11 @@ PARAMETERS = {
 }
 
 
+def is_ratio(name):
+    """Whether a parameter is a Poisson ratio, which may be 0: derivatives are by it, not by its logarithm."""
+    return name in ("nu1", "nu2") or name.startswith("layers.") and name.endswith((".nu", ".nu_bottom"))
+
+
 def among(condition, values):
     """(...) bool: the cases that meet a condition such as `needed_by`. `values(name)` gives the texts of a parameter,
     in an array of any shape."""

@@ -9,6 +9,7 @@ import xarray as xr
 from solver import Problem
 from solver.laws import LAWS
 from solver.laws.elastic_plastic import TABOR
+from solver.parameters import STACKED
 
 from .inputs.definition import StudyError
 from .inputs.laws import recall
@@ -52,6 +53,14 @@ class Again(NamedTuple):
         except ValueError as error:
             raise StudyError([f"{who}: {error}"]) from None
         return cls(problem, numbers, scene, dims, shape)
+
+
+def refuse_stacks(again: Again, who: str) -> None:
+    """Raise StudyError where a contact is on a stack of layers: its stresses are not computed yet."""
+    if np.isin(again.problem.base, STACKED[1]).any():
+        raise StudyError(
+            [f"{who}: there are no stresses in stacks of layers yet, only under one layer (base = layered)"]
+        )
 
 
 def _checked(contact: xr.Dataset, who: str) -> dict[str, Any]:

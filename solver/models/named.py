@@ -15,8 +15,13 @@ from ..status import Status
 from .range_of_law import edge_error, outside_law
 from .thin_layer_error import largest_error
 
-_BY_NAME = {"half_space": Model.HALF_SPACE, "thin_layer": Model.THIN_LAYER, "layered": Model.LAYERED}
-_BY_NAME |= {"stack": Model.STACK, "thin_stack": Model.THIN_STACK}
+_BY_NAME = {
+    "half_space": Model.HALF_SPACE,
+    "thin_layer": Model.THIN_LAYER,
+    "layered": Model.LAYERED,
+    "stack": Model.STACK,
+    "thin_stack": Model.THIN_STACK,
+}
 
 
 def model_of(problem):

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..contact.equation import Cases, groups
 from ..layers import numbers_of, table
-from ..parameters import CONTROL
+from ..parameters import CONTROL, is_ratio
 from ..scaling import as_cases
 
 #: An input is moved up and down by this part of itself, a Poisson ratio by this number. The curvature then adds 1e-8
@@ -18,11 +18,6 @@ from ..scaling import as_cases
 STEP = 1e-4
 #: Numbers that are no inputs: they say how a case is solved, or are units, whose effect follows from dimensions.
 _NO_INPUTS = {"accuracy", "k", "rtol", "R", "E2"}
-
-
-def is_ratio(name):
-    """Whether the derivative is by the input itself, not by its logarithm: of Poisson ratios, which may be 0."""
-    return name in ("nu1", "nu2") or name.startswith("layers.") and name.rpartition(".")[2] in ("nu", "nu_bottom")
 
 
 def inputs_of(problem):

@@ -6,16 +6,24 @@ import xarray as xr
 from solver.laws import LAWS
 
 from ..inputs.laws import smooth_laws
-from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY, matters, names
+from ..inputs.vocabulary import BODIES, CONTROLS, SCENE, VOCABULARY, matters, names
 
-_OF_BODIES = [name for body, (modulus, ratio, _) in BODIES.items() for name in (body, modulus, ratio)]
+_OF_BODIES = [name for body in ("punch", "layer", "body") for name in (body, *BODIES[body][:2])]
+
+
+def of_lower_layers() -> list[str]:
+    """Names of what the layers of a stack below the first have, and the first besides, one layer after the other."""
+    names = [name for name in (*BODIES, *SCENE, *VOCABULARY) if name.startswith("layers.")]
+    order = ("material", "h", "E1", "E1_bottom", "n", "n_bottom", "nu", "nu_bottom", "profile", "bonding", "cn", "ct")
+    places = {name: (int(name.split(".")[1]), order.index(name.split(".")[2])) for name in names}
+    return sorted(places, key=lambda name: places[name])
 
 
 def all_inputs() -> list[str]:
     """All inputs in order: radii, what the bodies are made of, the control, the layer, the asperities."""
     between = [name for name in names("material") if name not in (*_OF_BODIES, "base")]
     of_laws = [name for name, entry in VOCABULARY.items() if entry.role == "roughness" and name != "micro"]
-    return ["R1", "R2", "R", *_OF_BODIES, *CONTROLS, *between, "micro", *of_laws]
+    return ["R1", "R2", "R", *_OF_BODIES, *CONTROLS, *between, *of_lower_layers(), "micro", *of_laws]
 
 
 def used_inputs(contacts: xr.Dataset) -> list[str]:

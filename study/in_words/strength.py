@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from solver import Problem, solve
+from solver.parameters import STACKED
 from solver.yields import spots
 from solver.yields.contact import of_contacts
 
@@ -31,6 +32,7 @@ _FAR = 0.01
 #: Nothing is said of contacts wider than this, in R.
 _WIDEST = 0.2
 _THROUGH = "The layer is thin against the pitch: single spots press on the body through it, which is left out."
+_STACK = "Not known: there are no stresses in stacks of layers yet."
 _FILM = "The layer is so thin (h < 0.002 a) that its stresses take long: study.extremes computes them"
 
 
@@ -59,6 +61,8 @@ def holds(case: xr.Dataset) -> list[str]:
         again = Again.of(case, "summary")
     except StudyError:  # of a mean, say
         return []
+    if again.problem.base[0] in STACKED[1]:
+        return [_STACK]
     known = {body: float(values[0]) for body, values in strengths(case, again, {}).items()}
     moduli = [case[name] for name, _, _ in BODIES.values() if name in case and case[name].attrs.get("units") == "Pa"]
     hard = bool(moduli) and min(moduli) >= RUBBER

@@ -96,13 +96,13 @@ def _summary_of_case(case: xr.Dataset, dims=()) -> str:
     """The text of one case; inputs along `dims` are not repeated."""
     rough = case["micro"].values not in smooth_laws()
     used = used_inputs(case)
-    inputs = [name for name in used if name not in (*dims, *CONTROLS)]
+    inputs = [name for name in used if name not in (*dims, *CONTROLS) and not name.startswith("layers.")]
     unsaid = " (assumed)" * ("R" in case and "E_punch" not in case)
     rigid = [f"a rigid punch{unsaid}"] * is_rigid(case, "punch") + ["a rigid base"] * is_rigid(case, "base")
     unused = [name for name in _OPTIONAL if name in case and name not in (*used, *dims)]
     unused = [name for name in unused if np.isfinite(case[name])]  # NaN: given for other cases
     given = [*rigid, *(given_text(case, name) for name in inputs), *_pieces(case, used)]
-    lines = ["Given: " + ", ".join(given)]
+    lines = ["Given: " + ", ".join(given)] + _stack(case, used)
     lines += [f"Not used: {', '.join(given_text(case, name) for name in unused)}"] * bool(unused) + [""]
     names = [name for name in SHOWN if rough or name not in OF_ASPERITIES]
     names += ["plastic_share"] * bool("plastic_share" in case and np.isfinite(case["plastic_share"]))
@@ -110,6 +110,19 @@ def _summary_of_case(case: xr.Dataset, dims=()) -> str:
     width = max(len(label) for label, _, _ in rows)
     lines += [f"  {label:{width}}  {symbol:6} = {text}" for label, symbol, text in rows]
     return "\n".join([*lines, "", *sentences(case, [name for name in names if name in _JUDGED], not dims)])
+
+
+def _stack(case: xr.Dataset, used: list[str]) -> list[str]:
+    """A line of the geometry of a stack of layers, from the second one down to the base; [] of one layer."""
+    parts: dict[str, list[str]] = {}
+    for name in (name for name in used if name.startswith("layers.") and name in case and not case[name].dims):
+        number, _, field = name.removeprefix("layers.").partition(".")
+        text = given_text(case, name).replace(f"layers.{number}.", "").removeprefix("material ")
+        if text not in ("uniform", "nan") and not text.endswith("= nan"):
+            parts.setdefault(number, []).append(text)
+    below = "a rigid base" if is_rigid(case, "base") else "the body"
+    texts = [f"layer {number}: {', '.join(texts)}" for number, texts in parts.items()]
+    return [f"Stack, from the surface down: {'; '.join(texts)}; then {below}"] if texts else []
 
 
 def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:

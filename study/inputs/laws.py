@@ -33,7 +33,7 @@ def update_vocabulary() -> None:
     """Make PARAMETERS and VOCABULARY fit the micro laws that are registered now."""
     built_in = names("control", "material", "roughness", "numerics")
     for name in set(PARAMETERS) - set(built_in):  # their laws may have been replaced
-        del VOCABULARY[name]
+        VOCABULARY.pop(name, None)
     PARAMETERS[:] = built_in
     for name, declared in [parameter for law in laws.LAWS.values() for parameter in law.parameters.items()]:
         if name not in PARAMETERS:

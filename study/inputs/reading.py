@@ -13,10 +13,14 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from solver.parameters import STACKED
+
 from ..terminal import on_one_line, shown
 from .definition import LARGE, MOST_VALUES, Definition, StudyError, refusal, settings
 from .draft import Draft
-from .grid import usual_block
+from .grid import along, usual_block
 from .identity import digest_of, law_versions
 from .laws import results_of
 from .request import MOST_MESSAGES, Request
@@ -94,6 +98,8 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
     grid = draft.finish()
     inputs = () if errors or scene is None or not scene.spreads else inputs_of(scene, grid)
     title, x, profiles, dtype, stresses = settings(tables, errors)
+    if stresses and not errors and np.isin(along(grid, "base"), STACKED[1]).any():
+        errors.append("[output] stresses = true: there are no stresses in stacks of layers yet")
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")

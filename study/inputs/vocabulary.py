@@ -16,7 +16,7 @@ import numpy as np
 from solver.parameters import CONTROL, Parameter, among
 from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import allowed as are_within
-from solver.sensitivity import is_ratio as is_ratio_of_solver
+from solver.parameters import is_ratio as of_solver
 
 from ..terminal import shown
 
@@ -135,7 +135,7 @@ def names(*roles: str) -> tuple[str, ...]:
 
 def is_ratio(name: str) -> bool:
     """Whether an input is a Poisson ratio: derivatives by it are without the logarithm."""
-    return name == "nu_punch" or is_ratio_of_solver(name)
+    return name == "nu_punch" or of_solver(name)
 
 
 CONTROLS = names("control")

@@ -141,8 +141,8 @@ def axes_in(tables: dict) -> list[str]:
     return [_short(name) for name in _dotted(axes)] if isinstance(axes, dict) else []
 
 
-def _is_of_layers(name: str) -> bool:
-    return name in ("layers", RIGID, "sublayers") or name.startswith("layers.")
+def _is_of_layers(name: Any) -> bool:
+    return isinstance(name, str) and (name in ("layers", RIGID, "sublayers") or name.startswith("layers."))
 
 
 def _dotted(table: dict) -> dict:

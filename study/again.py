@@ -14,6 +14,7 @@ from solver.parameters import STACKED
 from .inputs.definition import StudyError
 from .inputs.laws import recall
 from .inputs.scene.layers import moduli_of
+from .inputs.scene.layers import recall as recall_layers
 from .inputs.scene.scales import make_dimensionless
 from .inputs.scene.scene import Scene, over
 from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY, is_ratio
@@ -58,9 +59,7 @@ class Again(NamedTuple):
 def refuse_stacks(again: Again, who: str) -> None:
     """Raise StudyError where a contact is on a stack of layers: its stresses are not computed yet."""
     if np.isin(again.problem.base, STACKED[1]).any():
-        raise StudyError(
-            [f"{who}: there are no stresses in stacks of layers yet, only under one layer (base = layered)"]
-        )
+        raise StudyError([f"{who}: there are no stresses in stacks of layers yet, but of one layer (base = layered)"])
 
 
 def _checked(contact: xr.Dataset, who: str) -> dict[str, Any]:
@@ -68,6 +67,7 @@ def _checked(contact: xr.Dataset, who: str) -> dict[str, Any]:
     if not isinstance(contact, xr.Dataset) or "status" not in contact:
         raise StudyError([f"{who} takes a dataset of study.solve or of a results file, with its status"])
     recall(contact.attrs.get("micro_laws", ""))
+    recall_layers(contact.coords)
     settings = {name: contact.attrs[name] for name in NUMERICS if name in contact.attrs}
     coordinates = [name for name in (*CONTROLS, *SCENE, *PARAMETERS) if name in contact.coords]
     wrong = [f"has no coordinate {name}" for name in ("base", "micro") if name not in coordinates]

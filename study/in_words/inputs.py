@@ -6,6 +6,7 @@ import xarray as xr
 from solver.laws import LAWS
 
 from ..inputs.laws import smooth_laws
+from ..inputs.scene.layers import recall
 from ..inputs.vocabulary import BODIES, CONTROLS, SCENE, VOCABULARY, matters, names
 
 _OF_BODIES = [name for body in ("punch", "layer", "body") for name in (body, *BODIES[body][:2])]
@@ -34,12 +35,13 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
     """
     if "base" not in contacts.variables:
         return []
+    recall(contacts.variables)
 
     def values(name: str) -> np.ndarray:
         return contacts[name].values
 
     hidden = {"R"} if "R1" in contacts else set()
-    hidden |= {"n", "m"} if "E2" in contacts else set()
+    hidden |= {"n", "m", *(name for name in of_lower_layers() if name.endswith(".n"))} if "E2" in contacts else set()
     hidden |= {"m", "punch", "E_punch", "nu_punch", "Y_punch"} if is_rigid(contacts, "punch") else set()
     hidden |= {"n", "body", "E2", "nu2", "Y2"} if is_rigid(contacts, "base") else set()
     hidden |= {"layer", "E1", "nu1", "Y1"} if (values("base") == "half_space").all() else set()

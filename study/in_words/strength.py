@@ -61,14 +61,14 @@ def holds(case: xr.Dataset) -> list[str]:
         again = Again.of(case, "summary")
     except StudyError:  # of a mean, say
         return []
-    if again.problem.base[0] in STACKED[1]:
-        return [_STACK]
     known = {body: float(values[0]) for body, values in strengths(case, again, {}).items()}
     moduli = [case[name] for name, _, _ in BODIES.values() if name in case and case[name].attrs.get("units") == "Pa"]
     hard = bool(moduli) and min(moduli) >= RUBBER
     if not (hard or np.isfinite(list(known.values())).any()):
         return []
     problem = again.problem
+    if problem.base[0] in STACKED[1]:
+        return [_STACK]
     if problem.base[0] != "half_space" and problem.h[0] < _THINNEST * _radius(case, again):
         return [_FILM + "."]
     at_a = replace(problem, control="a", value=np.array([_radius(case, again)]))

@@ -148,5 +148,6 @@ def _pieces(case: xr.Dataset, used: list[str]) -> list[str]:
     for material, bodies in of_material.items():
         one = all(case[body].attrs.get("comment") == SAME_PIECE for body in bodies)
         which = "one piece" if one else "independent pieces"
+        bodies = [body.removesuffix(".material").replace("layers.", "layer ") for body in bodies]
         texts += [f"{', '.join(bodies[:-1])} and {bodies[-1]} {which} of {material}"] * (len(bodies) > 1)
     return texts

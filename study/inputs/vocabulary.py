@@ -30,7 +30,16 @@ BY_INPUT = "_by_input"
 NOT_RUN = 127
 """Value of `status` for a case that was never computed (the solver's own statuses are 0, 1, 2, ...)."""
 
-SI = {(0, 0): "1", (0, 1): "m", (0, 2): "m^2", (0, -2): "1/m^2", (1, 0): "Pa", (1, 1): "N/m", (1, 2): "N"}
+SI = {
+    (0, 0): "1",
+    (0, 1): "m",
+    (0, 2): "m^2",
+    (0, -2): "1/m^2",
+    (1, 0): "Pa",
+    (1, 1): "N/m",
+    (1, 2): "N",
+    (-1, 1): "m/Pa",
+}
 """SI units by their powers of E2* and R; all others are written as powers of Pa and m."""
 
 

@@ -64,6 +64,14 @@ def declare() -> None:
         PARAMETERS.append("sublayers")
 
 
+def recall(names: Any) -> None:
+    """Make the layers known of which results have coordinates; `names` of these."""
+    count = min(layers.numbers_of(map(str, names)), layers.MOST)
+    if count:
+        layers.register(count)
+        declare()
+
+
 def beyond(name: str, count: int) -> bool:
     """Whether a parameter is of a layer that a stack of `count` layers does not have; 0 : no stack."""
     return layers.numbers_of([name]) > count if name.startswith("layers.") else name == "sublayers" and not count

@@ -23,8 +23,8 @@ OURS = {"roughcoat", "solver", "study", "studies"}
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
     "solver": (
-        *("threads", "status", "closed_forms", "numerics", "parameters", "layers", "punches", "laws", "kernels", "body"),
-        *("edges", "problem", "solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
+        *("threads", "status", "closed_forms", "numerics", "parameters", "layers", "punches", "laws", "kernels"),
+        *("body", "edges", "problem", "solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
         *("sensitivity", "fields", "yields"),
     ),
     "study": (

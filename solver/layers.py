@@ -8,15 +8,15 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
+from . import profiles
 from .parameters import BONDINGS, PARAMETERS, STACKED, Parameter
 
-__all__ = ["LAYER", "MOST", "PROFILES", "expanded", "full_name", "numbers_of", "register"]
+__all__ = ["LAYER", "MOST", "expanded", "full_name", "numbers_of", "register"]
 
 #: Most layers of a stack.
 MOST = 16
-#: How modulus and Poisson ratio of a graded layer go from its top to its bottom; "uniform" is not graded.
-PROFILES = ("uniform", "exponential", "linear")
-_GRADED = PROFILES[1:]
 #: Into how many uniform layers each graded one is cut, at the surface in each octave of the depth; 0 : into more and
 #: more, until the answers do not change.
 _SUBLAYERS = Parameter(0, whole=True, interval="[1, 512]", also=(0,), needed_by=STACKED)
@@ -29,7 +29,7 @@ LAYER = {
     "bonding": Parameter("frictionless", BONDINGS),
     "cn": Parameter(0.0, interval="[0, 1e15]", powers=(-1, 1)),
     "ct": Parameter(0.0, interval="[0, 1e15]", powers=(-1, 1)),
-    "profile": Parameter("uniform", PROFILES),
+    "profile": Parameter("uniform", profiles.WORDS),
     "n_bottom": Parameter(interval="[1e-9, 1e9]", instead=""),
     "nu_bottom": Parameter(interval="(-1, 0.5]", instead=""),
 }
@@ -73,8 +73,10 @@ def register(count: int) -> None:
             if name not in PARAMETERS:
                 used = row.used_by
                 if field in ("n_bottom", "nu_bottom"):
-                    used = full_name(number, "profile"), _GRADED
+                    used = full_name(number, "profile"), profiles.GRADED
                 PARAMETERS[name] = row._replace(needed_by=STACKED, used_by=used)
+        name, choices = full_name(number, "profile"), (*profiles.WORDS, *profiles.TABLES)
+        PARAMETERS[name] = PARAMETERS[name]._replace(choices=choices)
     if count:
         PARAMETERS["sublayers"] = _SUBLAYERS
 
@@ -97,8 +99,9 @@ def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
     ----------
     parameters : of :meth:`solver.problem.Problem.of`. `layers` is a list of mappings, the layer at the surface first:
         h, n = E_j*/E2*, nu = 0.3, `bonding` of the interface below, "frictionless", "bonded" or {"cn": ..., "ct": ...}.
-        Of a graded layer n is a pair, top and bottom, nu may be one, and `profile` is "exponential" or "linear". With
-        `rigid_base` n is E_j*/E1*. A parameter like "layers.2.h" takes the place of what the list says
+        Of a graded layer n is a pair, top and bottom, nu may be one, and `profile` is "exponential" or "linear"; or,
+        without n, "table:FILE.csv", a :class:`~solver.profiles.Table`. With `rigid_base` n is E_j*/E1*. A parameter
+        like "layers.2.h" takes the place of what the list says
 
     Returns
     -------
@@ -124,12 +127,21 @@ def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
     if beside and "layers" in parameters:
         raise ValueError(f"{beside[0]} is given beside layers: each of the layers has its own")
     stack = _of_list(parameters.get("layers", [])) | {_short(name): value for name, value in named.items()}
+    read_tables(stack)
     count = numbers_of(f"layers.{name}" if name[0].isdigit() else name for name in named) or 1
     count = max(count, len(parameters.get("layers", [])))
     if count > MOST:
         raise ValueError(f"layers: {count} layers: at most {MOST}")
     register(count)
     return _with_base(others) | _on_base(stack, parameters.get("rigid_base", False))
+
+
+def read_tables(stack: dict[str, Any]) -> None:
+    """Read the tables of profiles that are named among the parameters and not known yet; ValueError."""
+    for name, value in stack.items():
+        for word in set(np.ravel(value).tolist()) if name.endswith(".profile") else ():
+            if isinstance(word, str) and word.startswith(profiles.PREFIX) and word not in profiles.TABLES:
+                profiles.read(word)
 
 
 def _short(name):
@@ -181,7 +193,13 @@ def fields_of(layer: Mapping, number: int) -> dict[str, Any]:
                 f"{where}.bonding = {dict(springs)!r:.60}: springs have cn and ct, a length over a pressure"
             )
         fields |= {"bonding": "bonded", **springs}
-    graded = fields.get("profile", "uniform") != "uniform"
+    profile = fields.get("profile", "uniform")
+    if isinstance(profile, str) and profile.startswith(profiles.PREFIX):
+        own = [field for field in ("n", "E1", "material") if field in fields]
+        if own:
+            raise ValueError(f"{where}.{own[0]} is given beside a table of E*/E2*: the table says it")
+        return fields | {"n": float(profiles.read(profile).n[0])}
+    graded = profile != "uniform"
     for field in ("n", "nu", "E1") if graded else ():
         pair = fields.get(field)
         if isinstance(pair, (list, tuple)):

@@ -67,6 +67,7 @@ class Problem:
     def __setstate__(self, state):
         """A process that gets the batch knows its layers."""
         self.__dict__.update(state)
+        layers.read_tables(self.parameters)
         layers.register(layers.numbers_of(self.parameters))
 
     def __getattr__(self, name):

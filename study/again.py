@@ -15,9 +15,10 @@ from .inputs.definition import StudyError
 from .inputs.laws import recall
 from .inputs.scene.layers import moduli_of
 from .inputs.scene.layers import recall as recall_layers
+from .inputs.scene.names import is_ratio
 from .inputs.scene.scales import make_dimensionless
 from .inputs.scene.scene import Scene, over
-from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY, is_ratio
+from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
 from .rules.rule import has_units
 from .specimen.materials import Material, strength_of
 from .terminal import shown

@@ -15,8 +15,9 @@ from .again import Again, of_all_cases
 from .inputs.definition import StudyError
 from .inputs.scene.changes import SCALES, changes
 from .inputs.scene.layers import moduli_of
+from .inputs.scene.names import is_ratio
 from .inputs.scene.scene import Scene
-from .inputs.vocabulary import BODIES, PARAMETERS, VOCABULARY, is_ratio
+from .inputs.vocabulary import BODIES, PARAMETERS, VOCABULARY
 
 #: Results that have sensitivities.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from ..profiles import TABLES
+
 #: The sublayers are thinner and thinner over this many octaves of the depth: in a graded layer at the surface, which
 #: waves of all lengths feel, and in a deeper one.
 _OCTAVES, _DEEPER = 8, 4
@@ -38,12 +40,19 @@ def _cut(layers, j, count):
     bottoms = {name: np.where(np.isnan(v) | (profile == "uniform"), part[name], v) for name, v in bottoms.items()}
     ends = _depths(profile, part["n"], bottoms["n"], cuts(count, _DEEPER if j else _OCTAVES))
     middle, last = (ends[:, 1:] + ends[:, :-1]) / 2, np.arange(ends.shape[1] - 1) == ends.shape[1] - 2
-    n = np.where(
-        profile == "exponential", part["n"] * (bottoms["n"] / part["n"]) ** middle, _linear(part, bottoms, "n", middle)
-    )
+    n = _moduli(profile, part["n"], bottoms["n"], middle)
     sublayers = {"h": part["h"] * np.diff(ends, axis=1), "n": n, "nu": _linear(part, bottoms, "nu", middle)}
     springs = {name: np.where(last, part[name], 0.0) for name in ("cn", "ct")}
     return sublayers | springs | {"bonding": np.where(last, part["bonding"], "bonded")}
+
+
+def _moduli(profile, top, bottom, z):
+    """E*/E2* (B, N) at depths z over the thickness. A table is taken over its first modulus."""
+    n = np.where(profile == "exponential", top * (bottom / top) ** z, top + (bottom - top) * z)
+    for word in set(profile.ravel().tolist()) & set(TABLES):
+        rows, table = profile[:, 0] == word, TABLES[word]
+        n[rows] = top[rows] * np.interp(z[rows], table.z, table.n) / table.n[0]
+    return n
 
 
 def _linear(part, bottoms, name, z):

@@ -4,8 +4,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from solver.layers import numbers_of
-
 from .checks import (
     dimensions_that_differ,
     equal_cases,
@@ -21,7 +19,7 @@ from .grid import Grid, as_array, equal_values
 from .laws import fitted, law_names, wants_a_fit
 from .request import Input, Request
 from .sample import sampled, values_of_axis
-from .scene.layers import beyond
+from .scene.layers import beyond, layers_in
 from .vocabulary import PARAMETERS, VOCABULARY
 
 MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x as one more
@@ -92,7 +90,7 @@ class Draft:
         arrays = {name: array for name, (dims, array) in values.items() if dims}
         self.errors += dimensions_that_differ(request, labels | arrays)
         _, laws = values.get("micro", ((), ""))  # "": micro has been refused
-        count = numbers_of(request.sections)
+        count = layers_in(request.sections)
         for name in [name for name in PARAMETERS if name not in request.sections]:
             parameter = VOCABULARY[name].parameter  # those of a law that no case has stay away
             selector, owners, *_ = parameter.needed_by

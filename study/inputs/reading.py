@@ -35,7 +35,7 @@ KEYS = {
     "axes": None,
 }
 """Section of a study file -> the keys that it may have; None: its keys are names of parameters."""
-SECTIONS = ("title", "kind", "model", "layers", "axes", "cases", "sample", "correlations", "numerics", "output")
+SECTIONS = ("title", "kind", "model", "axes", "cases", "layers", "sample", "correlations", "numerics", "output")
 LARGEST_FILE = 32_000_000  # bytes: a million values of an axis are 20 MB
 MOST_TABLES = 100_000  # tables such as [[cases]]: tomllib and the checks take some 50 µs for each
 MOST_PARTS = 50  # of a dotted key; tomllib needs memory by the square of their number, 2.4 GB for 20,000

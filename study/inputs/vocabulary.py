@@ -16,7 +16,6 @@ import numpy as np
 from solver.parameters import CONTROL, Parameter, among
 from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import allowed as are_within
-from solver.parameters import is_ratio as of_solver
 
 from ..terminal import shown
 
@@ -30,16 +29,8 @@ BY_INPUT = "_by_input"
 NOT_RUN = 127
 """Value of `status` for a case that was never computed (the solver's own statuses are 0, 1, 2, ...)."""
 
-SI = {
-    (0, 0): "1",
-    (0, 1): "m",
-    (0, 2): "m^2",
-    (0, -2): "1/m^2",
-    (1, 0): "Pa",
-    (1, 1): "N/m",
-    (1, 2): "N",
-    (-1, 1): "m/Pa",
-}
+SI = {(0, 0): "1", (0, 1): "m", (0, 2): "m^2", (0, -2): "1/m^2", (1, 0): "Pa", (1, 1): "N/m", (1, 2): "N"}
+SI[-1, 1] = "m/Pa"
 """SI units by their powers of E2* and R; all others are written as powers of Pa and m."""
 
 
@@ -140,11 +131,6 @@ def names(*roles: str) -> tuple[str, ...]:
     ('P', 'a', 'D')
     """
     return tuple(name for role, table in _TABLES.items() if role in roles for name in table)
-
-
-def is_ratio(name: str) -> bool:
-    """Whether an input is a Poisson ratio: derivatives by it are without the logarithm."""
-    return name == "nu_punch" or of_solver(name)
 
 
 CONTROLS = names("control")

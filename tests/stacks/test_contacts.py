@@ -180,6 +180,40 @@ def test_a_profile_that_does_not_change_is_uniform():
     assert_allclose([other.P, other.D, other.p0], [one.P, one.D, one.p0], rtol=5e-8)
 
 
+def test_a_table_is_a_profile(tmp_path):
+    """Of a straight line it is the linear one; on a rigid base its first number is 1."""
+    path = tmp_path / "line.csv"
+    path.write_text("# measured\nz/h,E*/E2*\n0,1\n0.25,1.5\n1,3\n")
+    layer = {"h": 0.05, "nu": 0.3, "bonding": "bonded"}
+    table, line = layer | {"profile": f"table:{path}"}, layer | {"profile": "linear", "n": [1.0, 3.0]}
+    for rigid in (False, True):
+        one, other = (
+            solve(Problem.of(a=0.05, layers=[own], rigid_base=rigid, rtol=1e-5, **SMOOTH)) for own in (table, line)
+        )
+        assert_allclose([one.P, one.D, one.p0], [other.P, other.D, other.p0], rtol=1e-5)
+
+
+TABLES = {
+    "no file": (None, "cannot be read"),
+    "words": ("0,1\n1,soft\n", "cannot be read"),
+    "one row": ("0,1\n", "2 to 10000 rows"),
+    "three columns": ("0,1,2\n1,1,2\n", "two columns"),
+    "not to 1": ("0,1\n0.9,2\n", "from 0 to 1"),
+    "back": ("0,1\n0.5,2\n0.4,2\n1,3\n", "must grow"),
+    "negative": ("0,1\n1,-2\n", "must be in"),
+}
+
+
+@pytest.mark.parametrize("kind", TABLES)
+def test_bad_tables(kind, tmp_path):
+    text, message = TABLES[kind]
+    path = tmp_path / "table.csv"
+    if text is not None:
+        path.write_text(text)
+    with pytest.raises(ValueError, match=message):
+        Problem.of(a=0.05, layers=[{"h": 0.05, "profile": f"table:{path}"}], **SMOOTH)
+
+
 def test_a_batch_of_many_kinds():
     """Each case as when it is alone."""
     base = np.array(["stack", "half_space", "thin_stack", "stack"])

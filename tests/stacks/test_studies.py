@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import study
+from solver.profiles import TABLES
 from study.__main__ import main
 from study.inputs.identity import case_keys
 from study.inputs.reading import from_call, from_tables
@@ -89,6 +90,22 @@ def test_graded_with_units():
         for E in ("30 kPa", "1.5 MPa")
     )
     assert hard < contact.D < soft
+
+
+def test_a_table_in_a_call(tmp_path):
+    """Its numbers are in the key, not its name alone."""
+    path, tables = tmp_path / "table.csv", {"title": "", "output": {}}
+    layer, keys = {"profile": f"table:{path}", "h": 0.05, "bonding": "bonded"}, []
+    for last in (2, 3):
+        path.write_text(f"0,1\n1,{last}\n")
+        TABLES.clear()
+        definition = from_call({"a": 0.05, "micro": "smooth", "layers": [layer]}, [], False, tables)
+        keys.append((case_keys(definition.grid).tolist(), definition.digest))
+    assert keys[0][0] != keys[1][0] and keys[0][1] != keys[1][1]
+    contact = study.solve(a=0.05, micro="smooth", rtol=1e-4, layers=[layer])
+    assert contact.status == 0 and contact.n == 1
+    with pytest.raises(study.StudyError, match="is given beside a table"):
+        study.solve(a=0.05, micro="smooth", layers=[layer | {"n": 2.0}])
 
 
 TOML = {

@@ -8,8 +8,9 @@ import numpy as np
 from ..grid import Grid
 from ..identity import counts
 from ..laws import slopes_of_fit
-from ..vocabulary import CONTROLS, PARAMETERS, SCENE, is_ratio
+from ..vocabulary import CONTROLS, PARAMETERS, SCENE
 from .layers import moduli_of
+from .names import is_ratio
 from .scales import make_dimensionless
 from .scene import Scene
 

@@ -72,6 +72,11 @@ def recall(names: Any) -> None:
         declare()
 
 
+def layers_in(names: Any) -> int:
+    """The number of layers of a stack, of the names of its parameters; 0 of no stack."""
+    return layers.numbers_of(names)
+
+
 def beyond(name: str, count: int) -> bool:
     """Whether a parameter is of a layer that a stack of `count` layers does not have; 0 : no stack."""
     return layers.numbers_of([name]) > count if name.startswith("layers.") else name == "sublayers" and not count
@@ -113,6 +118,10 @@ def flattened(table: dict, errors: list[str], rows: Any = (), elsewhere: Any = (
     if count > layers.MOST:
         errors.append(f"layers: {count} layers: at most {layers.MOST} are allowed")
         return others
+    try:
+        layers.read_tables(stack)
+    except ValueError as error:
+        errors.append(str(error))
     layers.register(count)
     declare()
     return _with_base(others, errors, rows or []) | stack | {"sublayers": others.get("sublayers", 0)}

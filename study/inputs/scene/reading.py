@@ -15,11 +15,11 @@ from ...terminal import on_one_line
 from ..draft import Draft
 from ..grid import equal_values
 from ..request import NEEDS_NAMES, Input, Request
-from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY, is_ratio
+from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY
 from .bodies import assumed, with_materials
 from .bounds import beyond_bounds
 from .checks import impossible, missing, moving_tables, same_cases
-from .names import dim_of, si
+from .names import dim_of, is_ratio, si
 from .pieces import correlate, none_alike
 from .scales import make_dimensionless
 from .scene import Scene

@@ -221,8 +221,10 @@ def _with_base(others):
 
 def _on_base(stack, rigid):
     """The parameters with n = 0 where the base is rigid, which must be one for all cases."""
-    if rigid is not True and rigid != 1:
+    if isinstance(rigid, str) or np.ndim(rigid) or rigid not in (False, True):
+        raise ValueError(f"rigid_base = {rigid!r:.60}: must be true or false, for all cases alike")
+    if not rigid:
         return stack
-    if "n" in stack and stack["n"] != 1:
+    if "n" in stack and not np.all(np.asarray(stack["n"]) == 1):
         raise ValueError(f"layers.1.n = {stack['n']}: on a rigid base n is E_j*/E1*, so that of the first layer is 1")
     return stack | {"n": 0.0}

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..profiles import TABLES
+from ..numerics.profiles import TABLES
 
 #: The sublayers are thinner and thinner over this many octaves of the depth: in a graded layer at the surface, which
 #: waves of all lengths feel, and in a deeper one.

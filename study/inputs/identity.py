@@ -16,8 +16,8 @@ import numpy as np
 
 from solver import NUMERICS_VERSION
 from solver.laws import identity as law_identity
+from solver.numerics.profiles import identity as profile_identity
 from solver.parameters import uses
-from solver.profiles import identity as profile_identity
 
 from .grid import Grid, along
 from .vocabulary import PARAMETERS, VOCABULARY

@@ -23,7 +23,7 @@ OURS = {"roughcoat", "solver", "study", "studies"}
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
     "solver": (
-        *("threads", "status", "closed_forms", "numerics", "parameters", "profiles", "layers", "punches", "laws"),
+        *("threads", "status", "closed_forms", "numerics", "parameters", "layers", "punches", "laws"),
         *("kernels", "body", "edges", "problem", "solution", "contact", "scaling", "estimate", "schemes", "models"),
         *("solve", "sensitivity", "fields", "yields"),
     ),

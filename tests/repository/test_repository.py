@@ -167,7 +167,7 @@ def test_what_is_installed_has_every_package_and_the_studies(tmp_path):
         ours = {path.relative_to(ROOT) for path in (ROOT / package).rglob("*") if "__pycache__" not in path.parts}
         built = {path.relative_to(tmp_path) for path in (tmp_path / package).rglob("*")}
         assert ours - built == set()
-    assert contents(tmp_path / "study/studies") == contents(ROOT / "studies") and len(STUDIES) == 23
+    assert contents(tmp_path / "study/studies") == contents(ROOT / "studies") and len(STUDIES) == 24
     pages = {path.name for path in (tmp_path / "study/docs").glob("*.md")}
     assert pages == {path.name for path in (ROOT / "docs").glob("*.md")} and len(pages) > 12
     assert {path.name for path in tmp_path.iterdir()} == {"roughcoat", "solver", "study"}

@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import study
-from solver.profiles import TABLES
+from solver.numerics.profiles import TABLES
 from study.__main__ import main
 from study.inputs.identity import case_keys
 from study.inputs.reading import from_call, from_tables

@@ -12,12 +12,16 @@ with g = G1/G, c = g (1 - 2ν)/(2(1 - ν)), d = 2/(g (1 - ν)), e = ν/(1 - ν) 
 X (B, 5, S, M) are x at M wave numbers, S = 1, or x and its derivative by ln k, S = 2. Only ratios count.
 """
 
+from math import factorial
 from typing import NamedTuple
 
 import numpy as np
 
-#: Where 2z is below 1, sinh 2z - 2z and cosh 2z - 1 - 2z² are taken from this many further terms of their series.
+#: Where y = 2z is below 1, sinh y - y = y³/6 (1 + y²/20 + ...) and cosh y - 1 - y²/2 = y⁴/24 (1 + y²/30 + ...) are
+#: taken from so many terms of these series, whose coefficients are these, the highest first.
 _TERMS = 9
+_ODD = [6 / factorial(3 + 2 * i) for i in reversed(range(_TERMS))]
+_EVEN = [24 / factorial(4 + 2 * i) for i in reversed(range(_TERMS))]
 
 
 class Layer(NamedTuple):
@@ -107,18 +111,19 @@ def at_surface(layer, z, X):
 
 def _exponential(z):
     """Factors (B, 5, M) of B⁰ to B⁴ in exp(zB) e^(-2z)."""
-    e, y = np.exp(-2 * z), 2 * z
-    sinh = (1 - e * e) / 16 - (y / 8) * e
-    cosh = (1 - e) ** 2 / 32 - (y * y / 32) * e
-    small = np.nonzero(y < 1)
-    if len(small[0]):
-        near, decay = y[small], e[small]
-        square = near * near
-        odd, even = 1.0, 1.0
-        for j in range(2 * _TERMS + 2, 3, -2):
-            odd, even = 1 + square / (j * (j + 1)) * odd, 1 + square / ((j + 1) * (j + 2)) * even
-        sinh[small], cosh[small] = decay * near * square / 48 * odd, decay * square * square / 384 * even
-    return np.stack([e, z * e, z * z / 2 * e, sinh, cosh], axis=1)
+    out = np.empty((len(z), 5, z.shape[1]))
+    e = np.exp(-2 * z)
+    ze = z * e
+    out[:, 0], out[:, 1], out[:, 2] = e, ze, z * ze / 2
+    out[:, 3] = (1 - e * e) / 16 - ze / 4
+    out[:, 4] = (1 - e) ** 2 / 32 - z * ze / 8
+    case, node = np.nonzero(z < 0.5)
+    if len(case):
+        square = 4 * np.square(z[case, node])
+        odd, even = np.polyval(_ODD, square), np.polyval(_EVEN, square)
+        out[case, 3, node] = ze[case, node] * square / 24 * odd
+        out[case, 4, node] = e[case, node] * square * square / 384 * even
+    return out
 
 
 def numerator(layer, z, X, nu1):

@@ -85,29 +85,30 @@ class Stack(NamedTuple):
 
     def whole(self, u):
         out = np.empty((len(u), u[:1].size))
-        for rows, part, values in self._blocks(u.reshape(out.shape)):
-            layer, X = part._under_top(values, slopes=False)
+        for rows, part, layers, values in self._blocks(u.reshape(out.shape)):
+            layer, X = part._under_top(values, layers, slopes=False)
             x4, x5 = at_surface(layer, values, X)[:, :, 0].transpose(1, 0, 2)
             out[rows] = x4 / ((1 - part.nu[:, :1]) * x5)
         return out.reshape(u.shape)
 
     def decaying_part(self, u):
         L1, uL = np.empty((2, *u.shape))
-        for rows, part, values in self._blocks(u):
-            L1[rows], uL[rows] = part._near_and_far(values)
+        for rows, part, layers, values in self._blocks(u):
+            L1[rows], uL[rows] = part._near_and_far(values, layers)
         return L1, uL
 
     def _blocks(self, u):
-        """Slices of cases, their kernel, and their u (b, M)."""
-        step = max(1, _BLOCK // max(1, u.shape[1]))
+        """Slices of cases, their kernel, its :class:`~.minors.Layer` s, and their u (b, M)."""
+        step, G = max(1, _BLOCK // max(1, u.shape[1])), self.n * (1 - self.nu)
+        layers = [Layer.of(G[:, 0] / G[:, j], self.nu[:, j]) for j in range(self.n.shape[1])]
         for low in range(0, len(u), step):
             rows = slice(low, low + step)
-            yield rows, self.take(rows), u[rows]
+            yield rows, self.take(rows), [Layer(layer.powers[rows]) for layer in layers], u[rows]
 
-    def _near_and_far(self, u):
+    def _near_and_far(self, u, layers):
         """L - 1 and u dL/du (B, M). The part of the numerator x4 - (1 - nu1) x5 and its derivative that vanishes but
         does not decay is left out where the rest is small."""
-        layer, X = self._under_top(u, slopes=True)
+        layer, X = self._under_top(u, layers, slopes=True)
         x4, x5 = at_surface(layer, u, X).transpose(1, 2, 0, 3)
         one = 1 - self.nu[:, :1]
         below, d_below = one * x5
@@ -118,16 +119,15 @@ class Stack(NamedTuple):
         L1 = above / below
         return L1, (d_above - L1 * d_below) / below
 
-    def _under_top(self, u, slopes):
+    def _under_top(self, u, layers, slopes):
         """The top layer (:class:`~.minors.Layer`), and X below it; `slopes`: with derivatives by ln u."""
-        G = self.n * (1 - self.nu) / 2  # over the modulus of the base
-        X = base((1 - self.nu2) / 2 / G[:, 0], self.nu2, self.rigid, slopes, u.shape[1])
+        g = (1 - self.nu2) / (self.n[:, 0] * (1 - self.nu[:, 0]))
+        X = base(g, self.nu2, self.rigid, slopes, u.shape[1])
         for j in reversed(range(self.n.shape[1])):
             X = scaled(across(X, self.free[:, j], *self._springs(j, u)))
-            layer = Layer.of(G[:, 0] / G[:, j], self.nu[:, j])
             if j:
-                X = through(layer, u * self.depth[:, j, None], X)
-        return layer, X
+                X = through(layers[j], u * self.depth[:, j, None], X)
+        return layers[0], X
 
     def _springs(self, j, u):
         """G1 k times the compliances below layer j, (B, M) each, or None where there are none."""

@@ -114,7 +114,7 @@ class Request:
             law_names([law for laws in micro for law in (laws if isinstance(laws, list) else [laws])])
         request._same_piece(same_piece, "")
         parameters = flattened(parameters, request.errors, rows)
-        rows = [flattened(row, request.errors) for row in rows]
+        rows = [flattened(row, request.errors, [parameters] if "base" in parameters else ()) for row in rows]
         if rows:
             request._cases(rows)
         for name, value in parameters.items():

@@ -189,6 +189,27 @@ def test_the_summary_has_the_geometry():
     assert "no stresses in stacks of layers yet" in text
 
 
+def test_cases():
+    """Stacks that differ, and one beside a bare body."""
+    cases = [{"layers": PURE, "P": 1e-5}, {"layers": PURE[::-1], "P": 2e-5}, {"base": "half_space", "P": 2e-5}]
+    contacts = study.solve(cases=cases, micro="smooth")
+    for i, case in enumerate(cases):
+        assert_allclose(contacts.a[i], study.solve(**case, micro="smooth").a, rtol=1e-12)
+
+
+def test_rough_stacks_with_units():
+    """The rules about the pressures of metals and the pitch of the asperities know their first layer."""
+    rough = BALL | {"micro": "disc_cell", "Nbar": "1 1/um^2", "Ra": "2 um"}
+    contact = study.solve(**rough, layers=DLC, P="1 N")
+    assert contact.status == 0 and "layer 2: of CrN" in str(study.summary(contact))
+
+
+def test_bases_of_one_call():
+    contacts = study.solve(layers=PURE, P=1e-5, base=["stack", "half_space", "thin_layer"], micro="smooth")
+    used = study.decode(contacts.model_used).values.tolist()
+    assert used == ["smooth_stack", "smooth_half_space", "smooth_thin_stack"]
+
+
 @pytest.mark.parametrize("name", ["stresses", "extremes"])
 def test_no_stresses_yet(name):
     contact = study.solve(**BALL, layers=DLC, P="1 N")

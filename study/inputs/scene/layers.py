@@ -101,7 +101,7 @@ def flattened(table: dict, errors: list[str], rows: Any = (), elsewhere: Any = (
     elsewhere : names of parameters that stand in other sections, and so not in the list of layers
     """
     table = _dotted(table)
-    if not any(_is_of_layers(name) for name in (*table, *elsewhere, *(name for row in rows for name in row))):
+    if not any(map(_is_of_layers, (*table, *elsewhere))):
         return table
     named = {name: value for name, value in table.items() if name.startswith("layers.")}
     others = {name: value for name, value in table.items() if name not in ("layers", RIGID, *named)}

@@ -111,15 +111,19 @@ def _filled(request: Request, scene: Scene) -> dict[str, Input]:
         present = np.array([value is not None for value in entry.values])
         if name == "base":
             inputs[name] = replace(entry, values=bases)
-        elif (present | (name in _OF_LAYER and np.array([value == "half_space" for value in bases]))).all():
+        elif (present | (_is_of_layer(name) and np.array([value == "half_space" for value in bases]))).all():
             first = entry.values[int(np.argmax(present))]
             inputs[name] = replace(entry, values=[first if value is None else value for value in entry.values])
             if not present.all():
-                scene.cases_of |= dict.fromkeys(_OF_LAYER[name], xr.DataArray(present, dims="case"))
+                scene.cases_of |= dict.fromkeys(_OF_LAYER.get(name, ()), xr.DataArray(present, dims="case"))
         else:
             request.errors.append(f"{name} must be given in every case, or once for all")
             inputs[name] = replace(entry, values=None)
     return inputs
+
+
+def _is_of_layer(name: str) -> bool:
+    return name in _OF_LAYER or name == "sublayers" or name.startswith("layers.")
 
 
 def _add(scene: Scene, entry: Input) -> None:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 BONDINGS = ("frictionless", "bonded")
-BASES = ("half_space", "thin_layer", "layered", "auto")
+BASES = ("half_space", "thin_layer", "layered", "auto", "stack", "thin_stack")
 #: How the model error of a thin layer asked for by name is estimated: free of cost, or by solving the exact layer.
 MODEL_CHECKS = ("closed_form", "first_order")
 #: The condition that every case meets, of `needed_by` and `used_by` below.
@@ -50,6 +50,9 @@ class Parameter(NamedTuple):
 #: The conditions that a case has a layer, and that it is bonded.
 LAYERED = ("base", tuple(base for base in BASES if base != "half_space"))
 BONDED = ("bonding", ("bonded",))
+#: The condition that what lies under the punch is a stack of layers; and that Poisson ratios change something.
+STACKED = ("base", ("stack", "thin_stack"))
+COUPLED = (*BONDED, *STACKED)
 
 #: A condition that no case meets.
 NEVER = ("base", ())
@@ -70,8 +73,8 @@ PARAMETERS = {
     "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED, powers=(0, 1)),
     "n": Parameter(interval="[1e-9, 1e9]", also=(0,), needed_by=LAYERED),  # 0: a rigid base
     "m": Parameter(0.0, interval="[0, 1e9]"),
-    "nu1": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=BONDED),
-    "nu2": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=BONDED),
+    "nu1": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=COUPLED),
+    "nu2": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=COUPLED),
     "Y1": STRENGTH._replace(needed_by=LAYERED),
     "Y2": STRENGTH,
     "Y_punch": STRENGTH,
@@ -88,6 +91,11 @@ PARAMETERS = {
     "R": Parameter(1.0, interval="(0, inf)"),
     "E2": Parameter(1.0, interval="(0, inf)"),
 }
+
+
+def is_ratio(name):
+    """Whether a parameter is a Poisson ratio, which may be 0: derivatives are by it, not by its logarithm."""
+    return name in ("nu1", "nu2") or name.startswith("layers.") and name.endswith((".nu", ".nu_bottom"))
 
 
 def among(condition, values):

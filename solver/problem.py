@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import laws
-from .parameters import CONTROL, PARAMETERS, Parameter, allowed, among
+from . import laws, layers
+from .parameters import CONTROL, PARAMETERS, STACKED, Parameter, allowed, among
 
 
 @dataclass(frozen=True)
@@ -64,6 +64,12 @@ class Problem:
         kinds = [", ".join(sorted(set(values.tolist()))) for values in (self.base, self.micro)]
         return f"Problem({len(self)} cases, {control}, base: {kinds[0]}, micro: {kinds[1]})"
 
+    def __setstate__(self, state):
+        """A process that gets the batch knows its layers."""
+        self.__dict__.update(state)
+        layers.read_tables(self.parameters)
+        layers.register(layers.numbers_of(self.parameters))
+
     def __getattr__(self, name):
         """A parameter; NaN if its law was registered after this batch was made."""
         if name not in PARAMETERS:
@@ -106,17 +112,19 @@ class Problem:
         if len(controls) != 1:
             raise ValueError(f"give exactly one of P, a, D (got {', '.join(controls) or 'none'})")
         ((control, value),) = controls.items()
+        parameters = layers.expanded(parameters)
         parameters["micro"] = laws.named(parameters.get("micro", PARAMETERS["micro"].default))
         laws.load(parameters, parameters["micro"])
-        unknown = sorted(set(parameters) - set(PARAMETERS))
+        table = layers.table(layers.numbers_of(parameters))
+        unknown = sorted(set(parameters) - set(table))
         if unknown:
             raise TypeError(f"unknown parameter {unknown[0]}")
-        defaults = {name: np.nan if row.default is None else row.default for name, row in PARAMETERS.items()}
+        defaults = {name: np.nan if row.default is None else row.default for name, row in table.items()}
         arrays = {name: _array(name, v) for name, v in ({"value": value} | defaults | parameters).items()}
         shape = np.broadcast_shapes((1,), *(v.shape for v in arrays.values()))
         if len(shape) != 1:
             raise ValueError(f"parameters broadcast to shape {shape}: give scalars and one-dimensional arrays")
-        if missing := "; ".join(_missing(parameters, arrays)):
+        if missing := "; ".join(_missing(parameters, arrays, table)):
             raise ValueError(missing)
         arrays = {name: np.broadcast_to(v, shape) for name, v in arrays.items()}
         return cls(control, arrays.pop("value"), arrays)
@@ -184,7 +192,7 @@ class Problem:
         """
         bad = ~allowed(CONTROL[self.control], self.value)
         having = {}
-        for name, own in PARAMETERS.items():
+        for name, own in layers.table(layers.numbers_of(self.parameters)).items():
             if own.interval:
                 if own.needed_by not in having:
                     having[own.needed_by] = among(own.needed_by, lambda name: getattr(self, name))
@@ -209,9 +217,11 @@ def _array(name, value):
     return np.asarray(value, dtype=int if parameter.whole else float)
 
 
-def _missing(given, arrays):
+def _missing(given, arrays, table):
     """Yield a message for each parameter that is not `given` and has no default, though some case needs it."""
-    for name, own in PARAMETERS.items():
+    if np.isin(STACKED[1], arrays["base"]).any() and not layers.numbers_of(given):
+        yield 'layers are missing: base = "stack" needs them'
+    for name, own in table.items():
         if own.default is None and not {name, own.instead} & {*given} and own.instead != "":
             selector, needing = own.needed_by
             found = [f'"{word}"' for word in needing if word in arrays[selector]]

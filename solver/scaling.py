@@ -76,7 +76,11 @@ def refused(problem, scaled):
 
 def without_springs(scaled):
     """(B,) bool: thin layers to which Eq. (3) does not apply, because C <= 0."""
-    return (scaled.base == "thin_layer") & ~(local_compliance(scaled.h, TwoLayers.of(scaled)) > 0)
+    without = (scaled.base == "thin_layer") & ~(local_compliance(scaled.h, TwoLayers.of(scaled)) > 0)
+    stacks = np.flatnonzero(scaled.base == "thin_stack")
+    if len(stacks):
+        without[stacks] = ~(BODIES["thin_stack"](scaled.take(stacks)).C > 0)
+    return without
 
 
 def as_cases(part):

@@ -35,6 +35,10 @@ class Model(IntEnum):
     SMOOTH_THIN_LAYER = 6
     LAYERED = 7
     SMOOTH_LAYERED = 8
+    STACK = 9
+    SMOOTH_STACK = 10
+    THIN_STACK = 11
+    SMOOTH_THIN_STACK = 12
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .models.auto import cheapest
+from .models.graded import is_graded, solve_graded
 from .models.model_error import judged
 from .models.named import model_of, solve_named
 from .models.plastic_share import has_yield, plastic_share
@@ -56,9 +57,12 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
     invalid = refused(problem, dimensionless(problem)) | problem.without_scheme()
     is_auto = problem.base == "auto"
     is_judged = (problem.base == "thin_layer") & (problem.model_check == "first_order")
+    is_judged |= problem.base == "thin_stack"
+    graded = is_graded(problem)
     size = len(problem), len(radii)
     pieces = [(np.arange(len(problem)), Solution.of(*size, status=Status.INVALID_INPUT, model_used=model_of(problem)))]
-    for mask, way in (is_judged, judged), (is_auto, cheapest), (~(is_judged | is_auto), solve_named):
+    named = ~(is_judged | is_auto | graded)
+    for mask, way in (is_judged, judged), (is_auto, cheapest), (graded, solve_graded), (named, solve_named):
         index = np.flatnonzero(mask & ~invalid)
         if len(index):
             part = problem if len(index) == len(problem) else problem.take(index)

@@ -9,10 +9,13 @@ import xarray as xr
 from solver import Problem
 from solver.laws import LAWS
 from solver.laws.elastic_plastic import TABOR
+from solver.parameters import STACKED
 
 from .inputs.definition import StudyError
 from .inputs.laws import recall
-from .inputs.scene.changes import RATIOS
+from .inputs.scene.layers import moduli_of
+from .inputs.scene.layers import recall as recall_layers
+from .inputs.scene.names import is_ratio
 from .inputs.scene.scales import make_dimensionless
 from .inputs.scene.scene import Scene, over
 from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
@@ -54,11 +57,18 @@ class Again(NamedTuple):
         return cls(problem, numbers, scene, dims, shape)
 
 
+def refuse_stacks(again: Again, who: str) -> None:
+    """Raise StudyError where a contact is on a stack of layers: its stresses are not computed yet."""
+    if np.isin(again.problem.base, STACKED[1]).any():
+        raise StudyError([f"{who}: there are no stresses in stacks of layers yet, but of one layer (base = layered)"])
+
+
 def _checked(contact: xr.Dataset, who: str) -> dict[str, Any]:
     """The inputs of the cases: numbers and texts, or DataArrays without coordinates. Raises StudyError."""
     if not isinstance(contact, xr.Dataset) or "status" not in contact:
         raise StudyError([f"{who} takes a dataset of study.solve or of a results file, with its status"])
     recall(contact.attrs.get("micro_laws", ""))
+    recall_layers(contact.coords)
     settings = {name: contact.attrs[name] for name in NUMERICS if name in contact.attrs}
     coordinates = [name for name in (*CONTROLS, *SCENE, *PARAMETERS) if name in contact.coords]
     wrong = [f"has no coordinate {name}" for name in ("base", "micro") if name not in coordinates]
@@ -82,7 +92,8 @@ def _without_coordinates(array: xr.DataArray) -> Any:
 def _scene(inputs: dict[str, Any]) -> Scene:
     """The scene of inputs in SI units. What follows from others is computed again."""
     follows = {ratio for modulus, ratio in (("E1", "n"), ("E_punch", "m")) if modulus in inputs}
-    in_si = [name for name in inputs if name in SCENE or name in RATIOS or VOCABULARY[name].powers != (0, 0)]
+    follows |= {ratio for _, _, ratio in moduli_of(inputs)}
+    in_si = [name for name in inputs if name in SCENE or is_ratio(name) or VOCABULARY[name].powers != (0, 0)]
     others = {name: value for name, value in inputs.items() if name not in {*in_si, *follows}}
     scene = Scene(values={name: inputs[name] for name in in_si}, parameters=others)
     make_dimensionless(scene)

@@ -13,7 +13,9 @@ from solver.parameters import uses
 
 from .again import Again, of_all_cases
 from .inputs.definition import StudyError
-from .inputs.scene.changes import RATIOS, SCALES, changes
+from .inputs.scene.changes import SCALES, changes
+from .inputs.scene.layers import moduli_of
+from .inputs.scene.names import is_ratio
 from .inputs.scene.scene import Scene
 from .inputs.vocabulary import BODIES, PARAMETERS, VOCABULARY
 
@@ -106,7 +108,7 @@ def spread_of_formula(case: xr.Dataset, formula: Callable[[xr.Dataset], Any]) ->
         for key, coordinate in {"length": "R", "n": "n", "m": "m"}.items():
             if coordinate in case:
                 by[coordinate] = changes_of[name].get(key, 0.0) * case[coordinate].values
-        by[name] = 1.0 if name in RATIOS else case[name].values
+        by[name] = 1.0 if is_ratio(name) else case[name].values
         ends = []
         for step in (_STEP * part, -_STEP * part):
             moved = {
@@ -121,7 +123,7 @@ def spread_of_formula(case: xr.Dataset, formula: Callable[[xr.Dataset], Any]) ->
 def relative_spreads(case: xr.Dataset, names: Iterable[str]) -> dict[str, float]:
     """Input of one contact with a spread -> spread over value; of a Poisson ratio the spread."""
     spreads = {name: float(case[f"{name}_spread"]) for name in names if f"{name}_spread" in case.coords}
-    return {name: spread if name in RATIOS else spread / float(case[name]) for name, spread in spreads.items()}
+    return {name: spread if is_ratio(name) else spread / float(case[name]) for name, spread in spreads.items()}
 
 
 def correlated(contact: xr.Dataset) -> bool:
@@ -142,7 +144,8 @@ def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[
     """Input -> {input of the solver, or scale: d ln(it)/d ln input, (B,)}. Poisson ratios have no logarithm."""
     values = scene.values
     names = [name for name in values if np.any(np.isfinite(values[name])) and not (name == "R" and "R1" in values)]
-    pure_numbers = [name for name in PARAMETERS if name in scene.parameters and name not in {*values, "n", "m"}]
+    follow = {"n", "m", *(ratio for _, _, ratio in moduli_of(values))}
+    pure_numbers = [name for name in PARAMETERS if name in scene.parameters and name not in {*values, *follow}]
     pure_numbers += ["n"] * ("E1" not in values) + ["m"] * ("E_punch" not in values)
     ones = np.ones(int(np.prod(shape)))
     flat = {}

@@ -49,7 +49,9 @@ class Parameters(TypedDict, total=False):
     Y2: Value
     Y_punch: Value
     bonding: Literal["frictionless", "bonded"] | Many
-    base: Literal["half_space", "thin_layer", "layered", "auto"] | Many
+    base: Literal["half_space", "thin_layer", "layered", "auto", "stack", "thin_stack"] | Many
+    layers: list[dict]
+    rigid_base: bool
     Nbar: Value
     Ra: Value
     micro: (
@@ -122,6 +124,11 @@ def solve(
     Y1, Y2, Y_punch : yield strengths of layer, body and punch, if they are known. They change no result of these
     bonding : the interface of layer and body
     base : what lies under the punch
+    layers : in place of h, n, nu1 and bonding a stack of layers, the one at the surface first: a list of dictionaries
+        of h, n or E1 or material, nu, and `bonding` of the interface below, "frictionless", "bonded" or {"cn": ...,
+        "ct": ...}, springs. Graded layers have `profile` and n (E1) = [top, bottom]: docs/stacks.md. An axis is
+        `**{"layers.2.h": [...]}`, counted from 1
+    rigid_base : whether what lies under the layers is rigid; with units E2 = "rigid" says so
     Nbar, Ra : number of asperities per unit area, and the radius of an asperity; not needed by micro = "smooth"
     micro : law of the asperities, "table:" and the path of a CSV file (docs/model.md), or a `solver.laws.Law` itself
     B, beta : of micro = "power_law", A = B Ra (p/E1*)^beta, so B is in Ra/E1*^beta. Without both the law is fitted to

@@ -23,9 +23,12 @@ _WIDEST = 200.0
 #: Largest n of each class of stiffness (:class:`~solver.kernels.kernel.Kernel`), and how many panels its quadrature has
 #: towards k = 0, each half as wide as the one before: beyond the first class the first panel ends below 0.15/n.
 STIFFEST, _DEPTH = (2.0, 1e3, 1e6, 1e9), (0, 12, 22, 32)
-#: The few nodes are chosen by L - 1 and u dL/du of _SAMPLES random kernels. They are enough when they leave out at most
-#: _LEFT_OUT, which is rounding, of the largest of these functions.
-_SAMPLES, _LEFT_OUT = 200, 3e-16
+#: The class of kernels of the second one that are mild (:class:`~solver.kernels.kernel.Sampler`): it has the quadrature
+#: of the second one, and few nodes of its own.
+MILD = 1 + len(STIFFEST)
+#: The few nodes are chosen by L - 1 and u dL/du of random kernels. They are enough when they leave out at most this,
+#: which is rounding, of the largest of these functions.
+_LEFT_OUT = 3e-16
 #: A panel of the width w in k has _MORE + w/2 + _ROOT w^(1/3) points, but at least _LEAST: the first number below
 #: u = 1/2, the second above, with u = kh/a at the lower end of the octave. It has _LESS points fewer for each digit by
 #: which L - 1 has decayed at its beginning. The operator is then right to 1e-11 (tests/body/test_wave_rule.py).
@@ -53,13 +56,17 @@ def place_of(body, a):
     octave = np.clip(np.where(np.isnan(octave), 0.0, octave), FILM, OCTAVES[1]).astype(int)
     # all films share one quadrature: a film is as stiff in it as a layer of the octave's h/a with the same n h/a
     stiffness = np.where(octave == FILM, n * h_a * 2.0**-FILM, n)
-    return octave, np.minimum(np.searchsorted(STIFFEST, stiffness), len(STIFFEST) - 1)
+    place = np.minimum(np.searchsorted(STIFFEST, stiffness), len(STIFFEST) - 1)
+    sampler = body.kernel.sampler
+    if sampler is not None and sampler.mild:
+        place = np.where((place == 1) & (octave != FILM) & (stiffness <= sampler.mild), MILD, place)
+    return octave, place
 
 
 @lru_cache(maxsize=256)
 def quadrature(octave, stiffness):
     """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)] and a class of stiffness."""
-    scale, cut, depth = 2.0**-octave, _end(octave), _DEPTH[stiffness]
+    scale, cut, depth = 2.0**-octave, _end(octave), _DEPTH[stiffness % len(STIFFEST)]
     ends = [0.0, *(0.5 * 2.0 ** -np.arange(depth, -1, -1)), 1.0, 2.0, 4.0, *([8.0] if cut > 9 else []), cut]
     k, weight = [], []
     for low, high in pairwise(ends):
@@ -109,11 +116,12 @@ def few(sampler, octave, stiffness):
 
 
 def _samples(sampler, octave, stiffness, k, scale):
-    """L - 1 and u dL/du (2 _SAMPLES, G), times `scale` (G,), of random kernels of a class with h/a in an octave. Where
+    """L - 1 and u dL/du (2 S, G), times `scale` (G,), of random kernels of a class with h/a in an octave. Where
     the sum of |L - 1| over the nodes, about the size of the operator, is above 1, both are divided by it."""
-    random, size = np.random.default_rng(0), _SAMPLES
+    random, size = np.random.default_rng(0), sampler.samples[stiffness]
     share_n, share_h_a = 1.1 * np.sin(np.pi / 2 * random.random((2, size))) ** 2 - 0.05  # most at the ends, some beyond
-    low, high = np.log([1e-9, *STIFFEST][stiffness : stiffness + 2])
+    ends = (STIFFEST[0], sampler.mild) if stiffness == MILD else [1e-9, *STIFFEST][stiffness : stiffness + 2]
+    low, high = np.log(ends)
     n = np.exp(low + (high - low) * share_n)
     if stiffness == 0:
         n = np.where(random.random(size) < 0.5, random.uniform(0, 2, size), n)

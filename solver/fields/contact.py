@@ -8,6 +8,7 @@ import numpy as np
 from ..contact.answer import answer
 from ..kernels.two_layers import TwoLayers, layer_modulus
 from ..numerics.ladder import STACK
+from ..parameters import STACKED
 from ..scaling import as_cases, dimensionless
 from ..sensitivity.again import found_again, meshes, stacks
 from ..sensitivity.held import held
@@ -58,7 +59,7 @@ def of_contacts(problem, solution, r, z, mu=0.0):
     r, z = np.asarray(r, dtype=float), np.asarray(z, dtype=float)
     names = [*normal.NAMES, *(sliding.NAMES if mu > 0 else ())]
     made = {name: np.full((len(problem), len(z) + 2, len(r)), np.nan) for name in names}
-    error, index = np.full(len(problem), np.nan), np.flatnonzero(solution.status == Status.CONVERGED)
+    error, index = np.full(len(problem), np.nan), np.flatnonzero(have_fields(problem, solution))
     if len(index):
         part, ended = problem.take(index), solution.take(index)
         scaled, a = dimensionless(part), ended.a / part.R
@@ -72,6 +73,11 @@ def of_contacts(problem, solution, r, z, mu=0.0):
                     made[name][here[some]] = values * units[name.startswith("u")]
     parts = (slice(None, len(z)), len(z), len(z) + 1)
     return Fields(*({name: values[:, part] for name, values in made.items()} for part in parts), error)
+
+
+def have_fields(problem, solution):
+    """(B,) bool: solved contacts of which there are stresses; there are none yet of stacks of layers."""
+    return (solution.status == Status.CONVERGED) & ~np.isin(problem.base, STACKED[1])
 
 
 def pressures(scaled, solution, a):

@@ -19,10 +19,15 @@ class Sampler(NamedTuple):
         as the cases of users are; `random` is a numpy Generator
     few : number of few nodes of each class of stiffness of :mod:`~solver.body.wave_rule`. A test finds them: with so
         many nodes, the others leave out no more than rounding
+    samples : number of random kernels that choose those of each class
+    mild : the second class is divided at this stiffness, where it is not 0: kernels below it have `few` and `samples`
+        of their own, which stand after those of all classes and one that has no meaning
     """
 
     draw: Callable
     few: tuple[int, ...]
+    samples: tuple[int, ...] = (200, 200, 200, 200)
+    mild: float = 0.0
 
 
 class Kernel(Protocol):

@@ -6,7 +6,7 @@ from weakref import WeakSet
 
 import numpy as np
 
-from ..parameters import BONDED, CONTROL, LAYERED, PARAMETERS
+from ..parameters import CONTROL, COUPLED, LAYERED, PARAMETERS
 from . import disc_cell, elastic_plastic, heights, lattice, own_table, power_law, trial
 from .law import Bound, Curve, Law, Spots
 
@@ -104,8 +104,8 @@ def _declare(laws):
     PARAMETERS.update({name: own._replace(needed_by=("micro", names)) for name, (own, names) in declared.items()})
     PARAMETERS["micro"] = PARAMETERS["micro"]._replace(choices=tuple(laws))
     of_laws = "micro", tuple(law.name for law in laws.values() if law.poisson)
-    PARAMETERS["nu1"] = PARAMETERS["nu1"]._replace(used_by=(*BONDED, *of_laws))
-    PARAMETERS["nu2"] = PARAMETERS["nu2"]._replace(needed_by=(*LAYERED, *of_laws), used_by=(*BONDED, *of_laws))
+    PARAMETERS["nu1"] = PARAMETERS["nu1"]._replace(used_by=(*COUPLED, *of_laws))
+    PARAMETERS["nu2"] = PARAMETERS["nu2"]._replace(needed_by=(*LAYERED, *of_laws), used_by=(*COUPLED, *of_laws))
     return laws
 
 

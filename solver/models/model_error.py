@@ -25,17 +25,18 @@ def judged(problem, x):
     """:class:`Solution` of thin layers, in the units of the problem, with the `model_error` of `model_check`
     "first_order".
 
-    problem : all of base "thin_layer"; x : (m,) radii
+    problem : all of base "thin_layer" or "thin_stack"; x : (m,) radii
     """
     pieces, scaled = [], dimensionless(problem)
-    for micro in np.unique(problem.micro):
-        index = np.flatnonzero(problem.micro == micro)
+    for micro, base in {*zip(problem.micro.tolist(), problem.base.tolist(), strict=True)}:
+        index = np.flatnonzero((problem.micro == micro) & (problem.base == base))
         part = scaled.take(index).but(model_check="closed_form")
         cheap = solve_named(part, np.concatenate([x, mesh_of(NODES).x]))
         solved, error = np.flatnonzero(np.isfinite(cheap.a)), np.full(len(index), np.nan)
         if len(solved):
             part, start, p = part.take(solved), cheap.take(solved), cheap.p[solved, len(x) :]
-            both = as_cases(part.but(base="layered")), as_cases(part)
+            exact = np.where(part.base == "thin_stack", "stack", "layered")
+            both = as_cases(part.but(base=exact)), as_cases(part)
             error[solved] = sum(distance(cases, start, p) for cases in both) + error_of_law(part)
         shown = {"p": cheap.p[:, : len(x)], "lam": cheap.lam[:, : len(x)]}
         pieces.append((index, replace(cheap, **shown, model_error=error)))

@@ -15,7 +15,13 @@ from ..status import Status
 from .range_of_law import edge_error, outside_law
 from .thin_layer_error import largest_error
 
-_BY_NAME = {"half_space": Model.HALF_SPACE, "thin_layer": Model.THIN_LAYER, "layered": Model.LAYERED}
+_BY_NAME = {
+    "half_space": Model.HALF_SPACE,
+    "thin_layer": Model.THIN_LAYER,
+    "layered": Model.LAYERED,
+    "stack": Model.STACK,
+    "thin_stack": Model.THIN_STACK,
+}
 
 
 def model_of(problem):
@@ -107,7 +113,7 @@ def _smooth_layer(part, x):
 def _with_model(problem, solution):
     """The solution with its `model_used`, and its `model_error` without that of the range of the law."""
     solved, thin = np.isfinite(solution.p0), problem.base == "thin_layer"
-    error = np.where(solved & ~thin, 0.0, np.nan)
+    error = np.where(solved & ~thin & (problem.base != "thin_stack"), 0.0, np.nan)
     judged = np.flatnonzero(solved & thin)
     if len(judged):
         part = problem if len(judged) == len(problem) else problem.take(judged)

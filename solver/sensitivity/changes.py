@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..contact.equation import Cases, groups
-from ..parameters import CONTROL, PARAMETERS
+from ..layers import numbers_of, table
+from ..parameters import CONTROL, is_ratio
 from ..scaling import as_cases
 
 #: An input is moved up and down by this part of itself, a Poisson ratio by this number. The curvature then adds 1e-8
@@ -19,15 +20,11 @@ STEP = 1e-4
 _NO_INPUTS = {"accuracy", "k", "rtol", "R", "E2"}
 
 
-def is_ratio(name):
-    """Whether the derivative is by the input itself, not by its logarithm: of Poisson ratios, which may be 0."""
-    return name in ("nu1", "nu2")
-
-
-def inputs_of(control):
+def inputs_of(problem):
     """Names of all inputs, the control first: numbers that have an interval."""
-    numbers = [name for name, row in PARAMETERS.items() if row.interval and not row.whole and name not in _NO_INPUTS]
-    return (control, *numbers)
+    rows = table(numbers_of(problem.parameters))
+    numbers = [name for name, row in rows.items() if row.interval and not row.whole and name not in _NO_INPUTS]
+    return (problem.control, *numbers)
 
 
 def moved(problem, inputs, step=STEP):
@@ -88,13 +85,15 @@ def changes_of(part, eta, k):
         if name == "h":
             h = slope_of(np.log(values), k)
         elif values.dtype.kind == "f":
-            acts |= np.any(slope_of(values, k) != 0, axis=1)
+            slopes = slope_of(values, k)
+            acts |= np.any(slopes != 0, axis=tuple(range(1, slopes.ndim)))
+    h[acts] = 0.0  # the operators of the moved bodies have the change of h already
     return Changes(cases, X, Y, Z, *logs, own, h, np.flatnonzero(acts).tolist())
 
 
 def _leaves(body, name=""):
     """Yield the name and the array of each number of a body."""
-    if isinstance(body, tuple):
+    if hasattr(body, "_fields"):
         for key, part in zip(body._fields, body, strict=True):
             yield from _leaves(part, key)
     elif isinstance(body, np.ndarray):

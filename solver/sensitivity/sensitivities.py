@@ -76,7 +76,7 @@ def sensitivities(
     >>> print(sensitivities(problem, solve(problem), inputs=("P",)).logs["a"].round(6).ravel())
     [0.333333 0.333333]
     """
-    inputs, x = tuple(inputs_of(problem.control) if inputs is None else inputs), np.asarray(x, dtype=float)
+    inputs, x = tuple(inputs_of(problem) if inputs is None else inputs), np.asarray(x, dtype=float)
     solved = np.isfinite(solution.p0) & np.isin(solution.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
     index, acting = np.flatnonzero(solved), [name for name in inputs if _acts(problem, name)]
     size, places = len(problem), [inputs.index(name) for name in acting]

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from ..fields.contact import bodies_of, pressures
+from ..fields.contact import bodies_of, have_fields, pressures
 from ..scaling import dimensionless
-from ..status import Status
 from ..threads import one_blas_thread
 from .extremes import EXTREMES, coarsely, extremes
 from .loaded import Loaded
@@ -28,7 +27,7 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
     coarse : the values alone, from the coarse grid: up to 10 % too small
     """
     made = {name: np.full((3, len(problem)), np.nan) for name in names}
-    index = np.flatnonzero(solution.status == Status.CONVERGED)
+    index = np.flatnonzero(have_fields(problem, solution))
     residual = np.broadcast_to(residual, len(problem)) / problem.E2
     if len(index):
         part, ended = problem.take(index), solution.take(index)

@@ -7,19 +7,28 @@ from solver.laws import LAWS
 
 from ..data.si import SAME_PIECE
 from ..inputs.laws import smooth_laws
-from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY, matters, names
+from ..inputs.scene.layers import recall
+from ..inputs.vocabulary import BODIES, CONTROLS, SCENE, VOCABULARY, matters, names
 from .numbers import given_text, spread_of
 
-_OF_BODIES = [name for body, (modulus, ratio, _) in BODIES.items() for name in (body, modulus, ratio)]
+_OF_BODIES = [name for body in ("punch", "layer", "body") for name in (body, *BODIES[body][:2])]
 #: Inputs without a default that a contact may have and not use: "sigma" of micro = "disc_cell", "E1" of a half-space.
 _OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta", "hardness", "yield_strength", "Y1", "Y2", "Y_punch")
+
+
+def of_lower_layers() -> list[str]:
+    """Names of what the layers of a stack below the first have, and the first besides, one layer after the other."""
+    names = [name for name in (*BODIES, *SCENE, *VOCABULARY) if name.startswith("layers.")]
+    order = ("material", "h", "E1", "E1_bottom", "n", "n_bottom", "nu", "nu_bottom", "profile", "bonding", "cn", "ct")
+    places = {name: (int(name.split(".")[1]), order.index(name.split(".")[2])) for name in names}
+    return sorted(places, key=lambda name: places[name])
 
 
 def all_inputs() -> list[str]:
     """All inputs in order: radii, what the bodies are made of, the control, the layer, the asperities."""
     between = [name for name in names("material") if name not in (*_OF_BODIES, "base")]
     of_laws = [name for name, entry in VOCABULARY.items() if entry.role == "roughness" and name != "micro"]
-    return ["R1", "R2", "R", *_OF_BODIES, *CONTROLS, *between, "micro", *of_laws]
+    return ["R1", "R2", "R", *_OF_BODIES, *CONTROLS, *between, *of_lower_layers(), "micro", *of_laws]
 
 
 def used_inputs(contacts: xr.Dataset) -> list[str]:
@@ -30,12 +39,13 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
     """
     if "base" not in contacts.variables:
         return []
+    recall(contacts.variables)
 
     def values(name: str) -> np.ndarray:
         return contacts[name].values
 
     hidden = {"R"} if "R1" in contacts else set()
-    hidden |= {"n", "m"} if "E2" in contacts else set()
+    hidden |= {"n", "m", *(name for name in of_lower_layers() if name.endswith(".n"))} if "E2" in contacts else set()
     hidden |= {"m", "punch", "E_punch", "nu_punch", "Y_punch"} if is_rigid(contacts, "punch") else set()
     hidden |= {"n", "body", "E2", "nu2", "Y2"} if is_rigid(contacts, "base") else set()
     hidden |= {"layer", "E1", "nu1", "Y1"} if (values("base") == "half_space").all() else set()
@@ -71,14 +81,27 @@ def given(case: xr.Dataset, left_out=()) -> list[str]:
     """The line "Given: ..." of one contact, and "Not used: ..." if it has inputs that change nothing; without its
     control and the names `left_out`."""
     used = used_inputs(case)
-    inputs = [name for name in used if name not in (*left_out, *CONTROLS)]
+    inputs = [name for name in used if name not in (*left_out, *CONTROLS) and not name.startswith("layers.")]
     unsaid = " (assumed)" * ("R" in case and "E_punch" not in case)
     rigid = [f"a rigid punch{unsaid}"] * is_rigid(case, "punch") + ["a rigid base"] * is_rigid(case, "base")
     unused = [name for name in _OPTIONAL if name in case and name not in (*used, *left_out)]
     unused = [name for name in unused if np.isfinite(case[name])]  # NaN: given for other cases
     texts = [*rigid, *(given_text(case, name) for name in inputs), *_pieces(case, used)]
-    lines = ["Given: " + ", ".join(texts)]
+    lines = ["Given: " + ", ".join(texts), *_stack(case, used)]
     return lines + [f"Not used: {', '.join(given_text(case, name) for name in unused)}"] * bool(unused)
+
+
+def _stack(case: xr.Dataset, used: list[str]) -> list[str]:
+    """A line of the geometry of a stack of layers, from the second one down to the base; [] of one layer."""
+    parts: dict[str, list[str]] = {}
+    for name in (name for name in used if name.startswith("layers.") and name in case and not case[name].dims):
+        number, _, field = name.removeprefix("layers.").partition(".")
+        text = given_text(case, name).replace(f"layers.{number}.", "").removeprefix("material ")
+        if text not in ("uniform", "nan") and not text.endswith("= nan"):
+            parts.setdefault(number, []).append(text)
+    below = "a rigid base" if is_rigid(case, "base") else "the body"
+    texts = [f"layer {number}: {', '.join(texts)}" for number, texts in parts.items()]
+    return [f"Stack, from the surface down: {'; '.join(texts)}; then {below}"] if texts else []
 
 
 def _pieces(case: xr.Dataset, used: list[str]) -> list[str]:
@@ -91,5 +114,6 @@ def _pieces(case: xr.Dataset, used: list[str]) -> list[str]:
     for material, bodies in of_material.items():
         one = all(case[body].attrs.get("comment") == SAME_PIECE for body in bodies)
         which = "one piece" if one else "independent pieces"
+        bodies = [body.removesuffix(".material").replace("layers.", "layer ") for body in bodies]
         texts += [f"{', '.join(bodies[:-1])} and {bodies[-1]} {which} of {material}"] * (len(bodies) > 1)
     return texts

@@ -18,6 +18,8 @@ _BASES = {
     "layer_alone": "a half-space of the layer's material",
     "thin_layer": "the thin-layer equation",
     "layered": "the exact layered half-space",
+    "stack": "the exact stack of layers",
+    "thin_stack": "the thin-layer equation of the stack of layers",
 }
 MODELS = {base: f"{words} under the asperities" for base, words in _BASES.items()}
 MODELS |= {f"smooth_{base}": f"{words}, without asperities" for base, words in _BASES.items()}
@@ -57,7 +59,7 @@ def sentences(case: xr.Dataset, judged: list[str], alone: bool) -> list[str]:
     model = MODELS.get(used)
     if model:
         error = float(case["model_error"])
-        exact = used in ("half_space", "layered")  # then `model_error` is that of the micro law
+        exact = used in ("half_space", "layered", "stack")  # then `model_error` is that of the micro law
         against = "the micro law itself errs" if exact else "against the exact layered contact it errs"
         errs = f"; {against} by about {100 * error:.2g} %" if error > 0 else ""
         found.append(f"Model: {model}{errs}.{WHOSE * (not used.startswith('smooth'))}")

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from solver import Problem, solve
+from solver.parameters import STACKED
 from solver.yields import spots
 from solver.yields.contact import of_contacts
 
@@ -31,6 +32,7 @@ _FAR = 0.01
 #: Nothing is said of contacts wider than this, in R.
 _WIDEST = 0.2
 _THROUGH = "The layer is thin against the pitch: single spots press on the body through it, which is left out."
+_STACK = "Not known: there are no stresses in stacks of layers yet."
 _FILM = "The layer is so thin (h < 0.002 a) that its stresses take long: study.extremes computes them"
 
 
@@ -65,6 +67,8 @@ def holds(case: xr.Dataset) -> list[str]:
     if not (hard or np.isfinite(list(known.values())).any()):
         return []
     problem = again.problem
+    if problem.base[0] in STACKED[1]:
+        return [_STACK]
     if problem.base[0] != "half_space" and problem.h[0] < _THINNEST * _radius(case, again):
         return [_FILM + "."]
     at_a = replace(problem, control="a", value=np.array([_radius(case, again)]))

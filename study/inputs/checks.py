@@ -27,11 +27,11 @@ def missing_everywhere(names: Collection[str], texts_of: Callable[[str], Iterabl
 
     names : of the parameters that the user gives
     texts_of : a function: name of a parameter such as base -> its values
-    errors : messages so far. One about an unknown name or section may be about the missing parameter: then there are
-        no messages
+    errors : messages so far. One about an unknown name or section, or about layers, may be about the missing
+        parameter: then there are no messages
     """
     messages = []
-    if any("is not a parameter" in error or "is not a section" in error for error in errors):
+    if any(text in error for error in errors for text in ("is not a parameter", "is not a section", "layers")):
         return []
     neither = not {*FITTED} & {*names}  # then both are fitted, and one message is about both
     for name in PARAMETERS:

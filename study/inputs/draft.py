@@ -19,6 +19,7 @@ from .grid import Grid, as_array, equal_values
 from .laws import fitted, law_names, wants_a_fit
 from .request import Input, Request
 from .sample import sampled, values_of_axis
+from .scene.layers import beyond, layers_in
 from .vocabulary import PARAMETERS, VOCABULARY
 
 MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x as one more
@@ -89,12 +90,16 @@ class Draft:
         arrays = {name: array for name, (dims, array) in values.items() if dims}
         self.errors += dimensions_that_differ(request, labels | arrays)
         _, laws = values.get("micro", ((), ""))  # "": micro has been refused
+        count = layers_in(request.sections)
         for name in [name for name in PARAMETERS if name not in request.sections]:
             parameter = VOCABULARY[name].parameter  # those of a law that no case has stay away
             selector, owners, *_ = parameter.needed_by
+            if beyond(name, count) or name.rpartition(".")[2] in ("cn", "ct", "profile"):
+                continue
             if parameter.default is not None and (selector != "micro" or np.isin(laws, owners).any()):
                 values[name] = (), np.array(parameter.default)
         names = {*request.sections, *["n"] * request.physical}  # n follows from moduli
+        names |= {name for name in PARAMETERS if beyond(name, count) or request.physical and name.endswith(".n")}
         self.errors += missing_everywhere(names, lambda name: values.get(name, ((), ()))[1], self.errors)
         if not self.errors:
             rows = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in request.rows]

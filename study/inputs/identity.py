@@ -16,6 +16,7 @@ import numpy as np
 
 from solver import NUMERICS_VERSION
 from solver.laws import identity as law_identity
+from solver.numerics.profiles import identity as profile_identity
 from solver.parameters import uses
 
 from .grid import Grid, along
@@ -100,6 +101,8 @@ def _digest_of_values(grid: Grid, name: str) -> tuple:
     if not dims and (array is None or array == VOCABULARY[name].parameter.default):  # quick: most parameters end here
         return ()
     values = along(grid, name)
+    if name.endswith(".profile"):  # of a table its numbers count
+        values = np.array([profile_identity(word) for word in values.ravel().tolist()]).reshape(values.shape)
     several = tuple(np.flatnonzero(np.array(values.shape) == 1))
     mask = np.broadcast_to(counts(grid, name).any(axis=several, keepdims=True), values.shape)
     return (values.shape, digest_of_array(mask), digest_of_array(values[mask])) if mask.any() else ()
@@ -144,7 +147,7 @@ def find(keys: np.ndarray, stored: np.ndarray, rank: np.ndarray) -> np.ndarray:
 def _hashed(name: str, array: np.ndarray) -> np.ndarray:
     """(2, *shape) uint64: two hashes of each value of a parameter, which depend on its name."""
     if array.dtype.kind == "U":
-        word = law_identity if name == "micro" else str
+        word = law_identity if name == "micro" else profile_identity if name.endswith(".profile") else str
         bits, left = np.zeros(array.shape, np.uint64), np.ones(array.shape, bool)
         while left.any():  # word by word: there are few words, and np.unique of a million takes seconds
             here = array == array.flat[left.argmax()]

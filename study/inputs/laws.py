@@ -13,6 +13,7 @@ from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import allowed
 
 from .grid import Grid, along
+from .scene.layers import declare
 from .vocabulary import BODIES, PARAMETERS, SCENE, VOCABULARY, Entry, names
 
 MOST_FITS = 1000
@@ -32,7 +33,7 @@ def update_vocabulary() -> None:
     """Make PARAMETERS and VOCABULARY fit the micro laws that are registered now."""
     built_in = names("control", "material", "roughness", "numerics")
     for name in set(PARAMETERS) - set(built_in):  # their laws may have been replaced
-        del VOCABULARY[name]
+        VOCABULARY.pop(name, None)
     PARAMETERS[:] = built_in
     for name, declared in [parameter for law in laws.LAWS.values() for parameter in law.parameters.items()]:
         if name not in PARAMETERS:
@@ -40,6 +41,7 @@ def update_vocabulary() -> None:
             words = declared.long_name or f"parameter of the micro law {owners}"
             VOCABULARY[name] = Entry(name, "roughness", words, declared.symbol or name, declared.powers)
             PARAMETERS.append(name)
+    declare()
 
 
 def law_names(values: list) -> list:

@@ -13,13 +13,18 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from solver.parameters import STACKED
+
 from ..terminal import on_one_line, shown
 from .definition import LARGE, MOST_VALUES, Definition, StudyError, refusal, settings
 from .draft import Draft
-from .grid import usual_block
+from .grid import along, usual_block
 from .identity import digest_of, law_versions
 from .laws import results_of
 from .request import MOST_MESSAGES, Request
+from .scene.layers import axes_in
 from .vocabulary import NUMERICS, absent, suggest
 
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
@@ -30,7 +35,7 @@ KEYS = {
     "axes": None,
 }
 """Section of a study file -> the keys that it may have; None: its keys are names of parameters."""
-SECTIONS = ("title", "kind", "model", "axes", "cases", "sample", "correlations", "numerics", "output")
+SECTIONS = ("title", "kind", "model", "axes", "cases", "layers", "sample", "correlations", "numerics", "output")
 LARGEST_FILE = 32_000_000  # bytes: a million values of an axis are 20 MB
 MOST_TABLES = 100_000  # tables such as [[cases]]: tomllib and the checks take some 50 µs for each
 MOST_PARTS = 50  # of a dotted key; tomllib needs memory by the square of their number, 2.4 GB for 20,000
@@ -83,7 +88,7 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
         from .scene.changes import inputs_of
         from .scene.reading import read as read_scene
 
-        scene = read_scene(request, draft, spreads is True, list(tables.get("axes", ())))
+        scene = read_scene(request, draft, spreads is True, axes_in(tables))
     else:
         for entry in request.inputs.values():
             if not entry.is_wrong:
@@ -93,6 +98,8 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
     grid = draft.finish()
     inputs = () if errors or scene is None or not scene.spreads else inputs_of(scene, grid)
     title, x, profiles, dtype, stresses = settings(tables, errors)
+    if stresses and not errors and np.isin(along(grid, "base"), STACKED[1]).any():
+        errors.append("[output] stresses = true: there are no stresses in stacks of layers yet")
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")

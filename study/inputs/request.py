@@ -10,6 +10,7 @@ from ..terminal import shown
 from .grid import LONGEST_AXIS, equal_values
 from .laws import is_parameter, law_names, update_vocabulary
 from .sample import LIMITS
+from .scene.layers import flattened, in_tables
 from .vocabulary import BODIES, NUMERICS, PARAMETERS, SCENE, no_parameter
 
 MOST_MESSAGES = 30  # that are shown for a study at a time
@@ -112,6 +113,8 @@ class Request:
             micro = [table.get("micro") for table in (parameters, *rows)]
             law_names([law for laws in micro for law in (laws if isinstance(laws, list) else [laws])])
         request._same_piece(same_piece, "")
+        parameters = flattened(parameters, request.errors, rows)
+        rows = [flattened(row, request.errors, [parameters] if "base" in parameters else ()) for row in rows]
         if rows:
             request._cases(rows)
         for name, value in parameters.items():
@@ -128,6 +131,7 @@ class Request:
     def in_file(cls, tables: dict, errors: list[str]) -> "Request":
         """The sections of a study file; [model], [axes] and [numerics] are tables."""
         request = cls(errors)
+        tables, stack = in_tables(tables, errors)
         pairs = tables.get("correlations", {})
         if isinstance(pairs, dict) and all(isinstance(row, dict) for row in pairs.values()):
             pairs = {(first, second): value for first, row in pairs.items() for second, value in row.items()}
@@ -140,6 +144,8 @@ class Request:
                 request._same_piece(value, "[model] ")
             else:
                 request._add(Input(name, "[model]", (), [value]))
+        for name, value in stack.items():
+            request._add(Input(name, "[[layers]]", (), [value]))
         if "cases" in tables:
             request._cases(tables["cases"])
         if "sample" in tables:
@@ -193,7 +199,7 @@ class Request:
             later = len(self.errors) >= MOST_MESSAGES  # and not shown
             self.errors.append(f"{name} is not a parameter" if later else no_parameter(name, names, place))
         else:
-            if section in ("[model]", "[numerics]") and isinstance(entry.values[0], (list, dict)):
+            if section in ("[model]", "[numerics]", "[[layers]]") and isinstance(entry.values[0], (list, dict)):
                 self.errors.append(f"{section} {name} has several values: these belong in [axes]")
                 entry.values = None
             self.sections[name], self.inputs[name] = section, entry
@@ -209,6 +215,6 @@ class Request:
             self.errors.append(f"same_piece: {NEEDS_NAMES}")
         if self.correlations and not self.physical:
             self.errors.append("correlations: no input has a spread here, since none has a unit")
-        order = {"[[cases]]": 0, "[sample]": 0, "[model]": 2}
+        order = {"[[cases]]": 0, "[sample]": 0, "[model]": 2, "[[layers]]": 2}
         self.inputs = dict(sorted(self.inputs.items(), key=lambda pair: order.get(pair[1].section, 1)))
         return self

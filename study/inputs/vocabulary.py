@@ -30,6 +30,7 @@ NOT_RUN = 127
 """Value of `status` for a case that was never computed (the solver's own statuses are 0, 1, 2, ...)."""
 
 SI = {(0, 0): "1", (0, 1): "m", (0, 2): "m^2", (0, -2): "1/m^2", (1, 0): "Pa", (1, 1): "N/m", (1, 2): "N"}
+SI[-1, 1] = "m/Pa"
 """SI units by their powers of E2* and R; all others are written as powers of Pa and m."""
 
 
@@ -105,6 +106,7 @@ VOCABULARY = entries(_TABLES)
 ROWS = ChainMap(VOCABULARY, SCENE)
 """Rows of SCENE and VOCABULARY, among them the parameters of registered laws."""
 #: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
+#: `inputs.scene.layers` adds those of a stack below the first.
 BODIES = {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")}
 
 

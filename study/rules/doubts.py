@@ -15,6 +15,8 @@ _REAL = dict.fromkeys(("E1", "E2", "E_punch"), (1.0, 2e12, "materials have 1 Pa 
 _REAL |= dict.fromkeys(("R", "Ra"), (1e-10, 1e3, "radii of bodies are 0.1 nm to 1 km"))
 _REAL |= {"h": (5e-11, 1e3, "layers are 0.05 nm to 1 km thick")}
 _RATIOS = tuple(ratio for _, ratio, _ in BODIES.values())
+#: Bodies of which the nominal pressure on them is known: not the layers below the first.
+_PRESSED = ("punch", "layer", "body")
 #: What may have a spread: inputs with a unit that cannot be zero, and Poisson ratios.
 _STRENGTHS = ("hardness", "yield_strength", "Y1", "Y2", "Y_punch")
 _LENGTHS = ("a", "D", "h", "Ra", "sigma", "R", "R1", "R2")
@@ -46,7 +48,7 @@ def metals_yield(v):
 
     What lies under a layer has the largest nominal pressure where the contact is wide against that, and less elsewhere.
     """
-    moduli = {body: v[modulus] for body, (modulus, _, _) in BODIES.items() if in_si(v, modulus)}
+    moduli = {body: v[BODIES[body][0]] for body in _PRESSED if in_si(v, BODIES[body][0])}
     moduli = {body: E.where((E >= STIFF) & np.isfinite(E)) for body, E in moduli.items()}
     least = min((np.fmin.reduce(E.values, axis=None, initial=np.inf) for E in moduli.values()), default=np.inf)
     if not ("p_peak" in v and (v["p_peak"] > YIELD * least).any()):
@@ -54,7 +56,7 @@ def metals_yield(v):
     bare = v["base"] == "half_space"
     under = v["p_peak"].where(bare, v["p_ring"].where(v["a"] > v["h"]) if "h" in v else np.nan)
     pressures = {"punch": v["p_peak"], "layer": v["p_peak"].where(~bare), "body": under}
-    shares = {body: (pressures[body] / moduli.get(body, xr.Variable((), np.nan))).fillna(0) for body in BODIES}
+    shares = {body: (pressures[body] / moduli.get(body, xr.Variable((), np.nan))).fillna(0) for body in _PRESSED}
     body = max(shares, key=lambda body: shares[body].max())
     beyond = sum(share > YIELD for share in shares.values()) > 0
     share = f"The pressure on the {body} comes to {float(shares[body].max()):.2g} of its Young's modulus"

@@ -102,7 +102,9 @@ def numbers(variables: Mapping) -> Mapping:
     arrays = {name: _along(dims, array) for name, array in variables.items() if set(array.dims) <= set(dims)}
     v = defaultdict(lambda: np.nan, {"m": 0.0} | arrays)
     models = zip(used["flag_values"], used["flag_meanings"].split(), strict=True)
-    v["thin"] = np.isin(v["model_used"], [value for value, word in models if word.endswith("thin_layer")])
+    v["thin"] = np.isin(
+        v["model_used"], [value for value, word in models if word.endswith(("thin_layer", "thin_stack"))]
+    )
     v |= {"layered": v["base"] != "half_space", "rough": have("rough", v["micro"]), "E1*": layer_modulus(v["n"])}
     return v | {"spots": spots(v) * _touching(v), "b": spot_radius(v)}
 

@@ -9,7 +9,7 @@ import xarray as xr
 from solver.yields.crossing import NUMBERS, Crossing
 from solver.yields.first import first_yield as crossing_of
 
-from ..again import Again, of_all_cases, strengths
+from ..again import Again, of_all_cases, refuse_stacks, strengths
 from ..fields import carried, friction, residual_stress, units_of
 from ..in_words import FarOutside
 from ..inputs.definition import StudyError
@@ -118,7 +118,9 @@ def contacts(who: str, parameters: dict, name: str, value: float) -> tuple[xr.Da
             contact = solve(**parameters, **{name: "1 um" if physical else value}, x=2, profiles=False)
         except StudyError as error:
             raise StudyError(message.replace("solve: ", f"{who}: ", 1) for message in error.messages) from None
-    return contact, Again.of(contact, who)
+    again = Again.of(contact, who)
+    refuse_stacks(again, who)
+    return contact, again
 
 
 def own_materials(parameters: dict) -> dict[str, Material]:

@@ -18,7 +18,7 @@ BAD = [
     (
         "[model]",
         "sigma = 1\n[model]",
-        '"sigma" is not a section; known: title, kind, model, axes, cases, sample, '
+        '"sigma" is not a section; known: title, kind, model, axes, cases, layers, sample, '
         "correlations, numerics, output; parameters stand below [model] or [axes]",
     ),
     ("P = [", "Nabr = [1]\nP = [", '[axes] "Nabr" is not a parameter; did you mean "Nbar"?'),
@@ -89,7 +89,7 @@ BAD = [
     (
         'title = "Prüfung"',
         "fit = {}",
-        '"fit" is not a section; known: title, kind, model, axes, cases, sample, correlations, numerics',
+        '"fit" is not a section; known: title, kind, model, axes, cases, layers, sample, correlations, numerics',
     ),
     ('title = "Prüfung"', "cases = 3", "cases must be [[cases]] tables (a list of dictionaries)"),
     ('title = "Prüfung"', "cases = []", "cases is empty: must have at least one case"),

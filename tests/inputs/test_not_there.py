@@ -35,7 +35,6 @@ NONE_HERE = {
     "temperature": ["T", "temperature", "temperature_C", "T_body"],
     "motion": ["v", "viscosity", "sliding_speed", "wear_rate", "mass"],
     "time": ["creep", "tau", "relaxation_time"],
-    "stacks": ["layers", "h2", "n_layers"],
     "other shapes": ["cone", "berkovich", "flat", "flat_radius", "half_angle", "punch_shape", "shape"],
     "stresses": ["mises", "von_mises", "stress", "residual_stress"],
 }

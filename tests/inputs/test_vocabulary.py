@@ -120,7 +120,7 @@ WORDS = words("""
 """)
 CHOICES = {
     "bonding": {"frictionless", "bonded"},
-    "base": {"half_space", "thin_layer", "layered", "auto"},
+    "base": {"half_space", "thin_layer", "layered", "auto", "stack", "thin_stack"},
     "micro": {"smooth", "disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights",
               "elastic_plastic"},
     "scheme": {"newton", "picard"},

@@ -23,9 +23,9 @@ OURS = {"roughcoat", "solver", "study", "studies"}
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
     "solver": (
-        *("threads", "status", "closed_forms", "numerics", "parameters", "punches", "laws", "kernels", "body"),
-        *("edges", "problem", "solution", "contact", "compiled", "scaling", "estimate", "schemes", "models", "solve"),
-        *("sensitivity", "fields", "yields"),
+        *("threads", "status", "closed_forms", "numerics", "parameters", "layers", "punches", "laws"),
+        *("kernels", "body", "edges", "problem", "solution", "contact", "compiled", "scaling", "estimate", "schemes"),
+        *("models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (
         *("terminal", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives", "fields", "in_words"),
@@ -241,7 +241,8 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
     known = inspect.signature(study.solve).parameters
     beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "progress", "chunks"}
     beside |= {"sensitivities", "correlations", "parameters"}
-    assert set(known) - beside == {*PARAMETERS, *SCENE, *BODIES}
+    of_stacks = {"layers", "rigid_base"}  # of these follow parameters for each layer
+    assert set(known) - beside == {*PARAMETERS, *SCENE, *BODIES} | of_stacks
     # getdoc: Python 3.13 takes the indentation of docstrings away
     lines = re.findall(r"^([\w, ]+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)
     assert sorted(name for line in lines for name in line.split(", ")) == sorted([*known, "StudyError"])

@@ -128,12 +128,15 @@ def test_study_files_are_valid(page):
 
 def test_the_table_of_real_systems_has_their_numbers_of_cases():
     rows = re.findall(r"^\| `(\w+)` \| [^|]* \| (\d+) \|$", TEXT["docs/studies.md"], flags=re.MULTILINE)
-    assert len(rows) == 6
+    assert len(rows) == 7
     for name, cases in rows:
         assert read(ROOT / f"studies/systems/{name}.toml").grid.size == int(cases)
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/accuracy.md", "docs/python.md", "docs/fit.md", "docs/afm.md"])
+RUN = ("README.md", *(f"docs/{name}.md" for name in ("accuracy", "python", "stacks", "fit", "afm")))
+
+
+@pytest.mark.parametrize("page", RUN)
 def test_python_prints_what_stands_there(page, tmp_path):
     pages.check_examples(page, tmp_path)
 

@@ -79,7 +79,7 @@ def _checked(name: Any) -> str | materials.Material:
     if isinstance(name, float) and name == np.inf:
         return "inf"
     if isinstance(name, tuple):
-        raise LookupError(f"{shown(name)} is a tuple: a list is an axis, a stack of layers is not yet there")
+        raise LookupError(f"{shown(name)} is a tuple: a list is an axis, and `layers`, a list of layers, a stack")
     if not isinstance(name, (str, materials.Material)):
         raise LookupError(f'{shown(name)} is no name of a material, such as "steel 52100"')
     return name

@@ -5,16 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from solver.sensitivity import is_ratio
-
 from ..grid import Grid
 from ..identity import acts
 from ..laws import slopes_of_fit
-from ..vocabulary import BODIES, CONTROLS, PARAMETERS, SCENE
+from ..vocabulary import CONTROLS, PARAMETERS, SCENE
+from .layers import moduli_of
+from .names import is_ratio
 from .scales import make_dimensionless
 from .scene import Scene
 
-RATIOS = tuple(ratio for _, ratio, _ in BODIES.values())
 SCALES = ("length", "modulus")
 """The radius and the modulus that are 1 for the solver; they stand beside the solver's inputs."""
 #: Inputs are moved by this part of themselves, Poisson ratios by this itself. What follows from them are closed forms,
@@ -30,15 +29,16 @@ def changes(scene: Scene, name: str, fitted: bool = False) -> dict[str, Any]:
     fitted : whether B and beta follow from Nbar and Ra
     """
     value, ends, step = scene.values[name], [], _STEP
-    if name in RATIOS:
+    if is_ratio(name):
         value = np.minimum(value, 0.5 - 2 * _STEP)
     elif name in ("R1", "R2"):  # R = 1/(1/R1 + 1/R2) of a close cup changes by a larger part
         step = _STEP * np.minimum(abs(value / scene.R), 1.0)
     for sign in (1, -1):
-        new = value + sign * step * (1.0 if name in RATIOS else value)
+        new = value + sign * step * (1.0 if is_ratio(name) else value)
         moved = replace(scene, values=scene.values | {name: new}, parameters=dict(scene.parameters))
         make_dimensionless(moved)
-        numbers = {key: moved.parameters[key] for key in ("n", "m") if key in moved.parameters}
+        follow = "n", "m", *(ratio for _, _, ratio in moduli_of(moved.values))
+        numbers = {key: moved.parameters[key] for key in follow if key in moved.parameters}
         numbers |= {key: moved.parameters[key] for key in moved.values if key not in SCENE}
         ends.append(numbers | dict(zip(SCALES, (moved.R, moved.unit), strict=True)))
     slopes = {key: _slope(key, up, ends[1][key], step) for key, up in ends[0].items()}
@@ -64,7 +64,7 @@ def changes_by_spread(scene: Scene, fitted: bool) -> dict[str, dict[str, Any]]:
     table = {}
     for name, spread in scene.spreads.items():
         value = scene.values[name]
-        relative = spread if name in RATIOS else spread / (value + (value == 0))  # what is 0 has no spread
+        relative = spread if is_ratio(name) else spread / (value + (value == 0))  # what is 0 has no spread
         table[name] = {key: relative * slope for key, slope in changes(scene, name, fitted).items() if np.any(slope)}
     return table
 

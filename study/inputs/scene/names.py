@@ -3,6 +3,8 @@
 import math
 from typing import Any
 
+from solver.parameters import is_ratio as of_solver
+
 from ...specimen.quantities import Quantity, quantity
 from ..vocabulary import ROWS
 
@@ -10,6 +12,11 @@ from ..vocabulary import ROWS
 RIGID_TEXTS, _FLAT_TEXTS = ("rigid", "inf", "infinite"), ("flat", "inf", "infinite")
 #: Input that may be infinite -> the texts that say so.
 INFINITE = {"E2": RIGID_TEXTS, "E_punch": RIGID_TEXTS, "R1": _FLAT_TEXTS, "R2": _FLAT_TEXTS}
+
+
+def is_ratio(name: str) -> bool:
+    """Whether an input is a Poisson ratio: derivatives are by it, not by its logarithm."""
+    return name == "nu_punch" or of_solver(name)
 
 
 def dim_of(name: str) -> str:

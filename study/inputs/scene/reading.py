@@ -19,7 +19,7 @@ from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY
 from .bodies import assumed, with_materials
 from .bounds import beyond_bounds
 from .checks import impossible, missing, moving_tables, same_cases
-from .names import dim_of, si
+from .names import dim_of, is_ratio, si
 from .pieces import correlate, none_alike
 from .scales import make_dimensionless
 from .scene import Scene
@@ -74,7 +74,7 @@ def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scen
 def _read(scene: Scene, draft: Draft, entry: Input) -> None:
     """Put the numbers of an input into the scene."""
     name, before = entry.name, len(draft.errors)
-    if name in SCENE or name in _LIMITS or VOCABULARY[name].powers != (0, 0) or entry.has_unit:
+    if name in SCENE or name in _LIMITS or is_ratio(name) or VOCABULARY[name].powers != (0, 0) or entry.has_unit:
         try:
             _add(scene, entry)
         except ValueError as error:
@@ -111,15 +111,19 @@ def _filled(request: Request, scene: Scene) -> dict[str, Input]:
         present = np.array([value is not None for value in entry.values])
         if name == "base":
             inputs[name] = replace(entry, values=bases)
-        elif (present | (name in _OF_LAYER and np.array([value == "half_space" for value in bases]))).all():
+        elif (present | (_is_of_layer(name) and np.array([value == "half_space" for value in bases]))).all():
             first = entry.values[int(np.argmax(present))]
             inputs[name] = replace(entry, values=[first if value is None else value for value in entry.values])
             if not present.all():
-                scene.cases_of |= dict.fromkeys(_OF_LAYER[name], xr.DataArray(present, dims="case"))
+                scene.cases_of |= dict.fromkeys(_OF_LAYER.get(name, ()), xr.DataArray(present, dims="case"))
         else:
             request.errors.append(f"{name} must be given in every case, or once for all")
             inputs[name] = replace(entry, values=None)
     return inputs
+
+
+def _is_of_layer(name: str) -> bool:
+    return name in _OF_LAYER or name == "sublayers" or name.startswith("layers.")
 
 
 def _add(scene: Scene, entry: Input) -> None:
@@ -139,7 +143,7 @@ def _add(scene: Scene, entry: Input) -> None:
         twins = equal_values(name, value.values.tolist(), lambda number: f"{number:g} {unit}".removesuffix(" 1"))
         if twins:
             raise ValueError(twins[0])
-    low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, "must be a number"))
+    low, high, limits = _limits_of(name)
     if name in ("R1", "R2"):
         _refuse(entry, value, value == 0, "must not be 0")
     _refuse(entry, value, ~np.asarray((value > low) & (value <= high)), limits)
@@ -149,6 +153,12 @@ def _add(scene: Scene, entry: Input) -> None:
         _refuse(entry, value, at_limit, f"with its spread it {limits}; at the limit itself give no spread")
         scene.spreads[name] = spread
     scene.values[name] = value
+
+
+def _limits_of(name: str) -> tuple[float, float, str]:
+    """Bounds of an input: it must be above, at most, and words for a message."""
+    of_layer = _POISSON if is_ratio(name) else _POSITIVE if name in SCENE else (-np.inf, np.inf, "must be a number")
+    return _LIMITS.get(name, of_layer if name.startswith("layers.") else (-np.inf, np.inf, "must be a number"))
 
 
 def _refuse(entry: Input, value: Any, where: Any, reason: str) -> None:

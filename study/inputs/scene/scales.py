@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from ..vocabulary import SCENE, VOCABULARY
+from .layers import moduli_of
 from .scene import Scene
 
 #: Default of the Poisson ratio of a punch, that of the other bodies.
@@ -24,6 +25,8 @@ def make_dimensionless(scene: Scene) -> None:
     scene.R, scene.unit, layer, body = values["R"], *moduli(values, scene.parameters)
     if "E1" in values:
         scene.parameters["n"] = layer / body
+    for modulus, nu, ratio in moduli_of(values):
+        scene.parameters[ratio] = _reduced(values, modulus, nu) / scene.unit
     if "E_punch" in values:
         values.setdefault("nu_punch", _POISSON)  # results say which it was
         base = scene.parameters.get("base", "layered")

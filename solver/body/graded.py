@@ -1,0 +1,83 @@
+"""Graded layers as many uniform ones."""
+
+import numpy as np
+
+from ..numerics.profiles import TABLES
+
+#: The sublayers are thinner and thinner over this many octaves of the depth: in a graded layer at the surface, which
+#: waves of all lengths feel, and in a deeper one.
+_OCTAVES, _DEEPER = 8, 4
+#: A linear profile is not uneven where ln n changes by less than this; bisections that find a depth to rounding.
+_EVEN, _HALVINGS = 0.1, 60
+#: Sublayers where nothing says how many.
+_USUAL = 16
+
+
+def refined(layers, sublayers):
+    """The `layers` of :func:`.stacked.layers_of` with each that is graded in some case cut into uniform ones, of the
+    modulus in their middle. sublayers : (B,), one number for all cases.
+
+    They are the thinner the nearer they are to the top of the layer, as many in each octave of the depth: short waves
+    then find the gradient as well resolved as long ones.
+    """
+    graded = (layers["profile"] != "uniform").any(axis=0)
+    if not graded.any():
+        return layers
+    pieces = [
+        _cut(layers, j, int(sublayers[0]) or _USUAL) if graded[j] else _as_it_is(layers, j) for j in range(len(graded))
+    ]
+    return {name: np.concatenate([piece[name] for piece in pieces], axis=1) for name in pieces[0]}
+
+
+def _as_it_is(layers, j):
+    return {name: layers[name][:, j : j + 1] for name in ("h", "n", "nu", "bonding", "cn", "ct")}
+
+
+def _cut(layers, j, count):
+    """Layer j as uniform ones."""
+    part, profile = _as_it_is(layers, j), layers["profile"][:, j : j + 1]
+    bottoms = {name: layers[f"{name}_bottom"][:, j : j + 1] for name in ("n", "nu")}
+    bottoms = {name: np.where(np.isnan(v) | (profile == "uniform"), part[name], v) for name, v in bottoms.items()}
+    ends = _depths(profile, part["n"], bottoms["n"], cuts(count, _DEEPER if j else _OCTAVES))
+    middle, last = (ends[:, 1:] + ends[:, :-1]) / 2, np.arange(ends.shape[1] - 1) == ends.shape[1] - 2
+    n = _moduli(profile, part["n"], bottoms["n"], middle)
+    sublayers = {"h": part["h"] * np.diff(ends, axis=1), "n": n, "nu": _linear(part, bottoms, "nu", middle)}
+    springs = {name: np.where(last, part[name], 0.0) for name in ("cn", "ct")}
+    return sublayers | springs | {"bonding": np.where(last, part["bonding"], "bonded")}
+
+
+def _moduli(profile, top, bottom, z):
+    """E*/E2* (B, N) at depths z over the thickness. A table is taken over its first modulus."""
+    n = np.where(profile == "exponential", top * (bottom / top) ** z, top + (bottom - top) * z)
+    for word in set(profile.ravel().tolist()) & set(TABLES):
+        rows, table = profile[:, 0] == word, TABLES[word]
+        n[rows] = top[rows] * np.interp(z[rows], table.z, table.n) / table.n[0]
+    return n
+
+
+def _linear(part, bottoms, name, z):
+    return part[name] + (bottoms[name] - part[name]) * z
+
+
+def _depths(profile, top, bottom, ends):
+    """The ends (B, N + 1) over the thickness. Of a linear profile they divide the mean of the depth and of the change
+    of ln n evenly: so n changes by a small part of itself in a sublayer, where it is small too."""
+    ratio = np.log(bottom / top)
+    uneven = np.flatnonzero((profile[:, 0] == "linear") & (np.abs(ratio[:, 0]) > _EVEN))
+    depths = np.repeat(ends[None], len(top), axis=0)
+    if len(uneven):
+        ratio = ratio[uneven]
+        low, high = np.zeros((2, len(uneven), len(ends)))
+        high += 1.0
+        for _ in range(_HALVINGS):
+            z = (low + high) / 2
+            below = (z + np.log1p(np.expm1(ratio) * z) / ratio) / 2 < ends
+            low, high = np.where(below, z, low), np.where(below, high, z)
+        depths[uneven] = np.where((ends == 0) | (ends == 1), ends, (low + high) / 2)
+    return depths
+
+
+def cuts(count, octaves):
+    """The ends (N + 1,) of sublayers over the thickness: `count` in each octave, and as many in what is left above."""
+    first = 2.0**-octaves
+    return np.append(np.linspace(0.0, first, count + 1)[:-1], np.geomspace(first, 1.0, octaves * count + 1))

@@ -1,0 +1,46 @@
+"""A stack of layers of a problem, exact and as a thin layer: its kernel, and its body."""
+
+import numpy as np
+
+from ..kernels.random_stacks import SAMPLER
+from ..kernels.stack import Stack
+from ..kernels.two_layers import layer_modulus
+from ..layers import full_name, numbers_of
+from .graded import refined
+from .half_space import thin_layer
+from .hankel import Hankel
+
+#: Stacks of more layers have waves of many lengths, and are evaluated at all nodes.
+_FEW = 8
+
+
+def layers_of(problem):
+    """What the layers of cases have: key of :data:`~..layers.LAYER` -> (B, N), the first layer first. On a rigid base,
+    n = 0, moduli are in E1*."""
+    numbers = range(1, max(1, numbers_of(problem.parameters)) + 1)
+    names = ("h", "n", "nu", "bonding", "cn", "ct", "profile", "n_bottom", "nu_bottom")
+    layers = {name: np.stack([getattr(problem, full_name(i, name)) for i in numbers], axis=1) for name in names}
+    return layers | {"n": np.hstack([layer_modulus(layers["n"][:, :1]), layers["n"][:, 1:]])}
+
+
+def kernel_of(problem):
+    """The :class:`~..kernels.stack.Stack` of cases, and the thickness (B,) of its first layer in R. A graded layer is
+    as many uniform ones as `sublayers` says."""
+    layers = refined(layers_of(problem), problem.sublayers)
+    h, unit = layers["h"], layers["n"][:, :1] / layers["h"][:, :1]
+    slips = layers["bonding"] == "frictionless"
+    arrays = layers["n"], layers["nu"], h / h[:, :1], slips, layers["cn"] * unit, layers["ct"] * unit
+    sampler = SAMPLER if h.shape[1] <= _FEW else None
+    return Stack(*arrays, problem.nu2, problem.n == 0, sampler), h[:, 0]
+
+
+def stack(problem):
+    """The exact body. m = E1*/E3* is of the modulus at the surface itself, of a graded layer too."""
+    kernel, h = kernel_of(problem)
+    return Hankel(kernel, h, problem.m * (kernel.E1 / layer_modulus(problem.n)))
+
+
+def thin_stack(problem):
+    """A half-space that carries springs: the kernel is L(0) + u dL/du, with the slope at u = 0."""
+    kernel, h = kernel_of(problem)
+    return thin_layer(h, kernel, problem.m * (kernel.E1 / layer_modulus(problem.n)))

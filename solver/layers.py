@@ -1,0 +1,230 @@
+"""The layers of a stack: their names in the table of parameters, and a list of layers as such parameters.
+
+The first layer, at the surface, is the one of a case with one layer: h, n, nu1 and bonding are its numbers, and n = 0
+is a rigid base here too. What it has besides, and all of the others, is called layers.2.h, counted from 1.
+"""
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from .numerics import profiles
+from .parameters import BONDINGS, PARAMETERS, STACKED, Parameter
+
+__all__ = ["LAYER", "MOST", "expanded", "full_name", "numbers_of", "register"]
+
+#: Most layers of a stack.
+MOST = 16
+#: Into how many uniform layers each graded one is cut, at the surface in each octave of the depth; 0 : into more and
+#: more, until the answers do not change.
+_SUBLAYERS = Parameter(0, whole=True, interval="[1, 512]", also=(0,), needed_by=STACKED)
+#: What a layer has -> its row in the table of parameters. cn, ct : compliance of the interface below it, across and
+#: along it, length over pressure; 0 is a perfect bond, and without friction ct has no effect.
+LAYER = {
+    "h": Parameter(interval="[1e-12, 1e6]", powers=(0, 1)),
+    "n": Parameter(interval="[1e-9, 1e9]"),
+    "nu": Parameter(0.3, interval="(-1, 0.5]"),
+    "bonding": Parameter("frictionless", BONDINGS),
+    "cn": Parameter(0.0, interval="[0, 1e15]", powers=(-1, 1)),
+    "ct": Parameter(0.0, interval="[0, 1e15]", powers=(-1, 1)),
+    "profile": Parameter("uniform", profiles.WORDS),
+    "n_bottom": Parameter(interval="[1e-9, 1e9]", instead=""),
+    "nu_bottom": Parameter(interval="(-1, 0.5]", instead=""),
+}
+#: Names of the first layer that are those of a case with one layer.
+FIRST = {"h": "h", "n": "n", "nu": "nu1", "bonding": "bonding"}
+_NAME = re.compile(rf"layers\.([1-9]\d?)\.({'|'.join(LAYER)})")
+
+
+def full_name(number: int, field: str) -> str:
+    """The name of a parameter of a layer.
+
+    Parameters
+    ----------
+    number : of the layer, 1 at the surface
+    field : a key of `LAYER`
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> full_name(1, "nu"), full_name(2, "nu")
+    ('nu1', 'layers.2.nu')
+    """
+    return FIRST[field] if number == 1 and field in FIRST else f"layers.{number}.{field}"
+
+
+def numbers_of(names) -> int:
+    """The number of layers of a stack, of the `names` of its parameters; 0 if there is no name of a layer."""
+    names = [name for name in names if name.startswith("layers.") or name == "sublayers"]
+    matches = (_NAME.fullmatch(name) for name in names)
+    return max((int(match[1]) for match in matches if match), default=int(bool(names)))
+
+
+def register(count: int) -> None:
+    """Put the parameters of stacks of `count` layers into the table of parameters, if they are not there."""
+    for number in range(1, count + 1):
+        for field, row in LAYER.items():
+            name = full_name(number, field)
+            if name not in PARAMETERS:
+                used = row.used_by
+                if field in ("n_bottom", "nu_bottom"):
+                    used = full_name(number, "profile"), profiles.GRADED
+                PARAMETERS[name] = row._replace(needed_by=STACKED, used_by=used)
+        name, choices = full_name(number, "profile"), (*profiles.WORDS, *profiles.TABLES)
+        PARAMETERS[name] = PARAMETERS[name]._replace(choices=choices)
+    if count:
+        PARAMETERS["sublayers"] = _SUBLAYERS
+
+
+def table(count: int) -> dict[str, Parameter]:
+    """The table of parameters of stacks of `count` layers; 0 : without those of stacks."""
+    if "sublayers" not in PARAMETERS:
+        return PARAMETERS
+    others = {name: row for name, row in PARAMETERS.items() if not name.startswith("layers.") and name != "sublayers"}
+    if not count:
+        return others
+    names = [full_name(number, field) for number in range(1, count + 1) for field in LAYER]
+    return others | {name: PARAMETERS[name] for name in (*names, "sublayers")}
+
+
+def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
+    """Parameters of a problem with a list `layers` in one name for each number.
+
+    Parameters
+    ----------
+    parameters : of :meth:`solver.problem.Problem.of`. `layers` is a list of mappings, the layer at the surface first:
+        h, n = E_j*/E2*, nu = 0.3, `bonding` of the interface below, "frictionless", "bonded" or {"cn": ..., "ct": ...}.
+        Of a graded layer n is a pair, top and bottom, nu may be one, and `profile` is "exponential" or "linear"; or,
+        without n, "table:FILE.csv", a :class:`~solver.numerics.profiles.Table`. With `rigid_base` n is E_j*/E1*. A
+        parameter like "layers.2.h" takes the place of what the list says
+
+    Returns
+    -------
+    dict : the parameters without `layers` and `rigid_base`. `base` becomes "stack" where it is left out or "auto", and
+        "thin_stack" where it is "thin_layer"
+
+    Raises
+    ------
+    ValueError : too many layers, a key that no layer has, a number that is given in two ways, another base
+
+    Examples
+    --------
+    >>> layers = [{"h": 0.01, "n": 2.0, "bonding": "bonded"}, {"h": 0.03, "n": 0.5, "bonding": "bonded"}]
+    >>> expanded({"P": 1e-4, "layers": layers})["layers.2.n"]
+    0.5
+    """
+    named = {name: value for name, value in parameters.items() if name.startswith("layers.")}
+    parameters = {"sublayers": 0} | parameters if named or "layers" in parameters else parameters
+    if "layers" not in parameters and "rigid_base" not in parameters and not named:
+        return parameters
+    others = {name: v for name, v in parameters.items() if name not in ("layers", "rigid_base") and name not in named}
+    beside = [name for name in FIRST.values() if name in others]
+    if beside and "layers" in parameters:
+        raise ValueError(f"{beside[0]} is given beside layers: each of the layers has its own")
+    stack = _of_list(parameters.get("layers", [])) | {_short(name): value for name, value in named.items()}
+    read_tables(stack)
+    count = numbers_of(f"layers.{name}" if name[0].isdigit() else name for name in named) or 1
+    count = max(count, len(parameters.get("layers", [])))
+    if count > MOST:
+        raise ValueError(f"layers: {count} layers: at most {MOST}")
+    register(count)
+    return _with_base(others) | _on_base(stack, parameters.get("rigid_base", False))
+
+
+def read_tables(stack: dict[str, Any]) -> None:
+    """Read the tables of profiles that are named among the parameters and not known yet; ValueError."""
+    for name, value in stack.items():
+        for word in set(np.ravel(value).tolist()) if name.endswith(".profile") else ():
+            if isinstance(word, str) and word.startswith(profiles.PREFIX) and word not in profiles.TABLES:
+                profiles.read(word)
+
+
+def _short(name):
+    """ "layers.1.h" as "h", all others as they are. ValueError for a name that no layer has."""
+    match = _NAME.fullmatch(name)
+    if not match:
+        raise ValueError(
+            f"{name}: a number of a layer is layers.NUMBER.KEY, NUMBER from 1, KEY one of {', '.join(LAYER)}"
+        )
+    return full_name(int(match[1]), match[2])
+
+
+def _of_list(layers):
+    if isinstance(layers, (str, Mapping)) or not hasattr(layers, "__len__"):
+        raise ValueError(f"layers = {layers!r:.60}: must be a list of layers, each like {{'h': 0.01, 'n': 2.0}}")
+    if len(layers) > MOST:
+        raise ValueError(f"layers: {len(layers)} layers: at most {MOST}")
+    stack = {}
+    for number, layer in enumerate(layers, 1):
+        if not isinstance(layer, Mapping):
+            raise ValueError(f"layers[{number}] = {layer!r:.60}: must be like {{'h': 0.01, 'n': 2.0}}")
+        stack |= {full_name(number, field): value for field, value in fields_of(layer, number).items()}
+    return stack
+
+
+def fields_of(layer: Mapping, number: int) -> dict[str, Any]:
+    """A layer of a list with its springs, and top and bottom of a graded one, as keys of their own.
+
+    Parameters
+    ----------
+    layer : as in :func:`expanded`
+    number : of the layer, for messages
+
+    Returns
+    -------
+    dict : key of `LAYER`, or another one of `layer` that has no meaning here -> value
+
+    Raises
+    ------
+    ValueError : a key of springs, or a pair, that is not right
+    """
+    fields = dict(layer)
+    where = f"layers.{number}"
+    if isinstance(fields.get("bonding"), Mapping):
+        springs = fields.pop("bonding")
+        wrong = sorted({*springs} - {"cn", "ct"})
+        if wrong or not springs:
+            raise ValueError(
+                f"{where}.bonding = {dict(springs)!r:.60}: springs have cn and ct, a length over a pressure"
+            )
+        fields |= {"bonding": "bonded", **springs}
+    profile = fields.get("profile", "uniform")
+    if isinstance(profile, str) and profile.startswith(profiles.PREFIX):
+        own = [field for field in ("n", "E1", "material") if field in fields]
+        if own:
+            raise ValueError(f"{where}.{own[0]} is given beside a table of E*/E2*: the table says it")
+        return fields | {"n": float(profiles.read(profile).n[0])}
+    graded = profile != "uniform"
+    for field in ("n", "nu", "E1") if graded else ():
+        pair = fields.get(field)
+        if isinstance(pair, (list, tuple)):
+            if len(pair) != 2:
+                raise ValueError(f"{where}.{field} = {pair!r:.60}: of a graded layer must be [top, bottom]")
+            fields[field], fields[f"{field}_bottom"] = pair
+    return fields
+
+
+def _with_base(others):
+    words = {"auto": "stack", "thin_layer": "thin_stack"}
+    base = others.get("base", "stack")
+    if isinstance(base, str):
+        others = others | {"base": words.get(base, base)}
+        if base == "layered":
+            raise ValueError('base = "layered" has one layer: layers are for base = "stack"')
+    return others
+
+
+def _on_base(stack, rigid):
+    """The parameters with n = 0 where the base is rigid, which must be one for all cases."""
+    if isinstance(rigid, str) or np.ndim(rigid) or rigid not in (False, True):
+        raise ValueError(f"rigid_base = {rigid!r:.60}: must be true or false, for all cases alike")
+    if not rigid:
+        return stack
+    if "n" in stack and not np.all(np.asarray(stack["n"]) == 1):
+        raise ValueError(f"layers.1.n = {stack['n']}: on a rigid base n is E_j*/E1*, so that of the first layer is 1")
+    return stack | {"n": 0.0}

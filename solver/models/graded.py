@@ -1,0 +1,89 @@
+"""Graded layers: the answers are those of more and more uniform sublayers, extrapolated.
+
+With m sublayers in each octave of the depth the answers are off by a series of even powers of 1/m. So two or three of
+them, each of twice as many sublayers, are extrapolated (Romberg's scheme); the last change is the error.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..layers import full_name, numbers_of
+from ..parameters import STACKED
+from ..solution import JUDGED, Solution
+from ..status import Status
+from .named import solve_named
+
+#: Numbers of sublayers in each octave, one after the other.
+_COUNTS = (2, 4, 8, 16, 32)
+#: Powers of 1/m that are taken out: 1/m² and 1/m⁴.
+_ORDERS = 2
+#: Numbers that are extrapolated; the rest are those of the last sublayers.
+_NUMBERS = (*JUDGED, "A0", "dP_dD", "p", "lam")
+#: Statuses of cases that have numbers.
+_SOLVED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
+
+
+def is_graded(problem):
+    """(B,) bool: the cases with a graded layer, of which the number of sublayers is not given."""
+    if not numbers_of(problem.parameters):
+        return np.zeros(len(problem), dtype=bool)
+    numbers = range(1, numbers_of(problem.parameters) + 1)
+    graded = np.any([getattr(problem, full_name(i, "profile")) != "uniform" for i in numbers], axis=0)
+    return graded & (problem.base == STACKED[1][0]) & (problem.sublayers == 0)
+
+
+def solve_graded(problem, x):
+    """:class:`Solution` of cases of the base "stack" with graded layers, in the units of the problem. Their `error` is
+    that of the last solution and the last change of the extrapolated numbers. x : (m,) radii."""
+    size, left = (len(problem), len(x)), np.arange(len(problem))
+    whole, rows = Solution.of(*size, status=Status.TOLERANCE_NOT_MET), []
+    for count in _COUNTS:
+        part = problem.take(left)
+        solved = solve_named(part.but(sublayers=count), x)
+        rows.append(solved)
+        extrapolated = _extrapolated(rows, part.rtol)
+        whole = Solution.join(*size, [(np.arange(size[0]), whole), (left, extrapolated)])
+        has_numbers = np.isin(solved.status, _SOLVED)
+        ended = ~has_numbers | (extrapolated.error <= part.rtol)
+        left = left[~ended]
+        rows = [row.take(np.flatnonzero(~ended)) for row in rows]
+        if not len(left):
+            break
+    return whole
+
+
+def _extrapolated(rows, rtol):
+    """The last of the solutions `rows`, extrapolated; its error is inf where there is one only."""
+    last, change, of_profile = rows[-1], np.zeros(len(rtol)), np.zeros(len(rtol))
+    numbers = {}
+    for name in _NUMBERS:
+        values, before = _limits([getattr(row, name) for row in rows])
+        numbers[name] = np.clip(values, 0.0, 1.0) if name in ("lam", "Ar_An") else values
+        if name in JUDGED:
+            change = np.maximum(change, np.abs(values / before - 1))
+        elif name == "p":
+            largest = np.maximum(np.abs(values).max(axis=1, initial=0.0), last.p0)
+            of_profile = np.abs(values - before).max(axis=1, initial=0.0) / largest
+    error = last.error + (change if len(rows) > 1 else np.inf)
+    solved = np.isin(last.status, _SOLVED)
+    status = np.where(solved & ~(error <= rtol), Status.TOLERANCE_NOT_MET, last.status).astype(np.int8)
+    numbers = {name: np.where(_wide(solved, v), v, getattr(last, name)) for name, v in numbers.items()}
+    profile_error = np.maximum(last.profile_error + of_profile, error)
+    return replace(last, **numbers, error=error, profile_error=profile_error, status=status)
+
+
+def _limits(values):
+    """The extrapolated number of a sequence, and that without its last member."""
+    columns = [values]
+    for order in range(1, min(_ORDERS, len(values) - 1) + 1):
+        before = columns[-1]
+        columns.append([b + (b - a) / (4.0**order - 1) for a, b in zip(before, before[1:], strict=False)])
+    best = columns[-1][-1]
+    if len(values) == 1:
+        return best, best
+    return best, columns[-1][-2] if len(columns[-1]) > 1 else columns[-2][-2]
+
+
+def _wide(mask, values):
+    return mask.reshape(-1, *[1] * (values.ndim - 1))

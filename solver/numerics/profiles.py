@@ -1,0 +1,68 @@
+"""Profiles of graded layers: how the modulus goes from the top of a layer to its bottom, by a word or by a table."""
+
+import csv
+import hashlib
+from typing import NamedTuple
+
+import numpy as np
+
+__all__ = ["GRADED", "PREFIX", "TABLES", "WORDS", "Table", "identity", "read"]
+
+#: "uniform" is not graded.
+WORDS = ("uniform", "exponential", "linear")
+GRADED = WORDS[1:]
+#: "table:" and the path of a CSV file is a profile too.
+PREFIX = "table:"
+#: Most rows of a table, and its least and largest modulus.
+_ROWS, _LEAST, _MOST = 10_000, 1e-9, 1e9
+
+
+class Table(NamedTuple):
+    """A profile with straight lines between its rows: z from 0 to 1, over the thickness, and n = E*/E2* (N,)."""
+
+    z: np.ndarray
+    n: np.ndarray
+
+
+#: Word -> :class:`Table` of those that have been read.
+TABLES: dict[str, Table] = {}
+
+
+def read(word):
+    """The :class:`Table` of a word "table:FILE", which is known from then on.
+
+    The file has two columns, z/h from 0 to 1 and E*/E2* > 0; lines that begin with "#" and a line of words are left
+    out. ValueError for a file that cannot be used.
+    """
+    path = word.removeprefix(PREFIX)
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            lines = [line for line in csv.reader(file) if line and not line[0].lstrip().startswith("#")]
+        lines = lines[1:] if lines and not _is_number(lines[0][0]) else lines
+        rows = np.array([[float(cell) for cell in line] for line in lines[: _ROWS + 1]])
+    except (OSError, ValueError) as error:
+        raise ValueError(f"profile {word}: cannot be read: {error}") from None
+    if rows.ndim != 2 or rows.shape[1] != 2 or not 2 <= len(rows) <= _ROWS:
+        raise ValueError(f"profile {word}: must have two columns, z/h and E*/E2*, and 2 to {_ROWS} rows")
+    z, n = rows.T
+    if z[0] != 0 or z[-1] != 1 or not np.all(np.diff(z) > 0):
+        raise ValueError(f"profile {word}: z/h must grow from 0 to 1, not from {z[0]:g} to {z[-1]:g}")
+    if not np.all((n >= _LEAST) & (n <= _MOST)):
+        raise ValueError(f"profile {word}: E*/E2* must be in [{_LEAST:g}, {_MOST:g}]")
+    TABLES[word] = Table(z, n)
+    return TABLES[word]
+
+
+def _is_number(text):
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def identity(word):
+    """Text that tells a profile from all others: the word, and of a table its numbers."""
+    if word not in TABLES:
+        return word
+    return f"{PREFIX} {hashlib.sha256(np.concatenate(TABLES[word]).astype('<f8').tobytes()).hexdigest()}"

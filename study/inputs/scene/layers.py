@@ -1,0 +1,231 @@
+"""Stacks of layers in calls and study files: a list of layers as one name for each number, and rows of these names.
+
+The first layer, at the surface, has the names of a case with one layer, h, n or E1, nu1, bonding, layer; the others
+have names like layers.2.h (:mod:`solver.layers`).
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+from solver import layers
+from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
+
+from ...terminal import shown
+from ..vocabulary import BODIES, PARAMETERS, SCENE, VOCABULARY, Entry, suggest
+
+#: What the first layer has under the name of a case with one layer.
+_FIRST = {"h": "h", "n": "n", "nu": "nu1", "bonding": "bonding", "E1": "E1", "material": "layer"}
+#: What a layer may have in a list, and its words.
+_WORDS = {
+    "h": "thickness of layer {}",
+    "n": "ratio of the reduced moduli of layer {} and half-space",
+    "nu": "Poisson ratio of layer {}",
+    "bonding": "interface below layer {}",
+    "cn": "normal compliance of the interface below layer {}",
+    "ct": "tangential compliance of the interface below layer {}",
+    "profile": "how the modulus of layer {} goes from its top to its bottom",
+    "n_bottom": "ratio of the reduced moduli of the bottom of layer {} and half-space",
+    "nu_bottom": "Poisson ratio of the bottom of layer {}",
+    "E1": "Young's modulus of layer {}",
+    "E1_bottom": "Young's modulus of the bottom of layer {}",
+    "material": "material of layer {}",
+}
+_SYMBOLS = {"h": "h", "n": "n", "nu": "ν", "cn": "cn", "ct": "ct", "n_bottom": "n", "nu_bottom": "ν"}
+#: Parameters that a stack has in place of those of one layer.
+_ONE_LAYER = ("h", "n", "nu1", "bonding", "E1", "layer")
+#: A base -> what it is called when there are layers.
+_BASES = {"auto": "stack", "thin_layer": "thin_stack"}
+RIGID = "rigid_base"
+
+
+def name_of(number: int, field: str) -> str:
+    """The name of a parameter of a layer, `number` from 1 at the surface."""
+    return _FIRST[field] if number == 1 and field in _FIRST else f"layers.{number}.{field}"
+
+
+def declare() -> None:
+    """Rows of the vocabulary for the layers that the solver knows of now."""
+    count = layers.numbers_of(SOLVER_PARAMETERS)
+    for number in range(1, count + 1):
+        for field, words in _WORDS.items():
+            name = name_of(number, field)
+            symbol = f"{_SYMBOLS[field]}{number}" if field in _SYMBOLS else ""
+            if name in SOLVER_PARAMETERS and name not in VOCABULARY:
+                powers = layers.LAYER[field].powers
+                VOCABULARY[name] = Entry(name, "material", words.format(number), symbol, powers)
+            if name in SOLVER_PARAMETERS and name not in PARAMETERS:
+                PARAMETERS.append(name)
+            if field.startswith("E1") and name not in SCENE:
+                SCENE[name] = Entry(name, "scene", words.format(number), f"E1,{number}", (1, 0))
+        if number > 1:
+            BODIES[name_of(number, "material")] = tuple(name_of(number, field) for field in ("E1", "nu", "n"))
+    if count and "sublayers" not in PARAMETERS:
+        VOCABULARY["sublayers"] = Entry("sublayers", "material", "number of sublayers of a graded layer, 0: chosen")
+        PARAMETERS.append("sublayers")
+
+
+def recall(names: Any) -> None:
+    """Make the layers known of which results have coordinates; `names` of these."""
+    count = min(layers.numbers_of(map(str, names)), layers.MOST)
+    if count:
+        layers.register(count)
+        declare()
+
+
+def layers_in(names: Any) -> int:
+    """The number of layers of a stack, of the names of its parameters; 0 of no stack."""
+    return layers.numbers_of(names)
+
+
+def beyond(name: str, count: int) -> bool:
+    """Whether a parameter is of a layer that a stack of `count` layers does not have; 0 : no stack."""
+    return layers.numbers_of([name]) > count if name.startswith("layers.") else name == "sublayers" and not count
+
+
+def moduli_of(names: Any) -> list[tuple[str, str, str]]:
+    """Young's modulus, Poisson ratio and ratio of moduli of each part of a layer whose modulus is among the names."""
+    parts = []
+    for name in names:
+        if name.startswith("layers.") and name.rpartition(".")[2] in ("E1", "E1_bottom"):
+            number, _, field = name.removeprefix("layers.").partition(".")
+            end = field.removeprefix("E1")
+            nu = name_of(int(number), f"nu{end}")
+            parts.append((name, nu if nu in names else name_of(int(number), "nu"), name_of(int(number), f"n{end}")))
+    return parts
+
+
+def flattened(table: dict, errors: list[str], rows: Any = (), elsewhere: Any = ()) -> dict:
+    """Parameters of a call, section or case with one name for each number of a layer, and the base of a stack.
+
+    rows : cases beside the parameters, in which the base may stand
+    elsewhere : names of parameters that stand in other sections, and so not in the list of layers
+    """
+    table = _dotted(table)
+    if not any(map(_is_of_layers, (*table, *elsewhere))):
+        return table
+    named = {name: value for name, value in table.items() if name.startswith("layers.")}
+    others = {name: value for name, value in table.items() if name not in ("layers", RIGID, *named)}
+    stack = {}
+    if "layers" in table:
+        beside = [name for name in _ONE_LAYER if name in others]
+        errors += [f"{name} is given beside layers: each of the layers has its own" for name in beside[:1]]
+        others = {name: value for name, value in others.items() if name not in beside}
+        stack = _of_list(table["layers"], errors)
+    stack |= {_short(name): value for name, value in named.items()}
+    stack = _on_base(stack, table.get(RIGID, False), others, errors)
+    stack = {name: value for name, value in stack.items() if name not in elsewhere}
+    count = max(layers.numbers_of((*stack, *elsewhere)), 1)
+    if count > layers.MOST:
+        errors.append(f"layers: {count} layers: at most {layers.MOST} are allowed")
+        return others
+    try:
+        layers.read_tables(stack)
+    except ValueError as error:
+        errors.append(str(error))
+    layers.register(count)
+    declare()
+    return _with_base(others, errors, rows or []) | stack | {"sublayers": others.get("sublayers", 0)}
+
+
+def in_tables(tables: dict, errors: list[str]) -> tuple[dict, dict]:
+    """The tables of a study file with one name for each number of a layer; and the numbers of [[layers]]."""
+    parts = {section: tables.get(section) for section in ("model", "axes", "sample")}
+    parts = {section: _dotted(table) for section, table in parts.items() if isinstance(table, dict)}
+    rows = tables.get("cases", [])
+    rows = [_dotted(row) if isinstance(row, dict) else row for row in rows] if isinstance(rows, list) else []
+    names = [name for part in (*parts.values(), *(row for row in rows if isinstance(row, dict))) for name in part]
+    if "layers" not in tables and not any(map(_is_of_layers, names)):
+        return tables, {}
+    beside = [name for name in _ONE_LAYER if name in names and "layers" in tables]
+    errors += [f"{name} is given beside layers: each of the layers has its own" for name in beside[:1]]
+    parts = {section: {_short(name): value for name, value in part.items()} for section, part in parts.items()}
+    rows = [{_short(name): value for name, value in row.items()} if isinstance(row, dict) else row for row in rows]
+    axes, sections = parts.get("axes", {}), [parts.get("axes", {}), parts.get("sample", {}), *rows]
+    elsewhere = {name for part in sections if isinstance(part, dict) for name in part}
+    bases = [{"base": 0}] * ("base" in elsewhere)
+    source = parts["model"] | ({"layers": tables["layers"]} if "layers" in tables and not beside else {})
+    flat = flattened(source, errors, bases, elsewhere)
+    if isinstance(axes.get("base"), list):
+        parts["axes"] = _with_base(axes, errors, [])
+    model = {name: value for name, value in flat.items() if name in parts["model"] or name == "base"}
+    stack = {name: value for name, value in flat.items() if name not in model}
+    return tables | parts | {"model": model, "layers": None} | ({"cases": rows} if rows else {}), stack
+
+
+def axes_in(tables: dict) -> list[str]:
+    """The names of [axes] in their order."""
+    axes = tables.get("axes", {})
+    return [_short(name) for name in _dotted(axes)] if isinstance(axes, dict) else []
+
+
+def _is_of_layers(name: Any) -> bool:
+    return isinstance(name, str) and (name in ("layers", RIGID, "sublayers") or name.startswith("layers."))
+
+
+def _dotted(table: dict) -> dict:
+    """`layers.2.h` of TOML, a table of tables, as one name."""
+    nested = table.get("layers")
+    if not isinstance(nested, Mapping):
+        return table
+    flat = {name: value for name, value in table.items() if name != "layers"}
+    for number, fields in nested.items():
+        for field, value in fields.items() if isinstance(fields, Mapping) else [("", fields)]:
+            flat[f"layers.{number}.{field}".rstrip(".")] = value
+    return flat
+
+
+def _short(name: str) -> str:
+    """ "layers.1.h" as "h"."""
+    number, _, field = name.removeprefix("layers.").partition(".")
+    return name_of(int(number), field) if number.isdigit() and int(number) == 1 else name
+
+
+def _of_list(stack: Any, errors: list[str]) -> dict:
+    """Name -> value of a list of layers."""
+    if not isinstance(stack, (list, tuple)) or not stack or not all(isinstance(layer, Mapping) for layer in stack):
+        form = '[{"h": "2 um", "material": "DLC a-C:H", "bonding": "bonded"}, ...], the layer at the surface first'
+        errors.append(f"layers = {shown(stack)}: must be a list of layers, {form}")
+        return {}
+    if len(stack) > layers.MOST:
+        errors.append(f"layers: {len(stack)} layers: at most {layers.MOST} are allowed")
+        return {}
+    flat = {}
+    for number, layer in enumerate(stack, 1):
+        try:
+            fields = layers.fields_of(layer, number)
+        except ValueError as error:
+            errors.append(str(error))
+            continue
+        for field, value in fields.items():
+            name = f"layers.{number}.{field}"
+            if field not in _WORDS:
+                errors.append(f"{name}: is not a key of a layer{suggest(str(field), _WORDS)}")
+            elif isinstance(value, (list, tuple, range)):
+                errors.append(f"{name} has several values: an axis stands beside layers, as {shown(name)}")
+            else:
+                flat[name_of(number, field)] = value
+    return flat
+
+
+def _on_base(stack: dict, rigid: Any, others: dict, errors: list[str]) -> dict:
+    """The stack with n = 0 where the base is rigid."""
+    if rigid is not True:
+        errors += [f"{RIGID} = {shown(rigid)}: must be true or false"] * (rigid is not False)
+        return stack
+    if "E2" in others or "body" in others:
+        errors.append(f'{RIGID} is for studies without units: give E2 = "rigid"')
+        return stack
+    if stack.get("n", 1) not in (1, "1"):
+        errors.append(f"layers.1.n = {shown(stack['n'])}: on a rigid base n is E_j*/E1*, and that of the first layer 1")
+    return stack | {"n": 0.0}
+
+
+def _with_base(others: dict, errors: list[str], rows: list[dict]) -> dict:
+    if any("base" in row for row in rows):
+        return others
+    bases = others.get("base", "stack")
+    several = bases if isinstance(bases, (list, tuple)) else [bases]
+    if "layered" in [base for base in several if isinstance(base, str)]:
+        errors.append('base = "layered" has one layer: of layers it is "stack"')
+    words = [_BASES.get(base, base) if isinstance(base, str) else base for base in several]
+    return others | {"base": words if isinstance(bases, (list, tuple)) else words[0]}

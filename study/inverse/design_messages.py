@@ -5,7 +5,7 @@ import xarray as xr
 
 from ..data.dataset import decode
 from ..derivatives import sensitivities
-from ..inputs.scene.changes import RATIOS
+from ..inputs.scene.names import is_ratio
 from ..inputs.vocabulary import NOT_RUN, ROWS, VOCABULARY
 from ..specimen.quantities import readable
 from .design_answer import Answer, solved
@@ -103,7 +103,7 @@ def _helps(want: Wanted, answer: Answer) -> dict[int, str]:
     names = [name for name in by_input["input"].values.tolist() if name not in (want.name, *fits)]
     slopes = by_input.sel(input=names).values.reshape(want.size, len(names)).copy()
     for column, name in enumerate(names):
-        if name in RATIOS:  # whose derivatives are not by the logarithm
+        if is_ratio(name):  # whose derivatives are not by the logarithm
             slopes[:, column] *= contacts[name].broadcast_like(contacts["status"]).values.ravel()
     slopes, texts = np.nan_to_num(slopes), {}  # NaN: by what a case does not have
     for row in np.flatnonzero(lacking).tolist():

@@ -14,7 +14,7 @@ _WIDE_RATIO = 0.25
 _LATTICE = 32
 STEP = WIDE / _LATTICE
 #: Chebyshev points of a tile along each coordinate, of tables with one, two and more coordinates: g is within 5e-6 of
-#: solutions, with three 1e-3, which its steepest tiles have (tests/inverse/fits/test_tables.py).
+#: solutions, with three 1e-3, which its steepest tiles have (tests/inverse/fits/test_table_of_curves.py).
 _POINTS = {1: 16, 2: 14, 3: 8, 4: 6}
 _MARGIN = 2.5 * STEP  # beyond the ends of a tile: the cubic takes points on both sides
 _MOVE = 1e-4  # of inputs by which derivatives are wanted

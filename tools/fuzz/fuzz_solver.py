@@ -18,13 +18,14 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from solver import Problem, Solution, Status, laws, solve
-from solver.parameters import BASES, BONDINGS, CONTROL, MODEL_CHECKS, PARAMETERS, ends
+from solver.parameters import BONDINGS, CONTROL, MODEL_CHECKS, PARAMETERS, ends
 
 #: Under a plate nearly all of the load may lie in a narrow ring at the edge.
 X = np.unique([*np.linspace(0.0, 1.0, 9), *(1 - 2.0 ** -np.arange(4, 20))])
 #: Cases of a group, which is of one base, law, control and scheme: on the exact layer a case takes a hundred times as
 #: long as on the others. ROUND groups have every base, law and control, 5400 cases.
 SIZES = {"half_space": 90, "thin_layer": 90, "layered": 10, "auto": 10}
+BASES = tuple(SIZES)  # stacks of layers have random tests of their own: tests/stacks
 #: The last two are tables of one's own: rows of a law, and a histogram of heights.
 LAWS = ("smooth", "disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights",
         "rows", "histogram")  # fmt: skip

@@ -220,7 +220,7 @@ def test_physical_numbers_for_from_physical():
 def test_a_tuple_is_no_stack_of_layers(layers):
     """It was an axis: two coatings, each without the other, where one on top of the other was meant."""
     bodies = {"R": "5 mm", "punch": "steel 52100", "body": "steel 52100", "micro": "smooth", "P": "1 N"}
-    said = "is a tuple: a list is an axis, a stack of layers is not yet there"
+    said = "is a tuple: a list is an axis, and `layers`, a list of layers, a stack"
     with pytest.raises(study.StudyError, match=said):
         study.solve(**bodies, h="2 um", layer=layers)
     with pytest.raises(study.StudyError, match=said):

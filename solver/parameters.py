@@ -9,6 +9,8 @@ BONDINGS = ("frictionless", "bonded")
 BASES = ("half_space", "thin_layer", "layered", "auto", "stack", "thin_stack")
 #: How the model error of a thin layer asked for by name is estimated: free of cost, or by solving the exact layer.
 MODEL_CHECKS = ("closed_form", "first_order")
+#: How attraction acts, and which of two states is meant that have the same load or depth.
+ADHESIONS, BRANCHES = ("jkr", "dmt", "maugis"), ("stable", "unstable")
 #: The condition that every case meets, of `needed_by` and `used_by` below.
 EVERY = ("", ())
 
@@ -67,7 +69,8 @@ CONTROL = {
 }
 
 #: All other parameters; their meanings and units are in :class:`~solver.problem.Problem`. A law declares its own:
-#: `laws.register` adds them here, and the name of the law to the choices of `micro`. `schemes` adds those of `scheme`.
+#: `laws.register` adds them here, and the name of the law to the choices of `micro`; so does `shapes.register`.
+#: `schemes` adds those of `scheme`.
 #: Keys of cases leave defaults out (study/inputs/identity.py): whoever changes a default changes `NUMERICS_VERSION`.
 PARAMETERS = {
     "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED, powers=(0, 1)),
@@ -83,6 +86,13 @@ PARAMETERS = {
     "accuracy": Parameter(1e-2, interval="(0, 1)", needed_by=("base", ("auto",))),
     "model_check": Parameter("closed_form", MODEL_CHECKS, needed_by=("base", ("thin_layer",))),
     "micro": Parameter("disc_cell"),
+    "shape": Parameter("paraboloid", ("paraboloid",)),
+    "w_adhesion": Parameter(0.0, interval="[0, 1e3]", powers=(1, 1)),
+    "adhesion": Parameter("jkr", ADHESIONS),
+    "sigma0": Parameter(interval="[1e-15, 1e15]", powers=(1, 0), instead=""),
+    "z0": Parameter(interval="[1e-15, 1e3]", powers=(0, 1), instead=""),
+    "branch": Parameter("stable", BRANCHES),
+    "k_machine": Parameter(interval="[0, inf]", powers=(1, 1), instead=""),
     "scheme": Parameter("newton"),
     "k": Parameter(1.0, interval="[0, 1e6]", used_by=("scheme", ("picard",))),
     "rtol": Parameter(1e-6, interval="[1e-15, 1)"),

@@ -6,8 +6,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import laws, layers
+from . import laws, layers, shapes
 from .parameters import CONTROL, PARAMETERS, STACKED, Parameter, allowed, among
+
+#: Largest |P| or |D| under adhesion, in units R = E2* = 1: that of the bounds in solver/parameters.py.
+_PULL = 1e3
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,20 @@ class Problem:
     B, beta : coefficient, without unit, and exponent, of the "power_law"
     sigma, cut = 4 : standard deviation of random heights; and of the "normal_heights" the largest above their mean,
         over sigma
+    shape = "paraboloid" : r²/(2R); or "sphere", "cone", "power", "frustum", "blunt_cone", "flat", "rounded_flat",
+        "berkovich", "vickers", "cube_corner", or "table:FILE.csv" of r and f; each is a file of solver/shapes
+    half_angle : of a cone, from its axis to its side, in degrees
+    flat_radius, tip_radius, edge_radius : of what is flat around the axis, of a round tip, of a round edge
+    tip = "paraboloid" : the round tip of a "blunt_cone"; or "sphere"
+    shape_power, shape_coefficient : k and c of f/R = c (r/R)^k
+    table_unit : the length that 1 stands for in a table of a shape; R if it is left out
+    w_adhesion = 0 : work of adhesion, in the unit of E2 R, of smooth punches. The load and the depth may then be
+        negative
+    adhesion = "jkr" : attraction at the edge alone; "dmt", only outside of the contact; "maugis", of the stress
+        `sigma0` or the range `z0` = w_adhesion/(0.97 sigma0)
+    branch = "stable" : of two states of one load or depth that with the larger radius; or "unstable"
+    k_machine : stiffness of what holds the punch, in the unit of E2 R. Left out, it is 0 (a dead load) where P or a is
+        given, and infinite where D is
     scheme = "newton" : Newton's method; "picard", the paper's successive approximations, Eqs (8) and (10), which are
         for asperities: a smooth case that asks for them is not solved
     k = 1 : relaxation of the successive approximations
@@ -68,6 +85,7 @@ class Problem:
         """A process that gets the batch knows its layers."""
         self.__dict__.update(state)
         layers.read_tables(self.parameters)
+        shapes.named(self.parameters.get("shape", ()))
         layers.register(layers.numbers_of(self.parameters))
 
     def __getattr__(self, name):
@@ -113,6 +131,7 @@ class Problem:
             raise ValueError(f"give exactly one of P, a, D (got {', '.join(controls) or 'none'})")
         ((control, value),) = controls.items()
         parameters = layers.expanded(parameters)
+        shapes.named(parameters.get("shape", ()))
         parameters["micro"] = laws.named(parameters.get("micro", PARAMETERS["micro"].default))
         laws.load(parameters, parameters["micro"])
         table = layers.table(layers.numbers_of(parameters))
@@ -173,6 +192,15 @@ class Problem:
         """
         return np.all([self.micro != name for name, law in laws.LAWS.items() if not law.rough], axis=0)
 
+    def may_pull(self) -> np.ndarray:
+        """Which cases may have a control that is 0 or negative.
+
+        Returns
+        -------
+        numpy.ndarray : (B,) bool: there is adhesion, and P or D is given
+        """
+        return (self.w_adhesion > 0) & (self.control != "a")
+
     def without_scheme(self) -> np.ndarray:
         """Which cases ask for a scheme that they cannot have.
 
@@ -190,7 +218,7 @@ class Problem:
         numpy.ndarray : (B,) bool: a number that the case needs is not finite or out of bounds, or those of its micro
             law do not go together
         """
-        bad = ~allowed(CONTROL[self.control], self.value)
+        bad = ~(allowed(CONTROL[self.control], self.value) | self.may_pull() & (np.abs(self.value) <= _PULL))
         having = {}
         for name, own in layers.table(layers.numbers_of(self.parameters)).items():
             if own.interval:

@@ -10,11 +10,13 @@ from .contact.equation import Cases
 from .kernels.two_layers import TwoLayers, layer_modulus, thin_layer_coefficients
 from .laws import LAWS, try_out
 from .parameters import CONTROL, PARAMETERS, allowed
+from .solution import PULLS
 from .status import Status
 
 #: (i, j) of the unit E2*^i R^j of each quantity that has one.
 _UNITS = {"A0": (0, 1), "p0": (1, 0), "p_max": (1, 0), "p": (1, 0), "dP_dD": (1, 1)}
 _UNITS = _UNITS | {name: own.powers for name, own in CONTROL.items()}
+_UNITS = _UNITS | {name: CONTROL[name.partition("_")[0]].powers for name in PULLS}
 
 
 def dimensionless(problem):

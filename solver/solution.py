@@ -16,7 +16,11 @@ _POSITIVE = (*JUDGED, "dP_dD")
 _PROFILES = ("p", "lam")
 _NUMBERS = (*_POSITIVE, "A0", "residual", "error", "profile_error", *_PROFILES)
 #: Integers: codes and counts.
-_WHOLE = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes": np.int32}
+_WHOLE = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes": np.int32, "stable": np.bool_}
+#: Numbers of pull-off and pull-in, 0 without adhesion.
+PULLS = ("P_off", "D_off", "a_off", "P_in", "a_in")
+#: What is not NaN, or 0 of whole numbers, where nothing is said.
+_DEFAULTS = {"stable": True} | dict.fromkeys(PULLS, 0.0)
 #: Shares of an area are at most 1. A sum over 256 nodes may round to 1 + 256 eps, which is 1 + 6e-14. What is above
 #: 1 + _ROUNDING is no rounding.
 _SHARES, _ROUNDING = ("Ar_An", "lam"), 1e-10
@@ -66,6 +70,10 @@ class Solution:
         `accuracy`. The error of a law that comes from a table is part of it, and may alone be above `accuracy`
     status, model_used : int8; a :class:`~solver.status.Status` and a :class:`Model`
     iterations, nodes : int32; iterations in all, and nodes of the last mesh; 0 nodes: a closed form
+    stable : bool; under adhesion, a >= a_off; else True
+    P_off, D_off, a_off : load, depth and radius at which the punch is pulled off, by what holds it (`k_machine`); 0
+        without adhesion, as the next two
+    P_in, a_in : load and radius to which the contact jumps when the punch touches
     p : (B, m); nominal pressure at the radii (E2)
     lam : (B, m), in [0, 1]; relative contact area λ (11) at the radii, 1 inside the contact of a smooth punch
     """
@@ -87,6 +95,12 @@ class Solution:
     model_used: np.ndarray
     iterations: np.ndarray
     nodes: np.ndarray
+    stable: np.ndarray
+    P_off: np.ndarray
+    D_off: np.ndarray
+    a_off: np.ndarray
+    P_in: np.ndarray
+    a_in: np.ndarray
     p: np.ndarray
     lam: np.ndarray
 
@@ -112,7 +126,8 @@ class Solution:
         def array(name):
             shape = (size, points) if name in _PROFILES else (size,)
             kind = _WHOLE.get(name, float)
-            return np.full(shape, values.get(name, np.nan if kind is float else 0), dtype=kind)
+            default = _DEFAULTS.get(name, np.nan if kind is float else 0)
+            return np.full(shape, values.get(name, default), dtype=kind)
 
         return cls(**{f.name: array(f.name) for f in fields(cls)})
 

@@ -17,6 +17,10 @@ class Status(IntEnum):
     LIFT_OFF = 8, "the punch lifts off inside the contact, or the pressure is tensile there; no numbers"
     BUDGET_SPENT = 9, "the work that one case may take is spent; last numbers, if any, kept"
     OUTSIDE_LAW = 10, "the nominal pressures are not in the range that the micro law knows; no numbers"
+    PULLED_OFF = (
+        11,
+        "no state of the asked branch has this load or depth; numbers of pull-off and pull-in alone",
+    )
 
     meaning: str
 
@@ -28,4 +32,4 @@ class Status(IntEnum):
 
 
 #: Statuses of cases whose equations have no solution in the model. The solver has not failed there.
-NO_SOLUTION = (Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF)
+NO_SOLUTION = (Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF, Status.PULLED_OFF)

@@ -88,9 +88,8 @@ def _solved(function, cases, rtol, nodes, x):
     values = dict(zip(_SCALARS, scalars, strict=True))
     missed = values["error"] > rtol  # on a mesh that the case asks for
     values["status"] = np.where(missed, Status.TOLERANCE_NOT_MET, Status.CONVERGED).astype(np.int8)
-    values |= {"model_used": np.zeros(size, dtype=np.int8), "nodes": last, "iterations": iterations}
-    values |= {name: np.full(size, np.nan) for name in ("plastic_share", "model_error")}
-    return Solution(**values, p=p, lam=lam)
+    values |= {"nodes": last, "iterations": iterations}
+    return Solution.of(size, points, **values, p=p, lam=lam)
 
 
 def _inputs(cases, rtol):

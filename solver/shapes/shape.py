@@ -16,18 +16,22 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from ..numerics.quadrature import gauss_legendre
 from ..parameters import Parameter
+
+#: Points of the quadrature of :func:`load_by_quadrature` between two kinks: the integrand is smooth there.
+_POINTS = 24
 
 
 class Shape(Protocol):
-    """The profiles of B indenters; r, t (B, m) or (B, 1) are radii >= 0, and a (B,) is the contact radius.
+    """The profiles of B indenters; r, t (B, m) are radii >= 0, and a (B,) is the contact radius.
 
-    pointed : bool, f'(0+) > 0: the pressure on the axis is infinite
-    even : bool, f is a smooth function of r²: then no polynomial in s misses anything
+    pointed : (B,) bool, f'(0+) > 0: the pressure on the axis is infinite
+    even : (B,) bool, f is a smooth function of r²: then the pressure is smooth in s too
     """
 
-    pointed: bool
-    even: bool
+    pointed: np.ndarray
+    even: np.ndarray
 
     def take(self, index):
         """The shapes of the sub-batch at `index`."""
@@ -42,7 +46,7 @@ class Shape(Protocol):
         """F at t."""
 
     def lifted_slope(self, t):
-        """dF/dt at t."""
+        """dF/dt at t; infinite at the kink of a frustum."""
 
     def lifted_load(self, a):
         """∫₀ᵃ (F(a) - F(t)) dt, (B,)."""
@@ -52,7 +56,7 @@ class Shape(Protocol):
         next to the edge no digits are lost."""
 
     def kinks(self):
-        """Radii (B, K) inside which and outside which f has other formulas; NaN where a case has fewer of them."""
+        """Radii (B, K) > 0 at which f is not smooth; NaN where a case has fewer of them."""
 
     def least(self):
         """(B,): a is larger than this: the radius of what is flat around the axis, else 0."""
@@ -65,9 +69,8 @@ class Kind(NamedTuple):
     """A shape that a case may have, by its `name`.
 
     parameters : name -> :class:`~solver.parameters.Parameter` of its numbers
-    of : function of these numbers as arrays (B,), by their names, and of the number of cases, `size`: the
-        :class:`Shape`
-    words : what it is, for messages
+    of : function of these numbers, arrays (B,) by their names, that makes the :class:`Shape`
+    words : what it is, for messages and tables
     """
 
     name: str
@@ -76,6 +79,41 @@ class Kind(NamedTuple):
     words: str
 
 
-def column(values) -> np.ndarray:
+def column(values):
     """(B, 1) of (B,): the numbers of cases beside their radii."""
     return values[:, None]
+
+
+def no_kinks(values):
+    """:meth:`Shape.kinks` (B, 0) of a shape that has none, of the length of `values` (B,)."""
+    return np.empty((len(values), 0))
+
+
+def beyond(t, b):
+    """sqrt(t² - b²), or 0 where t < b: without a difference of squares. The arguments broadcast."""
+    return np.sqrt(np.maximum(t - b, 0.0) * (t + b))
+
+
+def angle(t, b):
+    """arccos(b/t), or 0 where t < b: right also where t is just above b > 0. The arguments broadcast."""
+    return np.arctan2(beyond(t, b), b)
+
+
+def radii_at(a, s):
+    """r = a x (B, m) and a - r (B, m) at s = sqrt(1 - x²) (m,), for a (B,): the second without a difference."""
+    x = np.sqrt((1 - s) * (1 + s))
+    return column(a) * x, column(a) * (s**2 / (1 + x))
+
+
+def load_by_quadrature(shape, a):
+    """:meth:`Shape.lifted_load` as ∫₀ᵃ t F'(t) dt, (B,), for shapes without a closed form.
+
+    Beyond a kink b the variable is y in t = b + (c - b) y², c the next one: there F' may be like sqrt(t - b).
+    """
+    y, w = gauss_legendre(_POINTS)
+    ends = np.minimum(np.nan_to_num(shape.kinks(), nan=np.inf), column(a))
+    ends = np.hstack([np.zeros((len(a), 1)), np.sort(ends, axis=1), column(a)])
+    low, width = ends[:, :-1, None], np.diff(ends, axis=1)[:, :, None]
+    t = (low + width * y**2).reshape(len(a), -1)
+    weights = (width * (2 * y * w)).reshape(len(a), -1)
+    return np.where(weights > 0, t * shape.lifted_slope(t) * weights, 0.0).sum(axis=1)

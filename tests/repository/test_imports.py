@@ -23,9 +23,9 @@ OURS = {"roughcoat", "solver", "study", "studies"}
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
     "solver": (
-        *("threads", "status", "closed_forms", "numerics", "parameters", "layers", "punches", "laws"),
+        *("threads", "status", "closed_forms", "numerics", "parameters", "layers", "shapes", "punches", "laws"),
         *("kernels", "body", "edges", "problem", "solution", "contact", "compiled", "scaling", "estimate", "schemes"),
-        *("models", "solve", "sensitivity", "fields", "yields"),
+        *("smooth_contact", "models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (
         *("terminal", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives", "fields", "in_words"),

@@ -1,0 +1,88 @@
+"""The flat punch with a round edge: f = 0 up to r = b, and (r - b)²/(2ρ) beyond."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..parameters import Parameter
+from .frustum import FLAT_RADIUS
+from .shape import Kind, beyond, column, radii_at
+
+#: Radius ρ of the edge.
+EDGE_RADIUS = Parameter(interval="[1e-12, 1e6]", powers=(0, 1))
+#: Below this, z - arctan z is taken from its series, Σ (-1)^(j + 1) z^(2j + 1)/(2j + 1) from j = 1, of so many terms.
+_SERIES, _TERMS = 0.3, 16
+
+
+class RoundedFlat(NamedTuple):
+    """The :class:`~.shape.Shape` of radii `b` of what is flat, and `rho` of the edge, (B,)."""
+
+    b: np.ndarray
+    rho: np.ndarray
+
+    @property
+    def pointed(self):
+        return self.b < 0
+
+    @property
+    def even(self):
+        return self.b < 0
+
+    def take(self, index):
+        return RoundedFlat(self.b[index], self.rho[index])
+
+    def height(self, r):
+        return np.maximum(r - column(self.b), 0.0) ** 2 / (2 * column(self.rho))
+
+    def slope(self, r):
+        return np.maximum(r - column(self.b), 0.0) / column(self.rho)
+
+    def lifted(self, t):
+        # q - b arccos(b/t), with q = sqrt(t² - b²), and arccos(b/t) = arctan(q/b)
+        b = column(self.b)
+        return t / column(self.rho) * b * _over_arctangent(beyond(t, b) / b)
+
+    def lifted_slope(self, t):
+        b = column(self.b)
+        q = beyond(t, b)
+        return (q + b * _over_arctangent(q / b)) / column(self.rho)
+
+    def lifted_load(self, a):
+        z = beyond(a, self.b) / self.b
+        return self.b**3 / self.rho * (z**3 / 6 + (1 + z**2) / 2 * _over_arctangent(z))
+
+    def drop(self, a, s):
+        r, inwards = radii_at(a, s)
+        b, over = column(self.b), column(np.maximum(a - self.b, 0.0))
+        # (a - b)² - (r - b)² = (a - r) (a + r - 2 b)
+        rise = np.where(r > b, inwards * (over + r - b), over**2)
+        return column(1 / (a**2 * self.rho)) * rise
+
+    def kinks(self):
+        return column(self.b)
+
+    def least(self):
+        return self.b
+
+    def most(self):
+        return np.inf * self.b
+
+
+def _over_arctangent(z):
+    """z - arctan z, z >= 0, without a difference where z is small."""
+    total, y = 0.0, np.minimum(z, _SERIES) ** 2
+    for j in reversed(range(1, _TERMS)):
+        total = y * (1 / (2 * j + 1) - total)
+    return np.where(z < _SERIES, z * total, z - np.arctan(z))
+
+
+def _of_numbers(flat_radius, edge_radius, size):
+    return RoundedFlat(flat_radius, edge_radius)
+
+
+KIND = Kind(
+    "rounded_flat",
+    {"flat_radius": FLAT_RADIUS, "edge_radius": EDGE_RADIUS},
+    _of_numbers,
+    "a flat cylinder with a round edge",
+)

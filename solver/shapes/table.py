@@ -1,0 +1,214 @@
+"""A shape from a table of one's own, ``shape = "table:tip.csv"``: a measured tip, for example.
+
+The slope f' is laid through the slopes of the chords between the rows, each in the middle of its chord, with straight
+lines between them; the first and the last line go on to the axis and to the last row. f is the integral of f', and need
+not meet the rows.
+"""
+
+import csv
+import hashlib
+import re
+from typing import NamedTuple
+
+import numpy as np
+
+from ..parameters import Parameter
+from .shape import Kind, column, load_by_quadrature
+
+PREFIX = "table:"
+#: Length in the unit of R that 1 in the table stands for; left out, it is R.
+TABLE_UNIT = Parameter(interval="(0, inf)", powers=(0, 1), instead="")
+#: Most rows, and by which part of the largest a slope may fall: the rounding of a table that is straight there.
+_ROWS, _FALLS = 1_000, 1e-9
+#: A change of f'' below this part of the largest f'' is rounding, and no kink.
+_STRAIGHT = 1e-9
+#: Units of length that a header may name, in m.
+_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "Å": 1e-10, "pm": 1e-12}
+_HEADER = re.compile(r"\s*(\w+)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
+
+
+class Rows(NamedTuple):
+    """The slope of a table: radii r (K,) from 0 to the last row, and f' there (K,), straight lines between; `metres`,
+    whether its lengths are in m, by units in the header."""
+
+    r: np.ndarray
+    slopes: np.ndarray
+    metres: bool
+
+
+#: Word -> :class:`Rows` of the tables that have been read.
+TABLES: dict[str, Rows] = {}
+
+
+class Table(NamedTuple):
+    """The :class:`~.shape.Shape` of one table, whose lengths are in `unit` (B,)."""
+
+    rows: Rows
+    unit: np.ndarray
+
+    @property
+    def pointed(self):
+        return (self.rows.slopes[0] > 0) & (self.unit > 0)
+
+    @property
+    def even(self):
+        return self.unit < 0
+
+    def take(self, index):
+        return Table(self.rows, self.unit[index])
+
+    def height(self, r):
+        r = r / column(self.unit)
+        knots, place, along = self._in_rows(r)
+        first, last = self.rows.slopes[:-1], self.rows.slopes[1:]
+        until = np.append(0.0, np.cumsum(np.diff(knots) * (first + last) / 2))
+        slope = first[place] + self._bend[place] * along / 2
+        return column(self.unit) * self._inside(r, until[place] + along * slope)
+
+    def slope(self, r):
+        r = r / column(self.unit)
+        _, place, along = self._in_rows(r)
+        return self._inside(r, self.rows.slopes[place] + self._bend[place] * along)
+
+    def lifted(self, t):
+        over_t, bent = self._lifted(t / column(self.unit))
+        return t * (over_t + bent)
+
+    def lifted_slope(self, t):
+        over_t, bent = self._lifted(t / column(self.unit))
+        return over_t + 2 * bent
+
+    def lifted_load(self, a):
+        return load_by_quadrature(self, a)
+
+    def drop(self, a, s):
+        # between r = ax and a: on each line the mean of its slopes there, times the length of the part
+        x = np.sqrt((1 - s) * (1 + s))
+        radius = column(a / self.unit)
+        r, inwards = radius * x, radius * (s**2 / (1 + x))
+        knots, total = self.rows.r, 0.0
+        same = np.searchsorted(knots, r, side="right") == np.searchsorted(knots, radius, side="right")
+        for j, (low, high) in enumerate(zip(knots[:-1], knots[1:], strict=True)):
+            start, end = np.clip(r, low, high), np.clip(radius, low, high)
+            part = np.where(same & (start > low), inwards, end - start) * (end > start)
+            total = total + part * (self.rows.slopes[j] + self._bend[j] * ((start + end) / 2 - low))
+        return column(2 * self.unit / a**2) * self._inside(radius, total)
+
+    def kinks(self):
+        bend = self._bend
+        jumps = np.abs(np.diff(bend)) > _STRAIGHT * np.abs(bend).max(initial=0.0)
+        return column(self.unit) * self.rows.r[1:-1][jumps]
+
+    def least(self):
+        return 0 * self.unit
+
+    def most(self):
+        return self.unit * self.rows.r[-1]
+
+    @property
+    def _bend(self):
+        """f'' (K - 1,) on each line."""
+        return np.diff(self.rows.slopes) / np.diff(self.rows.r)
+
+    def _in_rows(self, r):
+        """The radii of the rows, on which line r is, and how far along it."""
+        knots = self.rows.r
+        place = np.clip(np.searchsorted(knots, r, side="right") - 1, 0, len(knots) - 2)
+        return knots, place, r - knots[place]
+
+    def _inside(self, r, values):
+        """The values, NaN where r is beyond the last row."""
+        return np.where(r <= self.rows.r[-1] * (1 + 4 * np.finfo(float).eps), values, np.nan)
+
+    def _lifted(self, t):
+        """F/t is the sum of both: of the lines as they would begin at r = 0, and of what they bend."""
+        knots, bend = self.rows.r, self._bend
+        start = self.rows.slopes[:-1] - bend * knots[:-1]
+        inner = np.minimum(knots, t[..., None])
+        cosines = np.sqrt((t[..., None] - inner) * (t[..., None] + inner))
+        angles = np.arctan2(inner, cosines)
+        angles[t == 0] = np.where(knots > 0, np.pi / 2, 0.0)
+        over_t = np.diff(angles) @ start
+        return self._inside(t, over_t), -np.diff(cosines) @ bend
+
+
+def read(word):
+    """The :class:`~.shape.Kind` of a word "table:FILE". Its rows are in TABLES from then on.
+
+    The file has two columns, r from 0 upwards and f from 0 upwards; a header may have units, "r [um], f [nm]". Lines
+    that begin with "#" are left out. ValueError for a file that cannot be used.
+    """
+    if word not in TABLES:
+        TABLES[word] = _rows(word)
+    return Kind(word, {"table_unit": TABLE_UNIT}, lambda table_unit, size: _bound(word, table_unit), "a measured tip")
+
+
+def identity(word):
+    """Text that tells a shape from all others: its name, and of a table its numbers."""
+    if word not in TABLES:
+        return word
+    rows = TABLES[word]
+    numbers = np.concatenate([rows.r, rows.slopes, [float(rows.metres)]]).astype("<f8").tobytes()
+    return f"{PREFIX} {hashlib.sha256(numbers).hexdigest()}"
+
+
+def _bound(word, table_unit):
+    rows = TABLES[word]
+    return Table(rows, np.where(np.isnan(table_unit) & (not rows.metres), 1.0, table_unit))
+
+
+def _rows(word):
+    try:
+        with open(word.removeprefix(PREFIX), newline="", encoding="utf-8-sig") as file:
+            lines = [line for line in csv.reader(file) if line and not line[0].lstrip().startswith("#")]
+        header = lines.pop(0) if lines and not _is_number(lines[0][0]) else []
+        numbers = np.array([[float(cell) for cell in line] for line in lines[: _ROWS + 1]])
+    except (OSError, ValueError) as error:
+        raise ValueError(f"shape {word}: cannot be read: {error}") from None
+    if numbers.ndim != 2 or numbers.shape[1] != 2 or not 3 <= len(numbers) <= _ROWS:
+        raise ValueError(f"shape {word}: must have two columns, r and f, and 3 to {_ROWS} rows")
+    units = _lengths(word, header)
+    return _of_columns(word, *(numbers * units).T, units != (1.0, 1.0) or _has_units(header))
+
+
+def _of_columns(word, r, f, metres):
+    if not np.all(np.isfinite(r)) or not np.all(np.isfinite(f)):
+        raise ValueError(f"shape {word}: a number is not finite")
+    if r[0] != 0 or f[0] != 0 or not np.all(np.diff(r) > 0):
+        raise ValueError(f"shape {word}: r must grow from 0, and f be 0 there; the first row is {r[0]:g}, {f[0]:g}")
+    chords, middle = np.diff(f) / np.diff(r), (r[1:] + r[:-1]) / 2
+    falls = np.diff(chords) < -_FALLS * np.abs(chords).max()
+    if falls.any() or not chords[-1] > 0 or chords[0] < 0:
+        where = f" beyond r = {r[1:-1][falls][0]:g}" if falls.any() else ""
+        way_out = "smooth it, or take the part around the axis that is"
+        raise ValueError(f"shape {word}: is not convex{where}: the slope of f must not fall; {way_out}")
+    chords = np.maximum.accumulate(np.maximum(chords, 0.0))
+    bend = np.diff(chords) / np.diff(middle)
+    first = max(0.0, chords[0] - bend[0] * middle[0])
+    last = chords[-1] + bend[-1] * (r[-1] - middle[-1])
+    return Rows(np.concatenate([[0.0], middle, r[-1:]]), np.concatenate([[first], chords, [last]]), metres)
+
+
+def _lengths(word, header):
+    """What 1 is in each column, in m by the units of the header, or 1."""
+    if not _has_units(header):
+        return 1.0, 1.0
+    factors = []
+    for cell in header:
+        unit = (_HEADER.fullmatch(cell) or ["", "", ""])[2]
+        if unit not in _UNITS:
+            raise ValueError(f"shape {word}: the header {', '.join(header)} must name a length for each column, as um")
+        factors.append(_UNITS[unit])
+    return tuple(factors)
+
+
+def _has_units(header):
+    return any("[" in cell or "(" in cell for cell in header)
+
+
+def _is_number(text):
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

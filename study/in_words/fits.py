@@ -64,6 +64,7 @@ def _of_curve(curve: xr.Dataset, i: int, count: int, inputs: list[str], shifts: 
     widths = max(len(words) for _, words, _ in rows), max(len(name) for name, _, _ in rows)
     lines += [f"  {words:{widths[0]}}  {name:{widths[1]}} = {text}" for name, words, text in rows]
     lines += _residual(curve)
+    lines += _points(curve)
     lines += [_SENTENCES[status]] if status in _SENTENCES else []
     lines += _known(curve, inputs)
     broken = str(decode(curve["validity"]).item()).split() if int(curve["validity"]) else []
@@ -83,6 +84,23 @@ def _residual(curve: xr.Dataset) -> list[str]:
     unit = curve["residual"].attrs["units"]
     off = readable(float(f"{rms:.2g}"), unit)
     return [f"The points are {off} from the fit (rms), {100 * share:.2g} % of the range of {name}."]
+
+
+def _points(curve: xr.Dataset) -> list[str]:
+    """What is unusual about the points of a curve: gaps, equal x, no order; nothing of a plan. NaN after the last point
+    fills a shorter curve up and is no gap."""
+    if "residual" not in curve:
+        return []
+    name, x, y = curve.attrs["x"], curve[curve.attrs["x"]].values, curve[curve.attrs["y"]].values
+    there = np.isfinite(x) & np.isfinite(y)
+    written = np.flatnonzero(np.isfinite(x) | np.isfinite(y)).max(initial=-1) + 1
+    taken, gaps = x[there], written - there.sum()
+    equal = len(taken) - len(np.unique(taken))
+    steps = np.sign(np.diff(taken))
+    words = [f"{gaps} of {written} points have no numbers and are left out."] * bool(gaps)
+    words += [f"{equal} points stand at the {name} of another; each counts."] * bool(equal)
+    words += [f"The points are not in the order of {name}, which does not matter."] * (len({*steps[steps != 0]}) > 1)
+    return [" ".join(words)] if words else []
 
 
 def _long_name(name: str) -> str:

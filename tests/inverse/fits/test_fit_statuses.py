@@ -52,6 +52,22 @@ def test_a_contact_that_keeps_to_the_assumptions_is_said_to():
     assert "At the deepest point none of the assumptions that are checked is violated" in text
 
 
+def test_gaps_equal_depths_and_disorder_change_nothing_and_are_said():
+    depths = np.linspace(-0.2, 1.0, 60) * 1e-7
+    loads = gel(depths=depths)[0]
+    usual = fit(depths, loads)
+    text = str(study.summary(usual))
+    assert not any(word in text for word in ("have no numbers", "of another", "not in the order"))
+    order = np.random.default_rng(3).permutation(64)
+    gaps = [np.append(depths, [1e-8, np.nan, depths[5], depths[9]]), np.append(loads, [np.nan, 1e-9, loads[5], loads[9]])]
+    D, P = (np.append(column[order], np.nan) for column in gaps)  # the last one fills up
+    odd = fit(D, P)
+    text = str(study.summary(odd))
+    assert "2 of 64 points have no numbers and are left out. 2 points stand at the D of another; each counts." in text
+    assert "The points are not in the order of D, which does not matter." in text
+    np.testing.assert_allclose(odd.E1, usual.E1, rtol=0.02, err_msg="two points of 60 count twice")
+
+
 def test_no_points_at_all():
     assert status(fit(DEPTHS[:0], DEPTHS[:0])) == ["invalid_input"]
 

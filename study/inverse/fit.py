@@ -1,7 +1,10 @@
 """`fit`: inputs of a contact from measured curves, with intervals."""
 
+import os
 import warnings
 from collections.abc import Iterator
+from contextlib import closing
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -11,17 +14,20 @@ from ..inputs.definition import StudyError
 from ..inputs.vocabulary import NOT_RUN, ROWS
 from ..specimen.quantities import quantity
 from ..terminal import shown
+from ..work.cases import Failure, laws_of_users
+from ..work.engine import computed_tasks
 from ..work.progress import Progress
 from ..work.screen import screen_of
 from .curves import measured
 from .fits.answer import answered
 from .fits.asked import Asked, asked
-from .fits.block import FitStatus, fit_block
+from .fits.block import FitStatus
 from .fits.model import HERTZ, Model
+from .fits.parts import Part, fit_part, forget
 from .fits.said import said
-from .fits.tables import Table
 
 _BLOCK, _PART = 64, 64  # curves at a time, and their points are filled up to a multiple of this
+_calls = count()
 _ENDS = ((np.min, np.inf), (np.max, -np.inf))
 
 
@@ -99,16 +105,14 @@ def fit(
     X, Y, S = _arrays(data, question.model, sigma)
     if plan:
         Y = _planned(question, X)
-    table, unknowns = Table(question.model), len(question.model.unknowns) + len(question.shifts)
+    unknowns = len(question.model.unknowns) + len(question.shifts)
     there = np.isfinite(X) & np.isfinite(Y)
     status = np.where(_usable(X, Y, there, unknowns, "D0" in question.shifts), -1, FitStatus.INVALID_INPUT)
-    rows: dict[int, dict] = {}
+    rows: dict[int, tuple] = {}
     blocks = list(_blocks(there, status < 0, _stiffness(X, Y, question) if X.size else np.zeros(len(X))))
-    with Progress("fit", int((status < 0).sum()), screen_of(progress), passing=True) as told, np.errstate(all="ignore"):
+    with Progress("fit", int((status < 0).sum()), screen_of(progress), passing=True) as told:
         try:
-            for index, filled, points in blocks:
-                arrays = [_packed(A, there, filled, points) for A in (X, Y, S) if A is not None]
-                fits = fit_block(question, table, *arrays, *([None] if S is None else []))
+            for index, fits in _fits(question, blocks, (X, Y, S), there):
                 rows |= {int(curve): (fits, i) for i, curve in enumerate(index)}
                 told.update(len(index), 0)
         except KeyboardInterrupt:
@@ -119,6 +123,23 @@ def fit(
     fitted = answered(question, rows, status, X, Y, there, plan)
     fitted = fitted.assign_coords({name: data[name] for name in data.coords})
     return fitted.assign_attrs(said(question, fitted))
+
+
+def _fits(question: Asked, blocks: list, arrays: tuple, there: np.ndarray) -> Iterator[tuple[np.ndarray, dict]]:
+    """The curves of each block and their fits, by the processors that may be used."""
+    call = f"{os.getpid()} {next(_calls)}"
+    parts = [
+        Part(call, question, *(None if A is None else _packed(A, there, filled, points) for A in arrays))
+        for _, filled, points in blocks
+    ]
+    of_users = laws_of_users(np.array([question.model.scene.parameters.get("micro", "disc_cell")]))
+    try:
+        with closing(computed_tasks(fit_part, parts, can_leave=not of_users)) as results:
+            for number, fits in results:
+                # a process that was killed, or what it raised: then it is raised here
+                yield blocks[number][0], fit_part(parts[number]) if isinstance(fits, Failure) else fits
+    finally:
+        forget(call)
 
 
 def _columns(source: Any, model: Model, plan: bool) -> xr.Dataset:

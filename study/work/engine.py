@@ -1,8 +1,9 @@
 """The engine: blocks of cases are solved by the calling thread and processes beside it, or by the workers of a cluster.
 
-`study.solve` and the `run` of a study are served alike. A block has the same numbers wherever it is computed, so one
-worker and many give the same bits. The processes are those of `study.work.processes`. They import this package and not
-the program that calls, so a script needs no `if __name__ == "__main__"`. They stay for a while, for the next call.
+`study.solve` and the `run` of a study are served alike, and `study.fit`, whose blocks are curves. A block has the same
+numbers wherever it is computed, so one worker and many give the same bits. The processes are those of
+`study.work.processes`. They import this package and not the program that calls, so a script needs no
+`if __name__ == "__main__"`. They stay for a while, for the next call.
 """
 
 import atexit
@@ -16,9 +17,10 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import closing
+from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
-from typing import TextIO
+from typing import Any, TextIO
 
 import numpy as np
 from dask.system import cpu_count as available_workers  # it knows the limit of a container
@@ -101,13 +103,32 @@ def computed(
         return
     allowed = 1 if len(blocks) == 1 else _processors_allowed(definition, workers)
     here = not (storing and len(blocks) >= MANY and allowed > 1)
+    yield from _here_and_apart(guarded, partial(parcel, definition), blocks, allowed, here)
+
+
+def computed_tasks(
+    function: Callable, tasks: list, can_leave: bool, workers: int | None = None
+) -> Iterator[tuple[int, Any]]:
+    """(number, function(task)) for each task, in the order in which they end; Failure where a process has none.
+
+    The calling thread computes, and processes beside it if much work is left and tasks `can_leave` this process. What
+    a function raises in the calling thread is raised.
+    """
+    allowed = _processors_allowed(None, workers) if can_leave and len(tasks) > 1 else 1
+    yield from _here_and_apart(function, lambda task: task, tasks, allowed, here=True)
+
+
+def _here_and_apart(
+    function: Callable, packed: Callable, blocks: list, allowed: int, here: bool
+) -> Iterator[tuple[int, Any]]:
+    """(number, function(packed(block))) for each block, by at most `allowed` processors."""
     most = processes_for(allowed, len(blocks), here)
     if not most or not _in_use.acquire(blocking=False):  # another thread is using the processes
-        for number, index in enumerate(blocks):
-            yield number, guarded(parcel(definition, index))
+        for number, block in enumerate(blocks):
+            yield number, function(packed(block))
         return
     try:
-        yield from _shared(definition, blocks, most, here)
+        yield from _shared(function, packed, blocks, most, here)
     except BaseException:
         _pool.end()
         raise
@@ -115,10 +136,8 @@ def computed(
         _in_use.release()
 
 
-def _shared(
-    definition: Definition, blocks: list[np.ndarray], most: int, here: bool
-) -> Iterator[tuple[int, dict | Failure]]:
-    """`computed` in at most `most` processes and, if `here`, in this thread too.
+def _shared(function: Callable, packed: Callable, blocks: list, most: int, here: bool) -> Iterator[tuple[int, Any]]:
+    """`_here_and_apart` in at most `most` processes and, if `here`, in this thread too.
 
     With `here` processes are started only if much work is left.
     """
@@ -126,9 +145,9 @@ def _shared(
 
     def feeder(call: Callable) -> None:
         while room.acquire() and (block := _next(waiting)):
-            number, index = block
+            number, content = block
             try:
-                result = call(guarded, parcel(definition, index))
+                result = call(function, packed(content))
             except Exception as error:
                 result = Failure(str(error), "")
             ended.put((number, result))
@@ -143,8 +162,8 @@ def _shared(
                 result = ended.get()
                 room.release()
             else:
-                number, index = block
-                result = number, guarded(parcel(definition, index))
+                number, content = block
+                result = number, function(packed(content))
                 if not feeders:
                     seconds = (time.perf_counter() - begun) / (len(blocks) - len(waiting)) * len(waiting)
                     feeders = len(_pool.feed(feeder, min(most, int(seconds / START))))
@@ -154,7 +173,7 @@ def _shared(
         room.release(most)
 
 
-def _next(waiting: deque) -> tuple[int, np.ndarray] | None:
+def _next(waiting: deque) -> tuple[int, Any] | None:
     """The next block, None if there is none. Other threads take blocks too, so it would not help to look first."""
     try:
         return waiting.popleft()
@@ -201,15 +220,15 @@ def processes_for(workers: int, blocks: int, here: bool) -> int:
     return max(0, min(workers, blocks) - here)
 
 
-def _processors_allowed(definition: Definition, workers: int | None) -> int:
+def _processors_allowed(definition: Definition | None, workers: int | None) -> int:
     """How many processors may be used.
 
-    It is 1 if Python cannot start another Python, or if that cannot have the micro law. Without `workers` it is also 1
-    in threads and processes of programs that divide work themselves, such as dask.
+    It is 1 if Python cannot start another Python, or if that cannot have the micro law of a definition. Without
+    `workers` it is also 1 in threads and processes of programs that divide work themselves, such as dask.
     """
     # sys.executable of a program that embeds Python is that program
     python = "python" in Path(sys.executable or "").name.lower() and not getattr(sys, "frozen", False)
-    if not python or not can_travel(definition):
+    if not python or not (definition is None or can_travel(definition)):
         return 1
     divided = multiprocessing.parent_process() or threading.current_thread() is not threading.main_thread()
     return workers or (1 if divided else available_workers())

@@ -1,7 +1,7 @@
 """What the factors in solver/contact/error.py are worth: `python tools/errors/error_bars.py [SIZE]`, a minute.
 
-SIZE random cases (2,000 by default; of a few, none may be left to judge, and shares of none are nan) of each law on each base, far beyond any scene, are solved on few nodes and on 96,
-which are the truth. A line for each number of nodes:
+SIZE random cases (2,000 by default) of each law on each base, far beyond any scene, are solved on few nodes and on 96,
+which are the truth. Of few cases none may be left to judge; shares of none are nan. A line for each number of nodes:
 
 - cases: those whose error on 96 nodes is below a tenth of what is judged;
 - blind: of cases whose estimate is multiplied by _BLIND, how many have a truth above the estimate without that factor,

@@ -1,5 +1,6 @@
 """What becomes of curves that cannot be fitted: a status for each, and nothing is raised in a batch."""
 
+import pickle
 import warnings
 
 import numpy as np
@@ -7,7 +8,8 @@ import pytest
 from measured_curves import DEPTHS, GEL, fit, gel, status
 
 import study
-from study.inverse import fit as room
+from study.inverse.fits import parts as room
+from study.work import engine
 
 NOISE = np.random.default_rng(7).standard_normal(len(DEPTHS))
 
@@ -59,8 +61,8 @@ def test_gaps_equal_depths_and_disorder_change_nothing_and_are_said():
     text = str(study.summary(usual))
     assert not any(word in text for word in ("have no numbers", "of another", "not in the order"))
     order = np.random.default_rng(3).permutation(64)
-    gaps = [np.append(depths, [1e-8, np.nan, depths[5], depths[9]]), np.append(loads, [np.nan, 1e-9, loads[5], loads[9]])]
-    D, P = (np.append(column[order], np.nan) for column in gaps)  # the last one fills up
+    D, P = np.append(depths, [1e-8, np.nan, *depths[[5, 9]]]), np.append(loads, [np.nan, 1e-9, *loads[[5, 9]]])
+    D, P = (np.append(column[order], np.nan) for column in (D, P))  # the last one fills up
     odd = fit(D, P)
     text = str(study.summary(odd))
     assert "2 of 64 points have no numbers and are left out. 2 points stand at the D of another; each counts." in text
@@ -138,6 +140,7 @@ def test_an_interrupt_keeps_what_is_done(monkeypatch):
         return blocks(*arguments)
 
     monkeypatch.setattr(room, "fit_block", interrupted)
+    monkeypatch.setattr(engine, "START", np.inf)  # the interrupt is of this process
     curves = P * np.linspace(1, 2, 70)[:, None]
     with pytest.warns(UserWarning, match="interrupted after 64 of 70 curves, which are kept"):
         fitted = fit(DEPTHS, curves)
@@ -147,3 +150,39 @@ def test_an_interrupt_keeps_what_is_done(monkeypatch):
     calls[:] = [1]
     with pytest.raises(KeyboardInterrupt):
         fit(DEPTHS, P)
+
+
+class Apart:
+    """In place of a worker process: what goes there and comes back is packed, and the table is another one."""
+
+    def __init__(self):
+        self.parts = 0
+
+    def reuse(self, most):
+        return 0
+
+    def feed(self, feeder, count):
+        feeder(self.call)
+        return [None]
+
+    def call(self, function, part):
+        self.parts += 1
+        function, part = pickle.loads(pickle.dumps((function, part._replace(call="apart"))))
+        return pickle.loads(pickle.dumps(function(part)))
+
+    def end(self):
+        pass
+
+
+def test_curves_that_processes_fit_have_the_same_bits(monkeypatch):
+    curves = gel()[0] * np.linspace(1, 2, 130)[:, None]
+    monkeypatch.setattr(engine, "START", np.inf)
+    here = fit(DEPTHS, curves)
+    apart = Apart()
+    for name, value in {"START": 1e-9, "_pool": apart, "available_workers": lambda: 2}.items():
+        monkeypatch.setattr(engine, name, value)
+    both = fit(DEPTHS, curves)
+    assert apart.parts == 2, "of three blocks all but the first"
+    room.forget("apart")
+    assert not room._tables, "a call leaves no table behind"
+    assert both.identical(here)

@@ -1,0 +1,42 @@
+"""A block of curves as a task, which any process of this machine fits: each process keeps the table of a call."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .asked import Asked
+from .block import fit_block
+from .tables import Table
+
+#: Call -> its table. Several, for calls in several threads; worker processes end after a while, and their tables.
+_tables: dict[str, Table] = {}
+_MOST = 8
+
+
+class Part(NamedTuple):
+    """Some curves of a call: x, y (B, n) and the standard deviations of y, as `fit_block` takes them.
+
+    call : a word that no other call of the same process has
+    """
+
+    call: str
+    question: Asked
+    x: np.ndarray
+    y: np.ndarray
+    sigma: np.ndarray | None
+
+
+def fit_part(part: Part) -> dict[str, Any]:
+    """What `fit_block` returns of these curves."""
+    table = _tables.get(part.call)
+    if table is None:
+        for oldest in list(_tables)[: max(0, len(_tables) - _MOST + 1)]:
+            forget(oldest)
+        table = _tables[part.call] = Table(part.question.model)
+    with np.errstate(all="ignore"):
+        return fit_block(part.question, table, part.x, part.y, part.sigma)
+
+
+def forget(call: str) -> None:
+    """Free the table of a call in this process."""
+    _tables.pop(call, None)

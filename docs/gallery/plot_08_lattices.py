@@ -24,4 +24,6 @@ figure, axes = plt.subplots(figsize=(6, 4))
 for law in laws:
     axes.semilogx(contacts.lam0.sel(micro=law), ratio.sel(micro=law), label=law.replace("_", " "))
 axes.set(xlabel="relative contact area in the centre, λ(0)", ylabel="A[p(0)] over that of the square lattice")
+axes.set_xticks([0.05, 0.1, 0.2, 0.5], ["0.05", "0.1", "0.2", "0.5"])
+axes.minorticks_off()
 axes.legend()

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import roughcoat as rc
 
 own = {"P": 2.704e-5, "h": 0.02, "n": 0.5, "bonding": "frictionless", "Nbar": 250000, "Ra": 0.004}
-contacts = rc.solve(**own, base=["thin_layer", "half_space"], micro=["power_law", "smooth"], B=0.1, beta=0.5)
+contacts = rc.solve(**own, base=["thin_layer", "half_space"], micro=["power_law", "smooth"], B=0.1, beta=0.5, x=201)
 
 # %%
 # Asperities spread the pressure: its largest value falls, and the contact is wider. So does the layer.

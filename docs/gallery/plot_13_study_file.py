@@ -30,5 +30,5 @@ contacts = study.open()
 # The softer the coating is, the lower the real pressure.
 assert (contacts.p_max.diff("n") > 0).all() and (contacts.status == 0).all()
 
-figure = rc.plot(contacts, "p_max", "P", hue="n")
+figure = rc.plot(contacts, "P", "p_max", hue="n")
 figure

@@ -138,7 +138,15 @@ def _take_own_solver() -> None:
     sys.meta_path.insert(0, _OwnPackages)
 
 
+def _show_in_notebook() -> None:
+    """A notebook that runs shows a contact with a small picture of its pressure."""
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    if hasattr(shell, "kernel"):  # that of IPython in a terminal has none
+        import_module(".specimen.pictures", __name__).show_in(shell)
+
+
 _take_own_solver()
+_show_in_notebook()
 
 
 def __getattr__(name: str) -> Any:

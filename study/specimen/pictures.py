@@ -44,3 +44,21 @@ def of_heights(scan: Any) -> str:
     text = "\n".join([f"{scan.name}: {' x '.join(map(str, scan.z.shape))} heights, {size}", *scan.notes])
     words = "height z" if profile else "height z of the middle row"
     return with_picture(text, curve(np.arange(len(row)) * step, row - np.nanmin(row), "x", words))
+
+
+def of_contact(dataset: Any) -> str:
+    """HTML of an xarray.Dataset: xarray's own, under a picture of p(r) if it is one contact with a profile."""
+    is_contact = "model_used" in dataset and "p" in dataset and "x" in dataset.coords
+    drawn = is_contact and dataset["p"].dims == dataset["x"].dims == ("x",)
+    picture = curve(dataset["x"].values, dataset["p"].values, "r/a", "nominal pressure p") if drawn else ""
+    return picture + dataset._repr_html_()
+
+
+def show_in(shell: Any) -> None:
+    """Let a notebook, the shell of IPython, show datasets by `of_contact`, unless it shows them in another way already.
+
+    xarray need not be imported: the class is named.
+    """
+    formatter = shell.display_formatter.formatters["text/html"]
+    if "xarray.core.dataset.Dataset" not in formatter:
+        formatter.for_type_by_name("xarray.core.dataset", "Dataset", of_contact)

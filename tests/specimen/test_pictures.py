@@ -1,13 +1,15 @@
 """What a notebook shows of summaries, scans and roughness: the text, and a small picture that loads nothing."""
 
 import re
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import study
-from study.specimen.pictures import curve, with_picture
+from study.specimen.pictures import curve, of_contact, show_in, with_picture
 
 
 def picture(shown: str) -> np.ndarray:
@@ -26,6 +28,32 @@ def test_a_summary_has_the_profile():
     assert height == pytest.approx(contact.p.values / contact.p0.item(), abs=0.002)
     assert "<svg" not in study.summary(contact.drop_vars("p"))._repr_html_()
     assert "<svg" not in study.summary(study.solve(P=[1e-5, 2e-5], base="half_space", micro="smooth"))._repr_html_()
+
+
+def test_a_notebook_shows_a_contact_with_its_profile():
+    contact = study.solve(P=1e-5, base="half_space", micro="smooth")
+    shown = of_contact(contact)
+    assert "xr-wrap" in shown, "what xarray shows"
+    assert len(picture(shown.partition("</svg>")[0] + "</svg>")) == 33
+    for other in (contact.drop_vars("p"), study.solve(P=[1e-5, 2e-5], base="half_space", micro="smooth")):
+        assert not of_contact(other).startswith("<svg")
+    assert not of_contact(xr.Dataset({"p": ("x", [1.0, 2.0])}, {"x": [0.0, 1.0]})).startswith("<svg")
+
+
+class Formatter(dict):
+    """As that of IPython, by the names of classes."""
+
+    def for_type_by_name(self, module, name, function):
+        self[f"{module}.{name}"] = function
+
+
+def test_what_a_notebook_shows_already_is_left():
+    shell = SimpleNamespace(display_formatter=SimpleNamespace(formatters={"text/html": Formatter()}))
+    show_in(shell)
+    assert shell.display_formatter.formatters["text/html"] == {f"{xr.Dataset.__module__}.Dataset": of_contact}
+    shell.display_formatter.formatters["text/html"] = Formatter({"xarray.core.dataset.Dataset": str})
+    show_in(shell)
+    assert shell.display_formatter.formatters["text/html"] == {"xarray.core.dataset.Dataset": str}
 
 
 def test_a_text_is_escaped():

@@ -40,6 +40,7 @@ def fits(fitted: xr.Dataset, where: dict, new: Callable[..., Figure]) -> tuple[F
         across, up, drawn = (curve[name].values for name in (x, y, f"{y}_fit"))
         valid = ~(across > float(curve[f"{x}_valid"]))  # NaN where nothing is fitted
         order = np.argsort(across)
+        order = order[np.isfinite(drawn[order])]  # a gap among the points is none of the fit
         for face, here in (("C0", valid), ("none", ~valid)):
             style = {
                 "linestyle": "none",
@@ -56,7 +57,7 @@ def fits(fitted: xr.Dataset, where: dict, new: Callable[..., Figure]) -> tuple[F
         below.set_xlabel(axis_label(x, fitted[x]))
         columns.append({"curve": np.full(len(across), i), x: across, y: up, f"{y}_fit": drawn, "residual": up - drawn})
     panels[0, 0].set_ylabel(axis_label(y, fitted[y]))
-    panels[1, 0].set_ylabel("residual")
+    panels[1, 0].set_ylabel(f"residual, {multiple(fitted[y])[0]}")
     handles = [*panels[0, 0].lines[:1], *panels[0, 0].lines[2:3]]
     labels = ["measured", "fit"]
     if (fitted["validity"].isel(curve=list(numbers)) != 0).any():

@@ -186,3 +186,13 @@ def test_curves_that_processes_fit_have_the_same_bits(monkeypatch):
     room.forget("apart")
     assert not room._tables, "a call leaves no table behind"
     assert both.identical(here)
+
+
+def test_the_figure_draws_over_gaps_and_has_units():
+    depths = np.linspace(-0.2, 1.0, 40) * 1e-7
+    loads = gel(depths=depths)[0]
+    loads[20] = np.nan
+    above, below = study.plot(fit(depths, loads)).axes
+    assert below.get_ylabel() == "residual, nN" and above.get_ylabel().endswith(", nN")
+    drawn = next(line for line in above.lines if line.get_linestyle() == "-")
+    assert len(drawn.get_xdata()) == 39 and np.isfinite(drawn.get_ydata()).all()

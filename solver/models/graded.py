@@ -81,7 +81,7 @@ def _extrapolated(rows, rtol):
 def _change(values, before, last):
     """Relative change (B,) of extrapolated numbers: 0 where there is none, or the `last` solution has no number."""
     change = np.abs(values / before - 1)
-    change = np.where((values == before) | np.isnan(last), 0.0, change)
+    change = np.where((values == before) | ~np.isfinite(last), 0.0, change)
     return np.where(np.isnan(change), np.inf, change)
 
 

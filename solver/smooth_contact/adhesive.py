@@ -5,15 +5,18 @@ from dataclasses import replace
 import numpy as np
 
 from ..status import Status
+from . import dmt
 from .jkr import Jkr
 from .pull import Curve, Held, below, beyond, highest, last_minimum
 from .radius import guess
-from .state import answer, pinned
+from .state import answer, beyond_profile, pinned
 
 
 def solve(part, shape, body, x):
     """:class:`~..solution.Solution` of cases of one base, one shape and one law of adhesion, w > 0, in units R = E2* =
     1, at the radii x (m,)."""
+    if str(part.adhesion[0]) == "dmt":
+        return dmt.solve(part, shape, body, machine(part), x)
     law, every = Jkr(shape, body, part.w_adhesion), np.arange(len(part))
     if str(part.shape[0]) == "flat":
         return _flat(part, law, x)
@@ -24,12 +27,16 @@ def solve(part, shape, body, x):
     jumped, _ = curve.at(_jump(curve, held, turn), every)
     pulls = {"P_off": turn.state.P, "D_off": turn.state.D, "a_off": turn.state.a}
     pulls |= {"P_in": np.where(held.load, 0.0, jumped.P), "a_in": jumped.a}
-    return _answered(part, shape, state, pulls, curve.counts, x)
+    off = turn.state.P_error / np.abs(turn.state.P) + turn.state.D_error / np.abs(turn.state.D)
+    outside = beyond_profile(part, shape, lambda index, a: law.take(index).at(a))
+    return _answered(part, shape, state, pulls, off, curve.counts, x).refused(outside, Status.OUTSIDE_LAW)
 
 
-def _answered(part, shape, state, pulls, counts, x):
-    """The solution of the states, with the numbers `pulls` of pull-off and pull-in; PULLED_OFF where a state is NaN."""
+def _answered(part, shape, state, pulls, off, counts, x):
+    """The solution of the states, with the numbers `pulls` of pull-off and pull-in, which are `off` by so much; and
+    PULLED_OFF where a state is NaN."""
     solution, _ = answer(part, shape, state, counts, x)
+    solution = replace(solution, error=np.maximum(solution.error, off))
     solution = solution.refused(~np.isfinite(state.P), Status.PULLED_OFF)
     failed = np.isnan(pulls["P_off"])
     numbers = {"stable": solution.a >= pulls["a_off"], part.control: part.value}
@@ -79,4 +86,5 @@ def _flat(part, law, x):
     off, state = law.at(law.shape.b), pinned(part, law.shape, law.body)
     holds = (state.A >= off.A) & (part.branch == "stable")
     pulls = {"P_off": off.P, "D_off": off.D, "a_off": off.a, "P_in": 0 * off.a, "a_in": off.a}
-    return _answered(part, law.shape, state.only(holds), pulls, np.ones(len(part), dtype=np.int32), x)
+    error = off.P_error / np.abs(off.P) + off.D_error / np.abs(off.D)
+    return _answered(part, law.shape, state.only(holds), pulls, error, np.ones(len(part), dtype=np.int32), x)

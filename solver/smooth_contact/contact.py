@@ -7,8 +7,9 @@ from ..shapes import PARABOLOID, shape_of
 from ..shapes.power import Power
 from ..status import Status
 from . import adhesive
+from .equation import respond
 from .radius import touching
-from .state import State, answer, pinned
+from .state import State, answer, beyond_profile, pinned
 from .tabulated import Tabulated
 
 
@@ -37,7 +38,8 @@ def free(part, x):
         response, counts = touching(part.control, part.value, shape, body)
         state = State.free(response)
     solution, tensile = answer(part, shape, state, counts, x)
-    return solution.refused(tensile | ~np.isfinite(state.P), Status.LIFT_OFF)
+    outside = beyond_profile(part, shape, lambda index, a: State.free(respond(shape.take(index), body.take(index), a)))
+    return solution.refused(tensile | ~np.isfinite(state.P), Status.LIFT_OFF).refused(outside, Status.OUTSIDE_LAW)
 
 
 def sticking(part, x):

@@ -20,7 +20,7 @@ import numpy as np
 from ..body.wave_rule import FILM, MILD, place_of
 from .products import Products, coarser, nodes, size_of
 from .rises import rises
-from .tabulated import excess
+from .tabulated import Tabulated, excess
 
 _EPS = np.finfo(float).eps
 #: Number of classes of stiffness.
@@ -91,14 +91,15 @@ def respond(shape, body, a):
     if not hasattr(body, "kernel"):
         return _on_half_space(shape, body, a)
     octave, place = place_of(body, a)
+    sampler = None if isinstance(body, Tabulated) else body.kernel.sampler  # a table has all nodes at once
     kinds, pieces = 2 * ((octave - FILM) * _CLASSES + place) + shape.even, []
     usable = (a > 0) & np.isfinite(a)
     for kind in np.unique(kinds[usable]).tolist():
         index = np.flatnonzero(usable & (kinds == kind))
         which = int(octave[index[0]]), int(place[index[0]])
         part, size = body.take(index), size_of(which[0], bool(kind % 2))
-        L1 = excess(part, nodes(body.kernel.sampler, *which) * (part.h / a[index])[:, None])
-        products = Products.of(L1, body.kernel.sampler, *which, size)
+        L1 = excess(part, nodes(sampler, *which) * (part.h / a[index])[:, None])
+        products = Products.of(L1, sampler, *which, size)
         pieces.append((index, _on_kernel(shape.take(index), part, a[index], products)))
     return Response.join(len(a), pieces)
 

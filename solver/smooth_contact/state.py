@@ -67,6 +67,19 @@ def pinned(part, shape, body):
     return State(r.a, A, A * r.flat_P, A * r.flat_D, r.flat_P, r.flat_D, P_error, D_error, r)
 
 
+def beyond_profile(part, shape, at):
+    """(B,) bool: the contact is larger than the profile, which ends where its slope is finite, as a table does.
+
+    at : ``at(index, a)`` gives the :class:`State` of the cases `index` at the radii a
+    """
+    most, outside = shape.most(), np.zeros(len(part), dtype=bool)
+    index = np.flatnonzero(np.isfinite(shape.lifted(most[:, None])[:, 0]) & (most > shape.least()))
+    if len(index):
+        largest = most[index] if part.control == "a" else getattr(at(index, most[index]), part.control)
+        outside[index] = part.value[index] > largest
+    return outside
+
+
 def answer(part, shape, state, counts, x):
     """:class:`~..solution.Solution` of the states of a problem, and whether there is tension inside (B,). Its error is
     that of a, P and D under the control, and of p(0) where that is finite."""

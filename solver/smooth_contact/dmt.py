@@ -1,0 +1,58 @@
+"""Adhesion that acts only outside of the contact, after Derjaguin, Muller and Toporov, of the paraboloid.
+
+The attraction of the undeformed profiles, 2π w R, adds to the load, whatever lies under the surface, and the shape of
+the contact is that without adhesion: P = P₀(a) - 2π w, D = D₀(a). It is pulled off at a = 0.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..status import Status
+from .equation import Response, respond
+from .radius import Radii, guess, rising_root, touching
+from .state import State, answer
+
+
+def solve(part, shape, body, k, x):
+    """:class:`~..solution.Solution` of cases of one base with w > 0 and this law in units R = E2* = 1; k (B,) is the
+    stiffness of what holds the punch."""
+    pull = 2 * np.pi * part.w_adhesion
+    asked = part.value + pull if part.control == "P" else part.value
+    legal = (asked > 0) & ((part.branch == "stable") | (part.control == "a"))
+    response, counts = touching(part.control, np.where(legal, asked, np.nan), shape, body)
+    state = State.free(response)
+    state = state._replace(P=state.P - pull)
+    jumped = _jump(shape, body, pull, k)
+    solution, tensile = answer(part, shape, state, counts, x)
+    solution = solution.refused(legal & (tensile | np.isnan(state.P)), Status.LIFT_OFF)
+    solution = solution.refused(~legal, Status.PULLED_OFF)
+    pulls = {
+        "P_off": -pull,
+        "D_off": 0.0,
+        "a_off": 0.0,
+        "P_in": np.where(k == 0, 0.0, jumped.P - pull),
+        "a_in": jumped.a,
+    }
+    pulls = {name: values + 0 * pull for name, values in pulls.items()}
+    return replace(solution, **pulls, stable=np.isfinite(state.P), **{part.control: part.value})
+
+
+def _jump(shape, body, pull, k):
+    """The :class:`~.equation.Response` without adhesion at which D + (P - pull)/k is 0; at a = 0 of all numbers 0 where
+    k is infinite."""
+    radii, pieces = Radii(shape), []
+
+    def evaluate(x, index):
+        a, da = radii.at(x, index)
+        response = respond(shape.take(index), body.take(index), a)
+        pieces.append((index, response))
+        moved = response.D * k[index] + response.P
+        return np.log(moved / pull[index]), response.slope * (k[index] + response.S) * da / moved
+
+    held = np.isfinite(k)
+    start = guess("P", np.where(held, pull, np.nan), shape, body, radii)
+    reached = np.isfinite(rising_root(evaluate, start)[0])
+    response = Response.join(len(pull), pieces)
+    P, a = (np.where(held, np.where(reached, v, np.nan), 0.0) for v in (response.P, response.a))
+    return response._replace(P=P, a=a)

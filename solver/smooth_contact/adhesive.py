@@ -1,12 +1,14 @@
 """Smooth contacts that stick: the answers of a batch."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from ..status import Status
 from . import dmt
 from .jkr import Jkr
+from .maugis import Maugis, ring_pressure, stress
 from .pull import Curve, Held, below, beyond, highest, last_minimum
 from .radius import guess
 from .state import answer, beyond_profile, pinned
@@ -17,7 +19,9 @@ def solve(part, shape, body, x):
     1, at the radii x (m,)."""
     if str(part.adhesion[0]) == "dmt":
         return dmt.solve(part, shape, body, machine(part), x)
-    law, every = Jkr(shape, body, part.w_adhesion), np.arange(len(part))
+    law, every, ring = Jkr(shape, body, part.w_adhesion), np.arange(len(part)), None
+    if str(part.adhesion[0]) == "maugis":
+        law = Maugis(shape, body, part.w_adhesion, stress(part))
     if str(part.shape[0]) == "flat":
         return _flat(part, law, x)
     curve, held = Curve(law), Held.by(machine(part))
@@ -25,17 +29,19 @@ def solve(part, shape, body, x):
     turn = last_minimum(curve, held, highest(law, curve.radii))
     state = law.at(part.value) if part.control == "a" else curve.at(_asked(part, curve, held, control, turn), every)[0]
     jumped, _ = curve.at(_jump(curve, held, turn), every)
-    pulls = {"P_off": turn.state.P, "D_off": turn.state.D, "a_off": turn.state.a}
+    pulls = {"P_off": turn.state.P, "D_off": turn.state.D, "a_off": np.where(turn.at_axis, 0.0, turn.state.a)}
     pulls |= {"P_in": np.where(held.load, 0.0, jumped.P), "a_in": jumped.a}
     off = turn.state.P_error / np.abs(turn.state.P) + turn.state.D_error / np.abs(turn.state.D)
     outside = beyond_profile(part, shape, lambda index, a: law.take(index).at(a))
-    return _answered(part, shape, state, pulls, off, curve.counts, x).refused(outside, Status.OUTSIDE_LAW)
+    if isinstance(law, Maugis):
+        ring = partial(ring_pressure, part, state.zone)
+    return _answered(part, shape, state, pulls, off, curve.counts, x, ring).refused(outside, Status.OUTSIDE_LAW)
 
 
-def _answered(part, shape, state, pulls, off, counts, x):
+def _answered(part, shape, state, pulls, off, counts, x, ring=None):
     """The solution of the states, with the numbers `pulls` of pull-off and pull-in, which are `off` by so much; and
     PULLED_OFF where a state is NaN."""
-    solution, _ = answer(part, shape, state, counts, x)
+    solution, _ = answer(part, shape, state, counts, x, ring)
     solution = replace(solution, error=np.maximum(solution.error, off))
     solution = solution.refused(~np.isfinite(state.P), Status.PULLED_OFF)
     failed = np.isnan(pulls["P_off"])

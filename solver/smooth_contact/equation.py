@@ -118,8 +118,8 @@ def _on_kernel(shape, body, a, products):
     depth, slope = (f(a[:, None])[:, 0] for f in (shape.lifted, shape.lifted_slope))
     sides = np.zeros((len(a), N, 3))
     sides[:, :, 0], sides[:, 0, 1], sides[:, :, 2] = rises(shape, a, N), 1.0, products.edge
-    y, matrix = _solved(products, sides, N)
-    at_edge = _at_edge(products, y)
+    y, matrix = solved(products, sides, N), matrix_of(products, N)
+    at_edge = at_the_edge(products, y)
     flat_D = 1 + at_edge[:, 1]
     P, flat_P = 2 * E * a * y[:, 0, 0], 2 * E * a * y[:, 0, 1]
     D = depth + at_edge[:, 0]
@@ -127,10 +127,10 @@ def _on_kernel(shape, body, a, products):
     resolvent = (products.corner - at_edge[:, 2]) / flat_D
     bent = y[:, :, :2] - sides[:, :, :2]
     few = coarser(N)
-    less, _ = _solved(products, sides[:, :few, :2], few)
+    less = solved(products, sides[:, :few, :2], few)
     changes = bent - np.pad(less - sides[:, :few, :2], ((0, 0), (0, N - few), (0, 0)))
     rounded = _FLOOR * _EPS * N * np.abs(matrix).sum(axis=2).max(axis=1)
-    off = np.abs(_at_edge(products, less) - at_edge[:, :2])
+    off = np.abs(at_the_edge(products, less) - at_edge[:, :2])
     flat_change = 2 * E * a * changes[:, 0, 1]
     of_basis = (2 * E * a * changes[:, 0, 0], off[:, 0], flat_change, off[:, 1])
     whole = (P, D, flat_P, flat_D)
@@ -143,13 +143,18 @@ def _on_kernel(shape, body, a, products):
     )  # fmt: skip
 
 
-def _solved(products, sides, N):
-    """The solution (B, N, j) of the equation in the first N functions of the basis, and its matrix (B, N, N)."""
+def solved(products, sides, N):
+    """The solution (B, N, j) of the equation for right-hand `sides` (B, N, j) in the first N functions of the basis."""
+    return np.linalg.solve(matrix_of(products, N), sides)
+
+
+def matrix_of(products, N):
+    """The matrix (B, N, N) of the equation."""
     matrix = np.eye(N) + products.differences[:, :N, :N]
     matrix[:, :, 0] += products.edge[:, :N]
-    return np.linalg.solve(matrix, sides), matrix
+    return matrix
 
 
-def _at_edge(products, y):
+def at_the_edge(products, y):
     """(2/π) ∫ (L - 1) cos κ ŷ dκ (B, j) of y (B, N, j): ê_0 is d_0 + cos κ."""
     return np.einsum("bn,bnj->bj", products.edge[:, : y.shape[1]], y) + products.corner[:, None] * y[:, 0]

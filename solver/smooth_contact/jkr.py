@@ -26,6 +26,7 @@ class Jkr(NamedTuple):
     shape: object
     body: object
     w: np.ndarray
+    reaches_axis = False  # at small radii the edge pulls more than the shape presses
 
     def take(self, index):
         return Jkr(self.shape.take(index), self.body.take(index), self.w[index])
@@ -37,4 +38,4 @@ class Jkr(NamedTuple):
         dD = r.slope + A * (r.flat_D / (2 * a) + r.flat_slope)
         dP = r.S * dD + 2 * r.E * A / r.flat_D
         errors = (getattr(r, f"{v}_error") + np.abs(A) * getattr(r, f"flat_{v}_error") for v in "PD")
-        return State(a, A, r.P + A * r.flat_P, r.D + A * r.flat_D, dP, dD, *errors, r)
+        return State(a, A, r.P + A * r.flat_P, r.D + A * r.flat_D, dP, dD, *errors, 1 + 0 * a, r)

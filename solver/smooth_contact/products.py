@@ -72,6 +72,12 @@ class Products(NamedTuple):
         return cls(flat[:, places[:-1, :-1]], flat[:, places[:-1, -1]], flat[:, places[-1, -1]], flat[:, count:])
 
     @classmethod
+    def summed(cls, d, cosine, q):
+        """The same from d_m (B, N, G), cos κ and the weights of L - 1, (B, G) each, without the slope."""
+        edge = np.einsum("bng,bg->bn", d, q * cosine)
+        return cls((d * q[:, None]) @ np.swapaxes(d, 1, 2), edge, (q * cosine**2).sum(axis=1), edge)
+
+    @classmethod
     def _summed(cls, L1, octave, stiffness, size):
         """The same from sums over all nodes, case by case: a table would be too large."""
         waves = _WAVES.get((octave, stiffness, size), lambda: _waves(octave, stiffness, size))

@@ -102,12 +102,13 @@ def lowest(law, x, index, radii):
 
 class Turn(NamedTuple):
     """The last minimum of Q in B cases: x, the state there, and whether it is the corner of what is flat, where x is
-    -inf. `above` is an x beyond every minimum."""
+    -inf. `above` is an x beyond every minimum. `at_axis`: it is at a = 0, and `x` the least that was looked at."""
 
     above: np.ndarray
     x: np.ndarray
     state: State
     corner: np.ndarray
+    at_axis: np.ndarray
 
 
 def last_minimum(curve, held, start):
@@ -128,13 +129,15 @@ def last_minimum(curve, held, start):
         x[inside], _ = between(
             lambda y, i: slope(y, inside[i]) / scale[i], low, high, ends[0] / scale, ends[1] / scale, tolerance
         )
-    x = np.where(found.ended & ~corner, np.nan, np.where(corner, -np.inf, x))
+    at_axis = found.ended & ~corner & curve.law.reaches_axis & np.isfinite(found.low)
+    x = np.where(found.ended & ~corner, np.where(at_axis, found.low, np.nan), np.where(corner, -np.inf, x))
     state, _ = curve.at(x, np.arange(len(x)))
-    return Turn(start, x, state, corner)
+    return Turn(start, x, state, corner, at_axis)
 
 
 class Interval(NamedTuple):
-    """Neighbours low < high in x, and Q and its slope dQ by a there; (B,) each. `ended`: there are none."""
+    """Neighbours low < high in x, and Q and its slope dQ by a there; (B,) each. `ended`: there are none; then `low` is
+    the last x."""
 
     low: np.ndarray
     high: np.ndarray
@@ -167,6 +170,7 @@ def descend(curve, held, start, wanted):
                     x, Q, dQ = _with_middles(curve, held, x, Q, dQ, active[rows])
                 goes_on[rows] = ~_note(out, active[rows], wanted(Q, dQ, active[rows]), x, Q, dQ)
         last = looked[0][:, -1]
+        out.low[active] = np.where(goes_on, last, out.low[active])
         goes_on &= ~lowest(curve.law, last, active, curve.radii) & ~np.isnan(last)
         active, looked = active[goes_on], tuple(values[goes_on, -1:] for values in looked)
     return out

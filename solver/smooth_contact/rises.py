@@ -70,12 +70,12 @@ def _kinked_rises(shape, a, size):
         weights = (width * (2 * y * w)).reshape(len(index), -1)
         part = shape.take(index)
         rise = weights * (part.lifted(radius) - part.lifted(radius * tau))
-        for m, values in enumerate(_functions(tau, size)):
+        for m, values in enumerate(functions(tau, size)):
             out[index, m] = (values * rise).sum(axis=1)
     return out
 
 
-def _functions(tau, size):
+def functions(tau, size):
     """Yield e_m at τ, m = 0 ... size - 1."""
     before, now, step = np.zeros_like(tau), np.ones_like(tau), 0
     for m in range(size):
@@ -87,7 +87,7 @@ def _functions(tau, size):
 
 def legendre(tau, size):
     """e_m (N, Q) at τ (Q,)."""
-    return np.array(list(_functions(tau, size)))
+    return np.array(list(functions(tau, size)))
 
 
 def on_half_space(shape, a, x):

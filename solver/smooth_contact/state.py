@@ -16,7 +16,7 @@ _FLAT = 1e-12
 
 class State(NamedTuple):
     """Contacts, (B,) each: load and depth at the radius `a`, their derivatives dP, dD by a, and their errors. `A`, the
-    edge value, and `response` say what the pressure is."""
+    edge value, and `response` say what the pressure is. `zone` is c/a, 1 unless attraction acts in a ring."""
 
     a: np.ndarray
     A: np.ndarray
@@ -26,6 +26,7 @@ class State(NamedTuple):
     dD: np.ndarray
     P_error: np.ndarray
     D_error: np.ndarray
+    zone: np.ndarray
     response: Response
 
     def take(self, index):
@@ -39,13 +40,14 @@ class State(NamedTuple):
     def stiffness(self):
         """dP/dD along the curve, (B,): infinite where the depth has its minimum."""
         steep = np.abs(self.dD) < _FLAT * self.response.slope
-        return np.where(self.A == 0, self.response.S, np.where(steep, np.inf, self.dP / self.dD))
+        free = (self.A == 0) & (self.zone == 1)
+        return np.where(free, self.response.S, np.where(steep, np.inf, self.dP / self.dD))
 
     @classmethod
     def free(cls, response):
         """The contacts without adhesion."""
         r = response
-        return cls(r.a, 0 * r.a, r.P, r.D, r.S * r.slope, r.slope, r.P_error, r.D_error, r)
+        return cls(r.a, 0 * r.a, r.P, r.D, r.S * r.slope, r.slope, r.P_error, r.D_error, 1 + 0 * r.a, r)
 
     @classmethod
     def join(cls, size, pieces):
@@ -64,7 +66,7 @@ def pinned(part, shape, body):
     A = part.value / unit
     error = np.abs(A) * other * (r.flat_P_error / r.flat_P + r.flat_D_error / r.flat_D)
     P_error, D_error = (0 * error, error) if part.control == "P" else (error, 0 * error)
-    return State(r.a, A, A * r.flat_P, A * r.flat_D, r.flat_P, r.flat_D, P_error, D_error, r)
+    return State(r.a, A, A * r.flat_P, A * r.flat_D, r.flat_P, r.flat_D, P_error, D_error, 1 + 0 * A, r)
 
 
 def beyond_profile(part, shape, at):
@@ -80,11 +82,14 @@ def beyond_profile(part, shape, at):
     return outside
 
 
-def answer(part, shape, state, counts, x):
+def answer(part, shape, state, counts, x, ring=None):
     """:class:`~..solution.Solution` of the states of a problem, and whether there is tension inside (B,). Its error is
-    that of a, P and D under the control, and of p(0) where that is finite."""
+    that of a, P and D under the control, and of p(0) where that is finite. ``ring(x)`` is what is added to p."""
     response, A = state.response, state.A
-    p = pressures(shape, response, A, np.concatenate([x, [0.0], _LOOKED_AT]))
+    radii = np.concatenate([x, [0.0], _LOOKED_AT])
+    p = pressures(shape, response, A, radii)
+    if ring is not None:
+        p = p + ring(radii)
     p_x, p0, looked_at = np.split(p, [len(x), len(x) + 1], axis=1)
     p0 = p0[:, 0]
     moved, error = _error(part.control, state)

@@ -1,0 +1,171 @@
+"""Adhesion in a ring around the contact, after Maugis and Dugdale, of the paraboloid on any kernel.
+
+The stress -σ₀ acts where a < r < c, up to the gap w/σ₀. Inside c the pressure is -σ₀ and that of a contact with
+φ(a) = 0, whose equation (:mod:`.equation`) has F - Q in place of F,
+
+    Q(t) = (2 σ₀/E) [sqrt(c² - t²) + c ∫ (L - 1) J1(kc) cos kt dk/k],      P = 2 E a ∫₀¹ y dτ - π c² σ₀,
+
+and the gap at c is c²/2 - D + u(c),
+
+    u(c) = (2/E) [∫₀ᵃ φ dt/sqrt(c² - t²) + ∫ (L - 1) J0(kc) φ̂ dk] - (2 σ₀ c/E) [2/π + ∫ (L - 1) J1(kc) J0(kc) dk/k].
+
+So a and γ = c/a have one w; for a given w, γ is searched at each radius. With t = c sin z nothing is singular at a = c.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import j0, j1
+
+from ..body.wave_rule import OCTAVES, place_of, quadrature
+from ..numerics.bracket import false_position
+from ..numerics.quadrature import gauss_legendre
+from .equation import Response, at_the_edge, solved
+from .products import Products, coarser, size_of
+from .rises import functions, legendre
+from .state import State
+from .tabulated import excess
+
+#: Relative steps in a and in γ - 1 of the differences that are the slopes of P and D, of fourth order.
+_STEP = 2e-3
+#: Rounding of P and D for each function of the basis.
+_ROUNDING = 1e-14
+#: More points of the rule in z than the basis has functions.
+_MORE = 24
+
+
+class Ring(NamedTuple):
+    """Contacts at given a and γ, (B,) each: the work of adhesion, load, depth, and errors of both. `bent` (B, N): what
+    of y is a polynomial."""
+
+    w: np.ndarray
+    P: np.ndarray
+    D: np.ndarray
+    P_error: np.ndarray
+    D_error: np.ndarray
+    bent: np.ndarray
+
+
+class Maugis(NamedTuple):
+    """The law of adhesion of B cases: shapes, which are paraboloids, the body, w and σ₀ (B,)."""
+
+    shape: object
+    body: object
+    w: np.ndarray
+    sigma: np.ndarray
+    reaches_axis = True  # where the ring is wide, P and D rise with a from a = 0
+
+    def take(self, index):
+        return Maugis(self.shape.take(index), self.body.take(index), self.w[index], self.sigma[index])
+
+    def at(self, a):
+        """The :class:`~.state.State` at the radii a (B,); A is 0, and `zone` is γ."""
+        usable = np.flatnonzero((a > 0) & np.isfinite(a))
+        part, over = self.take(usable), np.full(len(a), np.nan)
+        over[usable] = part._over(a[usable])
+        center = self.ring(a, over)
+        by_a, by_over = self._slopes(a, over)
+        dP, dD = (by_a[i] - by_over[i] * by_a[0] / by_over[0] for i in (1, 2))
+        N, none = center.bent.shape[1], np.zeros_like(center.bent)
+        nan, one = np.full_like(a, np.nan), np.ones_like(a)
+        response = Response(
+            a, self.body.E * one, center.P, center.D, one, one, dD, nan, *center[3:5], nan, nan, N * one,
+            center.bent, none, none, none,
+        )  # fmt: skip
+        return State(a, 0 * a, center.P, center.D, dP, dD, *center[3:5], 1 + np.exp(over), response)
+
+    def _over(self, a):
+        """ln(γ - 1) (B,) at which the ring has the work w."""
+
+        def off(x, index):
+            part = self.take(index)
+            return np.log(part.ring(a[index], x).w / part.w)
+
+        near = np.pi * self.body.E * self.w / (4 * self.sigma**2) / a
+        wide = np.sqrt(2 * self.w / self.sigma) / a
+        return false_position(off, np.log(np.minimum(near, wide)), np.full(len(a), 1e-13))[0]
+
+    def _slopes(self, a, over):
+        """Derivatives (3, B) of w, P and D by a and by ln(γ - 1)."""
+        steps, weights = _STEP * np.array([-2, -1, 1, 2]), np.array([1, -8, 8, -1]) / (12 * _STEP)
+        by_a, by_over = np.zeros((2, 3, len(a)))
+        for step, weight in zip(steps, weights, strict=True):
+            by_a += weight * np.array(self.ring(a * (1 + step), over)[:3]) / a
+            by_over += weight * np.array(self.ring(a, over + step)[:3])
+        return by_a, by_over
+
+    def ring(self, a, over):
+        """The :class:`Ring` at a and ln(γ - 1) (B,)."""
+        c = a * (1 + np.exp(over))
+        octave, place = (np.zeros(len(a), dtype=int),) * 2
+        if hasattr(self.body, "kernel"):
+            octave, place = place_of(self.body, c)
+            octave = np.maximum(octave, OCTAVES[0])
+        kinds, pieces = octave * 16 + place, []
+        usable = np.isfinite(c)
+        for kind in np.unique(kinds[usable]).tolist():
+            index = np.flatnonzero(usable & (kinds == kind))
+            part = self.take(index)
+            pieces.append((index, part._ring(a[index], over[index], int(octave[index[0]]), int(place[index[0]]))))
+        width = max((piece.bent.shape[1] for _, piece in pieces), default=1)
+        out = Ring(*np.full((5, len(a)), np.nan), np.zeros((len(a), width)))
+        for index, piece in pieces:
+            for array, values in zip(out[:5], piece[:5], strict=True):
+                array[index] = values
+            out.bent[index, : piece.bent.shape[1]] = piece.bent
+        return out
+
+    def _ring(self, a, over, octave, place):
+        """The :class:`Ring` where h/c is in one octave and class of stiffness."""
+        N, E, gamma = size_of(octave, True) + 4, self.body.E, 1 + np.exp(over)
+        edge = np.sqrt(np.exp(over) * (gamma + 1))  # sqrt(γ² - 1)
+        z, weight = gauss_legendre(N + _MORE)
+        end = np.arctan2(1.0, edge)[:, None]  # arcsin(1/γ)
+        tau, root = gamma[:, None] * np.sin(end * z), gamma[:, None] * np.cos(end * z)  # γ sin z, sqrt(γ² - τ²)
+        dz, basis = end * weight, np.stack(list(functions(tau, N)), axis=1)
+        c, unit = a * gamma, 2 * self.sigma / E
+        exact = a[:, None] ** 2 * (1 - tau) * (1 + tau) + (unit * a)[:, None] * (root - edge[:, None])
+        side = np.einsum("bq,bnq->bn", exact * dz * root, basis)
+        y, less, bent, at_edge, change, of_waves = side, side, 0 * side, 0 * a, 0 * a, 0 * a
+        if hasattr(self.body, "kernel"):
+            d, cosine, by, q = self._waves(a, gamma, octave, place, N)
+            J1, J0 = j1(by) / (by / gamma[:, None]), j0(by)
+            side = side + (unit * c)[:, None] * np.einsum("bg,bng->bn", q * J1, d)
+            products, few = Products.summed(d, cosine, 2 / np.pi * q), coarser(N)
+            y, less = (solved(products, side[:, :n, None], n)[:, :, 0] for n in (N, few))
+            ends = [at_the_edge(products, v[:, :, None])[:, 0] for v in (y, less)]
+            at_edge, change = ends[0] - unit * c * (q * J1 * cosine).sum(axis=1), np.abs(ends[1] - ends[0])
+            bent = y - np.einsum("bq,bnq->bn", exact * dz * root, basis)
+            transform = np.einsum("bn,bng->bg", y, d) + y[:, :1] * cosine
+            of_waves = (q * J0 * (2 / np.pi * transform - (unit * c)[:, None] * J1)).sum(axis=1)
+        whole = exact + np.einsum("bn,bnq->bq", bent, basis)
+        D = a**2 - unit * a * edge + at_edge
+        moved = 2 / np.pi * ((whole * dz).sum(axis=1) - unit * c) + of_waves  # u(c)
+        P = 2 * E * a * y[:, 0] - np.pi * c**2 * self.sigma
+        P_error = 2 * E * a * np.abs(y[:, 0] - less[:, 0]) + _ROUNDING * N * (np.abs(P) + np.pi * c**2 * self.sigma)
+        return Ring(self.sigma * (c**2 / 2 - D + moved), P, D, P_error, change + _ROUNDING * N * np.abs(D), bent)
+
+    def _waves(self, a, gamma, octave, place, N):
+        """d_m (B, N, G), cos κ, κγ and the weights of ∫ (L - 1) · dκ (B, G) each."""
+        k, weight = quadrature(octave, place)  # in 1/c
+        by = np.broadcast_to(k, (len(a), len(k)))
+        L1 = excess(self.body, by * (self.body.h / (a * gamma))[:, None])
+        kappa = k / gamma[:, None]
+        x, w = gauss_legendre(2 * (N + 40))
+        tau, w = 2 * x[len(x) // 2 :] - 1, 2 * w[len(x) // 2 :]
+        half = kappa[:, :, None] / 2
+        swing = -2 * np.sin(half * (1 + tau)) * np.sin(half * (tau - 1))
+        d = np.swapaxes(swing @ (legendre(tau, N) * w).T, 1, 2)
+        return d, np.cos(kappa), by, weight * L1 / gamma[:, None]
+
+
+def stress(part):
+    """σ₀ (B,) of cases in which it, or the range z₀ = w/(0.97 σ₀), is given."""
+    return np.where(np.isnan(part.sigma0), part.w_adhesion / (0.97 * part.z0), part.sigma0)
+
+
+def ring_pressure(part, zone, x):
+    """What the ring adds to the pressure (B, m) at x (m,) inside the contact, by the tension outside it."""
+    sigma = stress(part)[:, None]
+    edge = np.sqrt((zone - 1) * (zone + 1))[:, None]
+    return sigma * (2 / np.pi * np.arctan2(np.sqrt((1 - x) * (1 + x)), edge) - 1)

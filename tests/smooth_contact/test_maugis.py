@@ -1,0 +1,61 @@
+"""Attraction in a ring, after Maugis and Dugdale: another code on layers, closed forms and limits on a half-space."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from rows import SMOOTH, material, rows
+
+from solver import Problem, Status, solve
+
+ROWS = rows("given_maugis.csv")
+HALF_SPACE = {"base": "half_space", "w_adhesion": 1e-4, "adhesion": "maugis"} | SMOOTH
+
+
+@pytest.mark.parametrize("row", ROWS, ids=[f"{row['case']:g}" for row in ROWS])
+def test_another_code(row):
+    """1e-9, by the load; the pressure ends at -sigma0."""
+    case = material(row) | {"w_adhesion": row["w"], "adhesion": "maugis", "sigma0": row["sigma0"], "rtol": 1e-9}
+    contact = solve(Problem.of(P=row["P"], **case, **SMOOTH))
+    assert contact.status == Status.CONVERGED
+    for name in "aPD":
+        assert_allclose(getattr(contact, name), row[name], rtol=1e-9, atol=0)
+    assert_allclose(contact.p[0, 1], -row["sigma0"], rtol=1e-12, atol=0)
+
+
+@pytest.mark.parametrize("sigma", [1e-4, 1e-2])
+def test_half_space(sigma):
+    """Maugis' closed forms at c/a = m, with λ = 2 σ₀ (R/(π w K²))^(1/3), K = 4E/3: 1e-10.
+
+    1 = (λ a²/2) [q + (m² - 2) θ] + (4 λ² a/3) [q θ - m + 1], q = sqrt(m² - 1), θ = arccos(1/m), a in (π w R²/K)^(1/3).
+    """
+    w, K = 1e-4, 4 / 3
+    unit, lam = (np.pi * w / K) ** (1 / 3), 2 * sigma / (np.pi * w * K**2) ** (1 / 3)
+    contact = solve(Problem.of(a=[0.03, 0.1], sigma0=sigma, **HALF_SPACE))
+    a = contact.a / unit
+    low, high = np.ones(2), np.full(2, 1e3)
+    for _ in range(100):
+        m = (low + high) / 2
+        q, theta = np.sqrt(m**2 - 1), np.arccos(1 / m)
+        rest = lam * a**2 / 2 * (q + (m**2 - 2) * theta) + 4 / 3 * lam**2 * a * (q * theta - m + 1) - 1
+        low, high = np.where(rest < 0, m, low), np.where(rest < 0, high, m)
+    P = (a**3 - lam * a**2 * (q + m**2 * theta)) * np.pi * w
+    D = (a**2 - 4 / 3 * a * lam * q) * unit**2
+    assert_allclose(contact.P, P, rtol=1e-10, atol=0)
+    assert_allclose(contact.D, D, rtol=1e-10, atol=0)
+
+
+def test_limits():
+    """-P_off/(π w) goes from 2, of DMT, to 1.5, of JKR, as σ₀ rises; z0 says the same as σ₀ = w/(0.97 z0)."""
+    ratios = [-solve(Problem.of(P=0.0, sigma0=s, **HALF_SPACE)).P_off[0] / (np.pi * 1e-4) for s in (1e-5, 1e-2, 1.0)]
+    assert 1.9999 < ratios[0] < 2 and ratios[0] > ratios[1] > ratios[2] and 1.5 < ratios[2] < 1.501
+    one, other = (solve(Problem.of(D=1e-3, **HALF_SPACE | v)) for v in ({"sigma0": 0.01}, {"z0": 1e-4 / 0.97 / 0.01}))
+    assert_allclose(one.P, other.P, rtol=1e-12, atol=0)
+    assert solve(Problem.of(D=1e-3, sigma0=1e-5, **HALF_SPACE)).a_off == 0
+
+
+def test_stiffness_is_the_slope_of_the_curve():
+    """dP/dD from two radii, 1e-5."""
+    layer = {"h": 0.05, "n": 0.3, "nu1": 0.4, "bonding": "bonded", "w_adhesion": 1e-4, "sigma0": 3e-2}
+    contact = solve(Problem.of(a=[0.0999, 0.1, 0.1001], **layer, adhesion="maugis", **SMOOTH))
+    slope = (contact.P[2] - contact.P[0]) / (contact.D[2] - contact.D[0])
+    assert_allclose(slope, contact.dP_dD[1], rtol=1e-5, atol=0)

@@ -6,7 +6,7 @@ from ..body import BODIES
 from ..shapes import PARABOLOID, shape_of
 from ..shapes.power import Power
 from ..status import Status
-from . import adhesive
+from .adhesion import adhesive
 from .equation import respond
 from .radius import touching
 from .state import State, answer, beyond_profile, pinned

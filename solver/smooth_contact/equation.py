@@ -6,8 +6,9 @@ The Hankel transform of the pressure is p̂(k) = ∫₀ᵃ φ(t) cos kt dt. With
 
     P = 2 E a ∫₀¹ y dτ,       D = F(a) + A + (2/π) ∫ (L - 1) cos κ ŷ(κ) dκ.
 
-A is 0 without adhesion (:mod:`.jkr` says what it is else). The depth does not stand in the equation: so nothing cancels
-under stiff layers. It is linear, and y = y_F + A y_1, where y_1 has the right-hand side 1: of a flat punch.
+A is 0 without adhesion (:mod:`.adhesion.jkr` says what it is else). The depth does not stand in the equation: so
+nothing cancels under stiff layers. It is linear, and y = y_F + A y_1, where y_1 has the right-hand side 1: of a flat
+punch.
 
 Galerkin's method solves it in the basis of :mod:`.products`. Of F, which has kinks, only its projection on the basis
 counts: what is left of the kernel and what is left of F are small both, and only their product is an error.

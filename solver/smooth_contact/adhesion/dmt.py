@@ -8,14 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..status import Status
-from .equation import Response, respond
-from .radius import Radii, guess, rising_root, touching
-from .state import State, answer
+from ...status import Status
+from ..equation import Response, respond
+from ..radius import Radii, guess, rising_root, touching
+from ..state import State, answer
 
 
 def solve(part, shape, body, k, x):
-    """:class:`~..solution.Solution` of cases of one base with w > 0 and this law in units R = E2* = 1; k (B,) is the
+    """:class:`~...solution.Solution` of cases of one base with w > 0 and this law in units R = E2* = 1; k (B,) is the
     stiffness of what holds the punch."""
     pull = 2 * np.pi * part.w_adhesion
     asked = part.value + pull if part.control == "P" else part.value
@@ -39,8 +39,8 @@ def solve(part, shape, body, k, x):
 
 
 def _jump(shape, body, pull, k):
-    """The :class:`~.equation.Response` without adhesion at which D + (P - pull)/k is 0; at a = 0 of all numbers 0 where
-    k is infinite."""
+    """The :class:`~..equation.Response` without adhesion at which D + (P - pull)/k is 0; where k is infinite, all its
+    numbers are 0."""
     radii, pieces = Radii(shape), []
 
     def evaluate(x, index):

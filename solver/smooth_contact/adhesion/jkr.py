@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .equation import respond
-from .state import State
+from ..equation import respond
+from ..state import State
 
 
 class Jkr(NamedTuple):

@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..numerics.bracket import between
-from ..shapes.shape import column
+from ...numerics.bracket import between
+from ...shapes.shape import column
+from ..radius import Radii, rising_root
 from .jkr import State
-from .radius import Radii, rising_root
 
-#: Distance of the radii in the variable of :class:`~.radius.Radii`, and how many are looked at together.
+#: Distance of the radii in the variable of :class:`~..radius.Radii`, and how many are looked at together.
 _STEP, _TOGETHER = 0.25, 8
 #: Radii begin at this multiple of the largest radius of pull-off of a half-space which yields as the body does to any
 #: wave; and end where what the shape adds to the slope of D is below this part of what the edge takes, and below this

@@ -5,17 +5,17 @@ from functools import partial
 
 import numpy as np
 
-from ..status import Status
+from ...status import Status
+from ..radius import guess
+from ..state import answer, beyond_profile, pinned
 from . import dmt
 from .jkr import Jkr
 from .maugis import Maugis, ring_pressure, stress
 from .pull import Curve, Held, below, beyond, highest, last_minimum
-from .radius import guess
-from .state import answer, beyond_profile, pinned
 
 
 def solve(part, shape, body, x):
-    """:class:`~..solution.Solution` of cases of one base, one shape and one law of adhesion, w > 0, in units R = E2* =
+    """:class:`~...solution.Solution` of cases of one base, one shape and one law of adhesion, w > 0, in units R = E2* =
     1, at the radii x (m,)."""
     if str(part.adhesion[0]) == "dmt":
         return dmt.solve(part, shape, body, machine(part), x)

@@ -1,7 +1,7 @@
 """Adhesion in a ring around the contact, after Maugis and Dugdale, of the paraboloid on any kernel.
 
 The stress -σ₀ acts where a < r < c, up to the gap w/σ₀. Inside c the pressure is -σ₀ and that of a contact with
-φ(a) = 0, whose equation (:mod:`.equation`) has F - Q in place of F,
+φ(a) = 0, whose equation (:mod:`..equation`) has F - Q in place of F,
 
     Q(t) = (2 σ₀/E) [sqrt(c² - t²) + c ∫ (L - 1) J1(kc) cos kt dk/k],      P = 2 E a ∫₀¹ y dτ - π c² σ₀,
 
@@ -17,14 +17,14 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import j0, j1
 
-from ..body.wave_rule import OCTAVES, place_of, quadrature
-from ..numerics.bracket import false_position
-from ..numerics.quadrature import gauss_legendre
-from .equation import Response, at_the_edge, solved
-from .products import Products, coarser, size_of
-from .rises import functions, legendre
-from .state import State
-from .tabulated import excess
+from ...body.wave_rule import OCTAVES, place_of, quadrature
+from ...numerics.bracket import false_position
+from ...numerics.quadrature import gauss_legendre
+from ..equation import Response, at_the_edge, solved
+from ..products import Products, coarser, size_of
+from ..rises import functions, legendre
+from ..state import State
+from ..tabulated import excess
 
 #: Relative steps in a and in γ - 1 of the differences that are the slopes of P and D, of fourth order.
 _STEP = 2e-3
@@ -59,7 +59,7 @@ class Maugis(NamedTuple):
         return Maugis(self.shape.take(index), self.body.take(index), self.w[index], self.sigma[index])
 
     def at(self, a):
-        """The :class:`~.state.State` at the radii a (B,); A is 0, and `zone` is γ."""
+        """The :class:`~..state.State` at the radii a (B,); A is 0, and `zone` is γ."""
         usable = np.flatnonzero((a > 0) & np.isfinite(a))
         part, over = self.take(usable), np.full(len(a), np.nan)
         over[usable] = part._over(a[usable])

@@ -102,10 +102,11 @@ def law_of(part):
 def restore(solution, problem):
     """The solution in the units of the problem: every way to solve ends here. A case with a number that cannot be, or
     that its unit makes infinite, is ``Status.DIVERGED``."""
-    solution = solution.refused(solution.out_of_range(), Status.DIVERGED)
+    pulls = problem.w_adhesion > 0
+    solution = solution.refused(solution.out_of_range(pulls), Status.DIVERGED)
     arrays = {}
     for name, (of_E2, of_R) in _UNITS.items():
         array, factor = getattr(solution, name), problem.R**of_R * problem.E2**of_E2
         arrays[name] = array * factor.reshape(-1, *[1] * (array.ndim - 1))
     solution = replace(solution, **arrays)
-    return solution.refused(solution.not_finite(), Status.DIVERGED)
+    return solution.refused(solution.not_finite(problem.shaped() | pulls), Status.DIVERGED)

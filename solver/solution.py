@@ -15,6 +15,9 @@ JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 _POSITIVE = (*JUDGED, "dP_dD")
 _PROFILES = ("p", "lam")
 _NUMBERS = (*_POSITIVE, "A0", "residual", "error", "profile_error", *_PROFILES)
+#: Those that may be infinite under some shapes and where the punch sticks; and those that may be negative there.
+_INFINITE = ("p0", "p_max", "dP_dD", "p")
+_SIGNED = (*_INFINITE, "P", "D")
 #: Integers: codes and counts.
 _WHOLE = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes": np.int32, "stable": np.bool_}
 #: Numbers of pull-off and pull-in, 0 without adhesion.
@@ -167,8 +170,13 @@ class Solution:
         """
         return Solution(**{name: values[index] for name, values in vars(self).items()})
 
-    def not_finite(self) -> np.ndarray:
+    def not_finite(self, infinite: Any = False) -> np.ndarray:
         """Which cases lack a number that they should have.
+
+        Parameters
+        ----------
+        infinite : (B,) bool, the cases whose pressures may be infinite, and whose stiffness: of a shape that is pointed
+            or flat, or that sticks
 
         Returns
         -------
@@ -176,12 +184,21 @@ class Solution:
             infinite
         """
         ended = np.isin(self.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
-        return ended & ~np.all([_of_all(np.isfinite(getattr(self, name))) for name in _NUMBERS], axis=0)
+        right = ended.copy()
+        for name in _NUMBERS:
+            values = getattr(self, name)
+            allowed = infinite & _of_all(~np.isnan(values)) if name in _INFINITE else False
+            right &= _of_all(np.isfinite(values)) | allowed
+        return ended & ~right
 
-    def out_of_range(self) -> np.ndarray:
+    def out_of_range(self, pulls: Any = False) -> np.ndarray:
         """Which cases have converged to a number that cannot be.
 
         To be asked in units R = E2* = 1: in others a positive number may underflow to 0.
+
+        Parameters
+        ----------
+        pulls : (B,) bool, the cases that stick: loads, depths, pressures and the stiffness may be negative
 
         Returns
         -------
@@ -191,7 +208,8 @@ class Solution:
         right = ended.copy()
         for name in _NUMBERS:
             values = getattr(self, name)
-            right &= _of_all(values > 0 if name in _POSITIVE else ~(values < 0))
+            sign = _of_all(values > 0 if name in _POSITIVE else ~(values < 0))
+            right &= sign | pulls & _of_all(~np.isnan(values)) if name in _SIGNED else sign
             if name in _SHARES:
                 right &= _of_all(~(values > 1 + _ROUNDING))
         return ended & ~right

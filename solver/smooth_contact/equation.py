@@ -1,0 +1,151 @@
+"""The equation of a smooth contact at given radii, of any shape on any kernel.
+
+The Hankel transform of the pressure is p̂(k) = ∫₀ᵃ φ(t) cos kt dt. With τ = t/a, κ = ka and φ = (E/π) y,
+
+    y(τ) + (2/π) ∫₀¹ y(σ) ∫ (L(κh/a) - 1) (cos κτ - cos κ) cos κσ dκ dσ = F(a) - F(aτ) + A,       y(1) = A,
+
+    P = 2 E a ∫₀¹ y dτ,       D = F(a) + A + (2/π) ∫ (L - 1) cos κ ŷ(κ) dκ.
+
+A is 0 without adhesion (:mod:`.jkr` says what it is else). The depth does not stand in the equation: so nothing cancels
+under stiff layers. It is linear, and y = y_F + A y_1, where y_1 has the right-hand side 1: of a flat punch.
+
+Galerkin's method solves it in the basis of :mod:`.products`. Of F, which has kinks, only its projection on the basis
+counts: what is left of the kernel and what is left of F are small both, and only their product is an error.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..body.part import parts_of, runs
+from .products import Products, coarser, size_of
+from .rises import rises
+
+_EPS = np.finfo(float).eps
+#: Rounding of closed forms, relative; and that of the equation, over eps times its size and the norm of its matrix.
+_ROUNDING, _FLOOR = 16 * _EPS, 8
+
+
+class Response(NamedTuple):
+    """Shapes at B radii `a`, in units R = E2* = 1. Without adhesion the load and depth are `P` and `D`; those of a flat
+    punch of radius a with A = 1 are `flat_P` and `flat_D`. All are (B,) but the last two.
+
+    slope : dD/da without adhesion
+    flat_slope : d flat_D/da
+    P_error, D_error, flat_P_error, flat_D_error : of these numbers at the radius a, absolute
+    bent, flat_bent : (B, N), the second terms of the equation, y_F - F(a) + F and y_1 - 1, in the basis
+    changes, flat_changes : (B, N), by how much these change with the last functions of the basis
+    size : (B,) int, the number of functions of the basis; 0 in closed form
+    """
+
+    a: np.ndarray
+    E: np.ndarray
+    P: np.ndarray
+    D: np.ndarray
+    flat_P: np.ndarray
+    flat_D: np.ndarray
+    slope: np.ndarray
+    flat_slope: np.ndarray
+    P_error: np.ndarray
+    D_error: np.ndarray
+    flat_P_error: np.ndarray
+    flat_D_error: np.ndarray
+    size: np.ndarray
+    bent: np.ndarray
+    flat_bent: np.ndarray
+    changes: np.ndarray
+    flat_changes: np.ndarray
+
+    @property
+    def S(self):
+        """Stiffness (B,) of a flat punch of the radius a."""
+        return self.flat_P / self.flat_D
+
+    def take(self, index):
+        """The sub-batch at `index`."""
+        return Response(*(values[index] for values in self))
+
+    def only(self, mask):
+        """NaN in place of all numbers of cases that are not in the `mask` (B,)."""
+        return Response(*(np.where(mask.reshape(-1, *[1] * (v.ndim - 1)), v, np.nan) for v in self))
+
+    @classmethod
+    def join(cls, size, pieces):
+        """The responses of a batch of `size` cases from pairs of places in it and the :class:`Response` there."""
+        width = max((piece.bent.shape[1] for _, piece in pieces), default=1)
+        arrays = [np.full(size, np.nan) for _ in cls._fields[:-4]] + [np.zeros((size, width)) for _ in range(4)]
+        for index, piece in pieces:
+            for array, values in zip(arrays, piece, strict=True):
+                if array.ndim == 1:
+                    array[index] = values
+                else:
+                    array[index, : values.shape[1]], array[index, values.shape[1] :] = values, 0.0
+        return cls(*arrays)
+
+
+def respond(shape, body, a):
+    """:class:`Response` of B shapes on a body at radii a (B,)."""
+    if not hasattr(body, "kernel"):
+        return _on_half_space(shape, body, a)
+    pieces = []
+    for part in parts_of(body, a, np.arange(len(a))):
+        for octave, rows in runs(part.octave) if part.film is None else ():
+            places, even = part.index[rows], shape.even[part.index[rows]]
+            for kind in (True, False):
+                chosen = np.flatnonzero(even == kind)
+                if len(chosen):
+                    N, index = size_of(octave, kind), places[chosen]
+                    products = Products.of(part.L1[rows][chosen], part.sampler, octave, part.stiffness, N)
+                    pieces.append((index, _on_kernel(shape.take(index), body.take(index), a[index], products)))
+    return Response.join(len(a), pieces)
+
+
+def _on_half_space(shape, body, a):
+    none, depth = np.zeros((len(a), 1)), shape.lifted(a[:, None])[:, 0]
+    P, slope = 2 * body.E * shape.lifted_load(a), shape.lifted_slope(a[:, None])[:, 0]
+    errors = (_ROUNDING * v for v in (P, depth, 2 * body.E * a, 1 + 0 * a))
+    flat = 2 * body.E * a, 1 + 0 * a
+    return Response(a, body.E, P, depth, *flat, slope, 0 * a, *errors, 0 * a, none, none, none, none)
+
+
+def _on_kernel(shape, body, a, products):
+    """:class:`Response` where `products` are those of the kernel."""
+    N, E = products.edge.shape[1], body.E
+    depth, slope = (f(a[:, None])[:, 0] for f in (shape.lifted, shape.lifted_slope))
+    sides = np.zeros((len(a), N, 3))
+    sides[:, :, 0], sides[:, 0, 1], sides[:, :, 2] = rises(shape, a, N), 1.0, products.edge
+    y, matrix = _solved(products, sides, N)
+    at_edge = _at_edge(products, y)
+    flat_D = 1 + at_edge[:, 1]
+    P, flat_P = 2 * E * a * y[:, 0, 0], 2 * E * a * y[:, 0, 1]
+    D = depth + at_edge[:, 0]
+    bends = np.einsum("bn,bnj->bj", products.slope, y)
+    resolvent = (products.corner - at_edge[:, 2]) / flat_D
+    bent = y[:, :, :2] - sides[:, :, :2]
+    few = coarser(N)
+    less, _ = _solved(products, sides[:, :few, :2], few)
+    changes = bent - np.pad(less - sides[:, :few, :2], ((0, 0), (0, N - few), (0, 0)))
+    rounded = _FLOOR * _EPS * N * np.abs(matrix).sum(axis=2).max(axis=1)
+    off = np.abs(_at_edge(products, less) - at_edge[:, :2])
+    flat_change = 2 * E * a * changes[:, 0, 1]
+    of_basis = (2 * E * a * changes[:, 0, 0], off[:, 0], flat_change, off[:, 1])
+    whole = (P, D, flat_P, flat_D)
+    errors = (np.abs(change) + rounded * np.abs(v) for change, v in zip(of_basis, whole, strict=True))
+    return Response(
+        a, E, P, D, flat_P, flat_D,
+        (slope - bends[:, 0] / a) * flat_D,
+        -flat_D / a * (bends[:, 1] - resolvent),
+        *errors, N + 0 * a, *np.moveaxis(bent, 2, 0), *np.moveaxis(changes, 2, 0),
+    )  # fmt: skip
+
+
+def _solved(products, sides, N):
+    """The solution (B, N, j) of the equation in the first N functions of the basis, and its matrix (B, N, N)."""
+    matrix = np.eye(N) + products.differences[:, :N, :N]
+    matrix[:, :, 0] += products.edge[:, :N]
+    return np.linalg.solve(matrix, sides), matrix
+
+
+def _at_edge(products, y):
+    """(2/π) ∫ (L - 1) cos κ ŷ dκ (B, j) of y (B, N, j): ê_0 is d_0 + cos κ."""
+    return np.einsum("bn,bnj->bj", products.edge[:, : y.shape[1]], y) + products.corner[:, None] * y[:, 0]

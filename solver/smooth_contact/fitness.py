@@ -1,0 +1,37 @@
+"""Which cases with a shape or with adhesion do not go together with the rest of what is asked."""
+
+import numpy as np
+
+from ..shapes import PARABOLOID, shape_of
+from ..shapes.shape import column
+
+
+def unfit(problem):
+    """(B,) bool: cases of a problem in units R = E2* = 1 that have a shape or adhesion which does not go with the base,
+    the asperities, the scheme or the control."""
+    shaped, pulls = problem.shaped(), problem.w_adhesion > 0
+    if not (shaped | pulls).any():
+        return np.zeros(len(problem), dtype=bool)
+    out = (shaped | pulls) & np.isin(problem.base, ("thin_layer", "thin_stack"))
+    out |= (shaped | pulls) & (problem.scheme == "picard")
+    out |= pulls & problem.rough()
+    if problem.control == "a":
+        for word in np.unique(problem.shape[shaped]).tolist():
+            index = np.flatnonzero(problem.shape == word)
+            out[index] |= _no_radius(problem.take(index))
+    return out | pulls & _unfit_law(problem)
+
+
+def _no_radius(part):
+    """(B,) bool: no contact of the one shape of the cases has the radius that is given."""
+    shape, a = shape_of(part), part.value
+    poles = ~np.isfinite(shape.lifted(column(shape.most()))[:, 0])
+    return (a <= shape.least()) | (a >= shape.most()) & poles
+
+
+def _unfit_law(problem):
+    """(B,) bool: the law of adhesion has a number that it does not take, or lacks one."""
+    jkr, dmt = problem.adhesion == "jkr", problem.adhesion == "dmt"
+    numbers = np.isfinite(problem.sigma0).astype(int) + np.isfinite(problem.z0)
+    wrong = np.where(dmt, numbers != 0, np.where(jkr, numbers == 2, numbers != 1))
+    return wrong | ~jkr & (problem.shape != PARABOLOID)

@@ -1,0 +1,142 @@
+"""What of an indenter's shape the equation needs: F(a) - F(t) in the basis, and the pressure of a half-space.
+
+Both are integrals over t between the kinks of the shape. Beyond a kink b, and beyond t = 0 unless the shape is smooth
+in r², the variable is y in t = b + (c - b) y², where c is the next kink or a: F is smooth in y.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+
+from ..numerics.quadrature import gauss_legendre, log_rule, panels_towards
+from ..shapes.shape import column
+from .products import in_blocks
+
+#: More points of a rule than the basis has functions, and the most kinks that end a panel: of more, as a table of many
+#: rows has, some are left out.
+_MORE, _MOST_KINKS = 20, 24
+#: Points of a rule of the pressure: in a subpanel towards a singularity, and under a shape without one.
+_NEAR, _SMOOTH = 22, 40
+#: Numbers that are computed together.
+_TOGETHER = 1_000_000
+_EPS = np.finfo(float).eps
+
+
+def panels(shape, a):
+    """Pairs of places (b,) in the batch and the ends (b, K + 2) of panels from 0 to a for these, over a: 0, the kinks
+    in the contact, 1."""
+    kinks = np.sort(shape.kinks() / column(a), axis=1)
+    counts = (kinks < 1).sum(axis=1)
+    for count in np.unique(counts).tolist():
+        index = np.flatnonzero(counts == count)
+        chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_KINKS)).astype(int)) if count else []
+        inner = kinks[index][:, chosen]
+        yield index, np.hstack([np.zeros((len(index), 1)), inner, np.ones((len(index), 1))])
+
+
+def rises(shape, a, size):
+    """F(a) - F(t) in the basis of `size` functions, (B, N)."""
+    out = np.empty((len(a), size))
+    even = shape.even
+    for index in (np.flatnonzero(even), np.flatnonzero(~even)):
+        if len(index):
+            part = _even_rises if even[index[0]] else _kinked_rises
+            step = max(1, _TOGETHER // (8 * (size + _MORE)))
+            for low in range(0, len(index), step):
+                rows = index[low : low + step]
+                out[rows] = part(shape.take(rows), a[rows], size)
+    return out
+
+
+def _even_rises(shape, a, size):
+    tau, weighted = _even_rule(size)
+    return in_blocks(shape.lifted(column(a)) - shape.lifted(column(a) * tau), weighted)
+
+
+@lru_cache(maxsize=32)
+def _even_rule(size):
+    """Points τ (Q,), and the basis there times weights (Q, N), for even functions of τ."""
+    x, w = gauss_legendre(2 * (size + _MORE))
+    tau, w = 2 * x[len(x) // 2 :] - 1, 2 * w[len(x) // 2 :]
+    return tau, (legendre(tau, size) * w).T
+
+
+def _kinked_rises(shape, a, size):
+    out = np.empty((len(a), size))
+    y, w = gauss_legendre(size + _MORE)
+    for index, ends in panels(shape, a):
+        radius, low, width = column(a[index]), ends[:, :-1, None], np.diff(ends, axis=1)[:, :, None]
+        tau = (low + width * y**2).reshape(len(index), -1)
+        weights = (width * (2 * y * w)).reshape(len(index), -1)
+        part = shape.take(index)
+        rise = weights * (part.lifted(radius) - part.lifted(radius * tau))
+        for m, values in enumerate(_functions(tau, size)):
+            out[index, m] = (values * rise).sum(axis=1)
+    return out
+
+
+def _functions(tau, size):
+    """Yield e_m at τ, m = 0 ... size - 1."""
+    before, now, step = np.zeros_like(tau), np.ones_like(tau), 0
+    for m in range(size):
+        yield np.sqrt(4 * m + 1) * now
+        for _ in range(2):
+            before, now = now, ((2 * step + 1) * tau * now - step * before) / (step + 1)
+            step += 1
+
+
+def legendre(tau, size):
+    """e_m (N, Q) at τ (Q,)."""
+    return np.array(list(_functions(tau, size)))
+
+
+def on_half_space(shape, a, x):
+    """∫ from r to a of F'(t)/sqrt(t² - r²) dt (B, m) at r = ax, x (m,) < 1: the pressure of a half-space times π/E. It
+    is infinite at r = 0 under a tip that is pointed."""
+    out = np.empty((len(a), len(x)))
+    even = shape.even
+    for index in (np.flatnonzero(even), np.flatnonzero(~even)):
+        if len(index):
+            part = _smooth_pressure if even[index[0]] else _kinked_pressure
+            step = max(1, _TOGETHER // (500 * max(1, len(x))))
+            for low in range(0, len(index), step):
+                rows = index[low : low + step]
+                out[rows] = part(shape.take(rows), a[rows], x)
+    out[np.ix_(shape.pointed, x == 0)] = np.inf
+    return out
+
+
+def _smooth_pressure(shape, a, x):
+    """With t² = r² + y², where F'/t is smooth."""
+    u, w = gauss_legendre(_SMOOTH)
+    s = np.sqrt((1 - x) * (1 + x))
+    tau = np.sqrt(x[:, None] ** 2 + (s[:, None] * u) ** 2)
+    t = column(a) * tau.ravel()
+    return ((shape.lifted_slope(t) / t).reshape(len(a), len(x), -1) @ w) * column(a) * s
+
+
+def _kinked_pressure(shape, a, x):
+    """On each panel beyond r, in y of t = start + width y². F' or 1/sqrt(t² - r²) is singular at the lower end of the
+    panel or at r, whichever is not the start: the nearer it is, the more subpanels."""
+    out = np.zeros((len(a), len(x)))
+    for index, ends in panels(shape, a):
+        for low, high in zip(ends.T[:-1], ends.T[1:], strict=True):
+            start = np.maximum(low[:, None], x)
+            width = high[:, None] - start
+            counts = panels_towards(np.sqrt(np.abs(x - low[:, None]) / np.maximum(width, _EPS)), 1.0)
+            for count in np.unique(counts[width > 0]).tolist():
+                case, column_of_x = np.nonzero((counts == count) & (width > 0))
+                pairs = start[case, column_of_x], width[case, column_of_x], x[column_of_x]
+                rows = index[case]
+                out[rows, column_of_x] += _on_panel(shape.take(rows), a[rows], *pairs, count)
+    return out
+
+
+def _on_panel(shape, a, start, width, x, count):
+    """The integral (b,) on one panel each, of `count` subpanels."""
+    y, w = log_rule(_NEAR, everywhere=True, panels=count)
+    above = width[:, None] * y**2  # t - start, over a
+    tau = start[:, None] + above
+    roots = np.sqrt(((start - x)[:, None] + above) * (tau + x[:, None]))  # sqrt(t² - r²), over a
+    values = width[:, None] * shape.lifted_slope(a[:, None] * tau) * (2 * y * w / roots)
+    return np.where(np.isfinite(values), values, 0.0).sum(axis=1)

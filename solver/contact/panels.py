@@ -3,6 +3,9 @@
 Where asperities saturate inside a contact, A → B̄²/(3Ra), the pressure has a corner at s² = Z/3; the stiffer the body,
 the more it is rounded. On a stiff or thin body the pressure also rises steeply at the edge. Both are found by the
 coefficients of the pressure and of λ on each panel, and enclosed by halving the panels.
+
+Where the profile of a punch has a kink, its pressure has one too: the panels begin with an end there. The kinks move
+with the contact radius, and the panels follow them (:mod:`.kinks`).
 """
 
 from itertools import pairwise
@@ -13,17 +16,19 @@ from ..numerics.mesh import on_panels, panel_mesh
 from ..numerics.quadrature import radau_nodes
 from .driver import Iterated, solve_on
 from .equation import State, evaluate
+from .kinks import ends_of, followed, panels_between, settled
 from .results import interpolate
 from .start import first_guess, guess_radius
 
-#: Panels to begin with, nodes on each, and the narrowest panel as a power of 1/2.
-START = (0.0, 0.0625, 0.25, 0.5, 0.75, 1.0)
+#: Nodes on a panel, and the narrowest panel as a power of 1/2.
 ORDER = 12
 DEPTH = 30
 #: From values at the nodes of a panel to the last two coefficients of their Legendre series: (ORDER, 2).
 _LAST = np.linalg.inv(np.polynomial.legendre.legvander(2 * radau_nodes(ORDER) - 1, ORDER - 1)).T[:, -2:]
 #: Most panels: the operator is not accurate enough to resolve more.
 _MOST = 32
+#: Panels that each kink may have besides, and most rounds in which panels follow kinks at the last of _GOALS.
+_MORE, _FOLLOWING = 8, 8
 #: Tolerances of the rounds: each solves and then halves panels. A coarse solution cannot tell where a fine one will not
 #: be resolved, so rtol is approached in steps.
 _GOALS = (1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
@@ -41,16 +46,21 @@ def solve_on_panels(case, rtol, budget, at=None):
     Returns its :class:`.driver.Iterated`, and the work: more than the budget if that was spent before every panel was
     resolved.
     """
-    iterated, work = (
-        _first(case, rtol, budget) if at is None else (Iterated(at, at.closed, np.zeros(1, dtype=int)), 0.0)
+    iterated, work, place = (
+        _first(case, rtol, budget) if at is None else (Iterated(at, at.closed, np.zeros(1, dtype=int)), 0.0, _radius(at))
     )
     radius, count = guess_radius(case), 0
     least = max(rtol, case.body.error(radius, ORDER)[0])  # panels do not take the operator's own error away
-    for goal in np.maximum(least, _GOALS):
+    goals = np.maximum(least, _GOALS).tolist()
+    goals += goals[-1:] * (_FOLLOWING if case.shape is not None else 0)
+    for goal in goals:
         count, iterated = count + iterated.count, iterated._replace(count=0 * iterated.count)
         if iterated.at.lost[0]:
             break
-        breaks, y = resolve(iterated.at, goal)
+        breaks, y, now = *resolve(iterated.at, goal), _radius(iterated.at)
+        if not settled(case.shape, place, now, rtol):
+            breaks, y = _followed(iterated.at, breaks, y, place)
+            place = now
         if breaks == iterated.at.mesh.breaks:
             continue
         nodes = ORDER * (len(breaks) - 1)
@@ -66,24 +76,41 @@ def solve_on_panels(case, rtol, budget, at=None):
     return iterated._replace(count=count + iterated.count), work
 
 
+def _radius(at):
+    return float(np.exp(at.state.eta[0]))
+
+
+def _followed(at, breaks, y, place):
+    """The panels `breaks` with y (1, n) at their nodes, made for the contact radius `place`, at that of the solution
+    `at`. They are begun anew where another number of kinks is inside the contact."""
+    before, now = ends_of(at.cases.shape, place), ends_of(at.cases.shape, _radius(at))
+    if len(before) == len(now):
+        return followed(breaks, before, now), y
+    breaks = panels_between(now)
+    return breaks, np.concatenate(_between(at, list(pairwise(breaks))), axis=1)
+
+
 def _first(case, rtol, budget):
-    """:class:`.driver.Iterated` of one case on its first panels, and the work.
+    """:class:`.driver.Iterated` of one case on its first panels, the work, and the contact radius where these have
+    kinks in the right place.
 
     If a far cheaper body yields nearly alike, the first panels are those that resolve the contact with that body. This
     saves a seventh of the time of the study extremes_layered. Without it (:meth:`~solver.body.operator.Body.alike`
     returned None) 2 of 600 cases of that study spent their budget, though they have a solution. One of them is
     test_a_film_that_begins_as_a_thin_layer of tests/contact/extremes/test_budget.py.
     """
-    alike, start, mesh, count, work = case.body.alike(guess_radius(case)), None, panel_mesh(ORDER, START), 0, 0.0
+    place = float(guess_radius(case)[0])
+    mesh = panel_mesh(ORDER, panels_between(ends_of(case.shape, place)))
+    alike, start, count, work = case.body.alike(guess_radius(case)), None, 0, 0.0
     if alike is not None:
         iterated, work = solve_on_panels(case._replace(body=alike), rtol, budget)
         count = iterated.count
         if iterated.closed[0]:
-            mesh, start = iterated.at.mesh, iterated.at.state
+            mesh, start, place = iterated.at.mesh, iterated.at.state, _radius(iterated.at)
     operator, step = case.body.work(guess_radius(case), mesh.n)
     work += operator[0]
     iterated = solve_on(evaluate(case, start or first_guess(case, mesh), mesh), budget=budget - work)
-    return iterated._replace(count=count + iterated.count), work + iterated.count[0] * step[0]
+    return iterated._replace(count=count + iterated.count), work + iterated.count[0] * step[0], place
 
 
 def resolve(ev, rtol):
@@ -93,7 +120,7 @@ def resolve(ev, rtol):
     values = np.concatenate([ev.curve.q, law.area(ev.state.y, ev.curve.q)])
     scale = values @ mesh.w * max(_SHARE * rtol, _FLOOR)
     inside = dict(zip(pairwise(mesh.breaks), np.split(ev.state.y, len(mesh.breaks) - 1, axis=1), strict=True))
-    done, room = {}, _MOST - len(inside)
+    done, room = {}, _MOST - len(inside) + _MORE * (len(ends_of(ev.cases.shape, _radius(ev))) - 2)
     while inside:  # panel -> y at its nodes
         halves = []
         for (low, high), y in inside.items():

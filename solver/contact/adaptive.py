@@ -36,7 +36,7 @@ def solve_newton(cases, rtol, nodes, limit, x):
     x : (m,), radii of the profiles.
     """
     size, free = len(rtol), nodes == 0
-    direct = free & (limit == 0) & (cases.shape is not None and not cases.shape.even)
+    direct = free & (limit == 0) & (cases.shape is not None and ~cases.shape.even)
     if direct.any():
         return _split(cases, (rtol, nodes), direct, limit, x)
     work, before, a = np.zeros(size), np.full(size, np.inf), guess_radius(cases)

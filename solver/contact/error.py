@@ -12,7 +12,7 @@ from ..numerics.ladder import MARGIN, finer_mesh
 from ..numerics.mesh import gauss_rule
 from . import newton
 from .equation import Evaluation, State, evaluate, groups
-from .results import cornered, difference, interpolate, is_pointed, judged, quantities
+from .results import cornered, interpolate, judged_difference, pointed, quantities
 
 #: No mesh sees how λ rises between the edge and the node next to it. With λ and s at that node, this ring adds about λ
 #: s² to Ar/An. Where that matters, the error of Ar/An is at most 5.3 times λ s²/2
@@ -103,14 +103,14 @@ def nearby(ev, state):
 
 def estimate(ev, coarse, refined):
     """Estimated relative error (B,) of a solution with the quantities `coarse`, from the two meshes alone."""
-    change, start = difference(coarse, refined.numbers, judged(ev.cases)), refined.start
-    if ev.mesh.order == ev.mesh.n and not is_pointed(ev.cases):
+    change, start = judged_difference(ev.cases, coarse, refined.numbers), refined.start
+    if ev.mesh.order == ev.mesh.n:
         first = np.searchsorted(start.mesh.s, _MIDDLE)
         around = np.abs(refined.end.curve.q - start.curve.q)[:, first:].max(axis=1) / ev.curve.q[:, -1]
         counts = around > np.maximum(change, _NEAR)
         if ev.curve.q.min() <= 0:  # where there is tension, the centre alone judges whether the punch lifts off
             counts &= ev.curve.q.min(axis=1) > 0
-        change = np.where(counts, around, change)
+        change = np.where(counts & ~pointed(ev.cases), around, change)
     if not ev.cases.law.rough:  # asperities show that a mesh is too coarse for the edge, by how they yield there
         unseen = ev.cases.body.unseen(np.exp(ev.state.eta), ev.mesh.s[0])
         change = np.maximum(change, _OF_RADIUS[ev.cases.control] * unseen)
@@ -186,7 +186,7 @@ def profile_error(ev, refined, rows, x):
     nearer to the axis than the least of the radii do not count."""
     law = ev.cases.law.take(rows)
     start, end = refined.start, refined.end
-    seen = slice(None, max(1, _outside(start.mesh, x)) if is_pointed(ev.cases) else None)
+    seen = slice(None, max(1, _outside(start.mesh, x)) if pointed(ev.cases)[rows].any() else None)
     q, new_q = start.curve.q[rows, seen], end.curve.q[rows, seen]
     if law.rough:
         lam, new_lam = (law.area(at.state.y[rows], at.curve.q[rows])[:, seen] for at in (start, end))

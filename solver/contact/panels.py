@@ -5,7 +5,7 @@ the more it is rounded. On a stiff or thin body the pressure also rises steeply 
 coefficients of the pressure and of λ on each panel, and enclosed by halving the panels.
 
 Where the profile of a punch has a kink, its pressure has one too: the panels begin with an end there. The kinks move
-with the contact radius, and the panels follow them (:mod:`.kinks`).
+with the contact radius, and the panels follow them (:mod:`..punches.kinks`).
 """
 
 from itertools import pairwise
@@ -14,9 +14,9 @@ import numpy as np
 
 from ..numerics.mesh import on_panels, panel_mesh
 from ..numerics.quadrature import radau_nodes
+from ..punches.kinks import ends_of, followed, panels_between, settled
 from .driver import Iterated, solve_on
 from .equation import State, evaluate
-from .kinks import ends_of, followed, panels_between, settled
 from .results import interpolate
 from .start import first_guess, guess_radius
 
@@ -46,10 +46,11 @@ def solve_on_panels(case, rtol, budget, at=None):
     Returns its :class:`.driver.Iterated`, and the work: more than the budget if that was spent before every panel was
     resolved.
     """
-    iterated, work, place = (
-        _first(case, rtol, budget) if at is None else (Iterated(at, at.closed, np.zeros(1, dtype=int)), 0.0, _radius(at))
-    )
     radius, count = guess_radius(case), 0
+    if at is None:
+        iterated, work, place = _first(case, rtol, budget, radius)
+    else:
+        iterated, work, place = Iterated(at, at.closed, np.zeros(1, dtype=int)), 0.0, _radius(at)
     least = max(rtol, case.body.error(radius, ORDER)[0])  # panels do not take the operator's own error away
     goals = np.maximum(least, _GOALS).tolist()
     goals += goals[-1:] * (_FOLLOWING if case.shape is not None else 0)
@@ -90,26 +91,26 @@ def _followed(at, breaks, y, place):
     return breaks, np.concatenate(_between(at, list(pairwise(breaks))), axis=1)
 
 
-def _first(case, rtol, budget):
-    """:class:`.driver.Iterated` of one case on its first panels, the work, and the contact radius where these have
-    kinks in the right place.
+def _first(case, rtol, budget, radius):
+    """:class:`.driver.Iterated` of one case of about the `radius` (1,) on its first panels, the work, and the contact
+    radius for which these have their ends at the kinks.
 
     If a far cheaper body yields nearly alike, the first panels are those that resolve the contact with that body. This
     saves a seventh of the time of the study extremes_layered. Without it (:meth:`~solver.body.operator.Body.alike`
     returned None) 2 of 600 cases of that study spent their budget, though they have a solution. One of them is
     test_a_film_that_begins_as_a_thin_layer of tests/contact/extremes/test_budget.py.
     """
-    place = float(guess_radius(case)[0])
+    place = float(radius[0])
     mesh = panel_mesh(ORDER, panels_between(ends_of(case.shape, place)))
-    alike, start, count, work = case.body.alike(guess_radius(case)), None, 0, 0.0
+    alike, start, count, work = case.body.alike(radius), None, 0, 0.0
     if alike is not None:
         iterated, work = solve_on_panels(case._replace(body=alike), rtol, budget)
         count = iterated.count
         if iterated.closed[0]:
             mesh, start, place = iterated.at.mesh, iterated.at.state, _radius(iterated.at)
-    operator, step = case.body.work(guess_radius(case), mesh.n)
+    operator, step = case.body.work(radius, mesh.n)
     work += operator[0]
-    iterated = solve_on(evaluate(case, start or first_guess(case, mesh), mesh), budget=budget - work)
+    iterated = solve_on(evaluate(case, start or first_guess(case, mesh, radius), mesh), budget=budget - work)
     return iterated._replace(count=count + iterated.count), work + iterated.count[0] * step[0], place
 
 

@@ -44,15 +44,16 @@ def difference(first, second, names=JUDGED):
     return np.max([np.abs(getattr(first, name) / getattr(second, name) - 1) for name in names], axis=0)
 
 
-def is_pointed(cases):
-    """Whether the punch has a point, f'(0+) > 0. What asperities under it bear is set so near to the axis, within A'
+def pointed(cases):
+    """(B,) bool: the punch has a point, f'(0+) > 0. What asperities under it bear is set so near to the axis, within A'
     times the modulus, that no mesh tells it: the centre is not judged, and not reported."""
-    return cases.shape is not None and cases.shape.pointed
+    return np.zeros(len(cases.value), dtype=bool) if cases.shape is None else cases.shape.pointed
 
 
-def judged(cases):
-    """Names of the quantities whose largest error is that of a case."""
-    return _AWAY_FROM_CENTRE if is_pointed(cases) else JUDGED
+def judged_difference(cases, first, second):
+    """:func:`difference` (B,) in what is reported of the `cases`."""
+    change, without = difference(first, second), pointed(cases)
+    return np.where(without, difference(first, second, _AWAY_FROM_CENTRE), change) if without.any() else change
 
 
 @lru_cache(maxsize=32)

@@ -15,6 +15,8 @@ def guess_radius(cases):
     springs and asperities would each have alone."""
     if cases.control == "a":
         return cases.value
+    if cases.is_flat:
+        return cases.shape.least()
     punch, body, law, value = cases.punch, cases.body, cases.law, cases.value
     if cases.control == "D":
         return punch.radius_at_depth(value)

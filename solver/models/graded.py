@@ -61,10 +61,10 @@ def _extrapolated(rows, rtol):
         values, before = _limits([getattr(row, name) for row in rows])
         numbers[name] = np.clip(values, 0.0, 1.0) if name in ("lam", "Ar_An") else values
         if name in JUDGED:
-            change = np.maximum(change, np.abs(values / before - 1))
+            change = np.fmax(change, np.abs(values / before - 1))  # NaN: what a point leaves unknown
         elif name == "p":
-            largest = np.maximum(np.abs(values).max(axis=1, initial=0.0), last.p0)
-            of_profile = np.abs(values - before).max(axis=1, initial=0.0) / largest
+            largest = np.fmax(np.fmax.reduce(np.abs(values), axis=1, initial=0.0), last.p0)
+            of_profile = np.fmax.reduce(np.abs(values - before), axis=1, initial=0.0) / largest
     error = last.error + (change if len(rows) > 1 else np.inf)
     solved = np.isin(last.status, _SOLVED)
     status = np.where(solved & ~(error <= rtol), Status.TOLERANCE_NOT_MET, last.status).astype(np.int8)

@@ -27,8 +27,9 @@ DEPTH = 30
 _LAST = np.linalg.inv(np.polynomial.legendre.legvander(2 * radau_nodes(ORDER) - 1, ORDER - 1)).T[:, -2:]
 #: Most panels: the operator is not accurate enough to resolve more.
 _MOST = 32
-#: Panels that each kink may have besides, and most rounds in which panels follow kinks at the last of _GOALS.
-_MORE, _FOLLOWING = 8, 8
+#: Of punches with kinks or a point: how often a panel is halved in a round, for an error spoils panels beside it too,
+#: rounds for each of _GOALS, panels that each kink may have besides, and rounds in which panels follow kinks at last.
+_AT_ONCE, _ROUNDS, _MORE, _FOLLOWING = 1, 3, 8, 8
 #: Tolerances of the rounds: each solves and then halves panels. A coarse solution cannot tell where a fine one will not
 #: be resolved, so rtol is approached in steps.
 _GOALS = (1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
@@ -53,7 +54,8 @@ def solve_on_panels(case, rtol, budget, at=None):
         iterated, work, place = Iterated(at, at.closed, np.zeros(1, dtype=int)), 0.0, _radius(at)
     least = max(rtol, case.body.error(radius, ORDER)[0])  # panels do not take the operator's own error away
     goals = np.maximum(least, _GOALS).tolist()
-    goals += goals[-1:] * (_FOLLOWING if case.shape is not None else 0)
+    if case.shape is not None:
+        goals = [*np.repeat(goals, _ROUNDS), *goals[-1:] * _FOLLOWING]
     for goal in goals:
         count, iterated = count + iterated.count, iterated._replace(count=0 * iterated.count)
         if iterated.at.lost[0]:
@@ -87,7 +89,7 @@ def _followed(at, breaks, y, place):
     before, now = ends_of(at.cases.shape, place), ends_of(at.cases.shape, _radius(at))
     if len(before) == len(now):
         return followed(breaks, before, now), y
-    breaks = panels_between(now)
+    breaks = panels_between(now, at.cases.shape)
     return breaks, np.concatenate(_between(at, list(pairwise(breaks))), axis=1)
 
 
@@ -101,7 +103,7 @@ def _first(case, rtol, budget, radius):
     test_a_film_that_begins_as_a_thin_layer of tests/contact/extremes/test_budget.py.
     """
     place = float(radius[0])
-    mesh = panel_mesh(ORDER, panels_between(ends_of(case.shape, place)))
+    mesh = panel_mesh(ORDER, panels_between(ends_of(case.shape, place), case.shape))
     alike, start, count, work = case.body.alike(radius), None, 0, 0.0
     if alike is not None:
         iterated, work = solve_on_panels(case._replace(body=alike), rtol, budget)
@@ -122,10 +124,11 @@ def resolve(ev, rtol):
     scale = values @ mesh.w * max(_SHARE * rtol, _FLOOR)
     inside = dict(zip(pairwise(mesh.breaks), np.split(ev.state.y, len(mesh.breaks) - 1, axis=1), strict=True))
     done, room = {}, _MOST - len(inside) + _MORE * (len(ends_of(ev.cases.shape, _radius(ev))) - 2)
+    levels = DEPTH + 1 if ev.cases.shape is None else _AT_ONCE
     while inside:  # panel -> y at its nodes
-        halves = []
+        halves, levels = [], levels - 1
         for (low, high), y in inside.items():
-            if room > 0 and high - low > 2.0**-DEPTH and np.any(_tail(law, y) * (high**2 - low**2) > scale):
+            if levels >= 0 and room > 0 and high - low > 2.0**-DEPTH and np.any(_tail(law, y) * (high**2 - low**2) > scale):
                 middle = (low + high) / 2
                 halves += [(low, middle), (middle, high)]
                 room -= 1

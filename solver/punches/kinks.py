@@ -6,9 +6,11 @@ their nodes are a first guess on the new panels.
 
 import numpy as np
 
-#: Panels from the edge to the first kink, or to the centre, over their length in s; and those between two kinks.
-FROM_EDGE = (0.0, 0.0625, 0.25, 0.5, 0.75, 1.0)
-_BETWEEN = (0.0, 0.5, 1.0)
+#: Panels from the edge, over the length to the first kink or to the centre, in s; and the last of them.
+_FROM_EDGE, _LAST = (0.0, 0.0625, 0.25, 0.5, 0.75), 1.0
+#: Panels shrink by this factor towards a kink, and so many times: towards a kink, the axis and a point. Coarse panels
+#: there would spoil the solution far from it as well, and too many would be halved.
+_SHRINK, _LEVELS, _ON_AXIS, _TO_POINT = 0.4, 4, 6, 10
 #: Most kinks that get panels of their own. A profile with more of them is a table, whose kinks are small: panels are
 #: halved where its pressure asks for it, as everywhere.
 MOST = 12
@@ -29,13 +31,28 @@ def ends_of(shape, a):
     return (0.0, *s.tolist(), 1.0) if len(s) <= MOST else (0.0, 1.0)
 
 
-def panels_between(ends):
-    """Ends of panels (tuple) to begin with between the `ends`."""
+def panels_between(ends, shape=None):
+    """Ends of panels (tuple) to begin with between the `ends`, under one `shape`."""
     breaks = [0.0]
     for low, high in zip(ends, ends[1:], strict=False):
-        parts = FROM_EDGE if low == 0.0 else _BETWEEN
-        breaks += [low + (high - low) * part for part in parts[1:]]
+        levels = _LEVELS if high < 1.0 else _on_axis(shape)
+        inner = [part for part in _FROM_EDGE[1:] if not levels or part < 0.75] if low == 0.0 else _graded(_LEVELS)[::-1]
+        inner = sorted([*inner, *(1 - part for part in _graded(levels))])
+        breaks += [low + (high - low) * part for part in dict.fromkeys([*inner, _LAST])]
     return tuple(breaks)
+
+
+def _graded(levels):
+    """Distances from a kink, over the length to the next one: up to the middle."""
+    return [0.5 * _SHRINK**level for level in range(levels)]
+
+
+def _on_axis(shape):
+    """How often panels shrink towards the axis. A profile is not smooth there if it has a point, or if it is no function
+    of r² and has no kink that would say why."""
+    if shape is None or shape.even[0]:
+        return 0
+    return _TO_POINT if shape.pointed[0] else _ON_AXIS * bool(np.isnan(shape.kinks()[0]).all())
 
 
 def followed(breaks, ends, new):

@@ -4,6 +4,7 @@ All derivatives are by the logarithm of an input; by a Poisson ratio itself. The
 for their numbers a little above and a little below: nothing is solved, so that there is no noise of an iteration.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -59,7 +60,8 @@ def moved_along(values, slopes):
 class Changes(NamedTuple):
     """Derivatives of the numbers of B cases by k inputs, (k, B) each: of the groups X, Y, Z; of the logarithms of p*,
     A* and the controlled value; of the numbers of the law, `own`; and of ln h of the body, whose operator depends on
-    h/a. `cases`: the 2 k B moved ones; `on_body`: indices of the inputs that change the operator in another way."""
+    h/a. `depth` (k, B) is that of the depth of the punch, and `drop` (s (m,) -> (k, B, m)) makes that of its drop:
+    numbers of a shape change both. `cases`: the 2 k B moved ones; `on_body`: indices of the inputs that change the operator in another way."""
 
     cases: Cases
     X: np.ndarray
@@ -71,6 +73,8 @@ class Changes(NamedTuple):
     own: tuple
     h: np.ndarray
     on_body: list
+    depth: np.ndarray
+    drop: Callable
 
 
 def changes_of(part, eta, k):
@@ -88,7 +92,15 @@ def changes_of(part, eta, k):
             slopes = slope_of(values, k)
             acts |= np.any(slopes != 0, axis=tuple(range(1, slopes.ndim)))
     h[acts] = 0.0  # the operators of the moved bodies have the change of h already
-    return Changes(cases, X, Y, Z, *logs, own, h, np.flatnonzero(acts).tolist())
+    return Changes(cases, X, Y, Z, *logs, own, h, np.flatnonzero(acts).tolist(), *_of_punch(cases, eta, k))
+
+
+def _of_punch(cases, eta, k):
+    """Derivatives of the depth of the punch, (k, B), and a function that has those of its drop."""
+    if cases.shape is None:
+        return np.zeros((k, len(eta))), lambda s: 0.0
+    a = np.tile(np.exp(eta), 2 * k)
+    return slope_of(cases.punch.depth(a), k), lambda s: slope_of(cases.punch.drop(a, s), k)
 
 
 def _leaves(body, name=""):

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..numerics.mesh import on_panels, panel_mesh
 from ..numerics.quadrature import radau_nodes
-from ..punches.kinks import ends_of, followed, panels_between, settled
+from ..punches.kinks import bends_on_axis, ends_of, followed, panels_between, settled
 from .driver import Iterated, solve_on
 from .equation import State, evaluate
 from .results import interpolate
@@ -125,10 +125,13 @@ def resolve(ev, rtol):
     inside = dict(zip(pairwise(mesh.breaks), np.split(ev.state.y, len(mesh.breaks) - 1, axis=1), strict=True))
     done, room = {}, _MOST - len(inside) + _MORE * (len(ends_of(ev.cases.shape, _radius(ev))) - 2)
     levels = DEPTH + 1 if ev.cases.shape is None else _AT_ONCE
+    # what the profile bends on the axis is little of the load, but much of the pressure there
+    centre = max(rtol, _FLOOR) * values[:, -1] if bends_on_axis(ev.cases.shape) else np.inf
     while inside:  # panel -> y at its nodes
         halves, levels = [], levels - 1
         for (low, high), y in inside.items():
-            if levels >= 0 and room > 0 and high - low > 2.0**-DEPTH and np.any(_tail(law, y) * (high**2 - low**2) > scale):
+            tail, least = _tail(law, y), scale if high < 1.0 else np.minimum(scale, centre * (high**2 - low**2))
+            if levels >= 0 and room > 0 and high - low > 2.0**-DEPTH and np.any(tail * (high**2 - low**2) > least):
                 middle = (low + high) / 2
                 halves += [(low, middle), (middle, high)]
                 room -= 1

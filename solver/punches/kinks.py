@@ -48,11 +48,18 @@ def _graded(levels):
 
 
 def _on_axis(shape):
-    """How often panels shrink towards the axis. A profile is not smooth there if it has a point, or if it is no function
-    of r² and has no kink that would say why."""
-    if shape is None or shape.even[0]:
-        return 0
-    return _TO_POINT if shape.pointed[0] else _ON_AXIS * bool(np.isnan(shape.kinks()[0]).all())
+    """How often panels shrink towards the axis."""
+    if shape is not None and shape.pointed[0]:
+        return _TO_POINT
+    return _ON_AXIS * bends_on_axis(shape)
+
+
+def bends_on_axis(shape):
+    """Whether a profile without a point is not smooth on the axis all the same: it is no function of r², and has no
+    kink that would say why."""
+    if shape is None or shape.even[0] or shape.pointed[0]:
+        return False
+    return bool(np.isnan(shape.kinks()[0]).all())
 
 
 def followed(breaks, ends, new):

@@ -19,7 +19,7 @@ _GOALS = (1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
 #: A gap higher than this times a²/2 is real and no rounding, as in :mod:`..contact.answer`.
 _GAP = 1e-9
 #: Rounding of the answers, for each node.
-_ROUNDING = 4 * np.finfo(float).eps
+_ROUNDING, _TINY = 4 * np.finfo(float).eps, np.finfo(float).tiny
 
 
 def solve_flat(cases, rtol, nodes, limit, x):
@@ -78,15 +78,19 @@ def _answer(ev, count, closed, spent, rtol, x):
 
 
 def _change(values, finer):
-    return np.abs(values - finer).max() / np.abs(finer).max()
+    there = np.isfinite(finer)
+    return np.abs(values - finer)[there].max(initial=0.0) / np.abs(finer[there]).max(initial=_TINY)
 
 
 def _profiles(ev, x):
-    """p and λ (1, m) at the radii x (m,). At the edge asperities yield by τ: there is a pressure."""
+    """p and λ (1, m) at the radii x (m,). At the edge asperities yield by τ: there is a pressure. It is infinite, as
+    under a smooth punch, where they cannot yield so much."""
     p, lam = profiles(ev, x, np.array([0]))
     at_edge, law = x == 1, ev.cases.law
     if at_edge.any():
         y = law.from_displacement(ev.cases.punch.tau[:, None] / ev.Z)
         q = law.evaluate(y).q
-        p[:, at_edge], lam[:, at_edge] = law.p_star[:, None] * q, law.area(y, q)
+        full = ~np.isfinite(q)
+        p[:, at_edge] = law.p_star[:, None] * np.where(full, np.inf, q)
+        lam[:, at_edge] = np.where(full, 1.0, law.area(y, q))
     return p, lam

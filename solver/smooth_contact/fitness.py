@@ -26,7 +26,7 @@ def _no_radius(part):
     """(B,) bool: no contact of the one shape of the cases has the radius that is given, or it has no other."""
     shape, a = shape_of(part), part.value
     poles = ~np.isfinite(shape.lifted(column(shape.most()))[:, 0])
-    return (a <= shape.least()) | (a >= shape.most()) & poles
+    return (a <= shape.least()) | (shape.least() == shape.most()) | (a >= shape.most()) & poles
 
 
 def _unfit_law(problem):

@@ -17,8 +17,8 @@ def estimate(problem):
 
     problem : :class:`~solver.problem.Problem` with R = E2 = 1; all bases count as "layered"
 
-    NaN of cases that the solver refuses, of flat punches, and of micro laws that are not of this package. Under given loads a of 97 % of
-    300 random contacts is right to a factor of 2 (tests/physical/words/test_far_outside.py).
+    NaN of cases that the solver refuses, of flat punches, and of micro laws that are not of this package. Under given
+    loads a of 97 % of 300 random contacts is right to a factor of 2 (tests/physical/words/test_far_outside.py).
     """
     scaled = dimensionless(problem.but(base=np.where(np.isin(problem.base, STACKED[1]), "stack", "layered")))
     usable, estimates = ~refused(problem, scaled), {name: np.full(len(problem), np.nan) for name in _QUANTITIES}

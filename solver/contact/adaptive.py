@@ -1,8 +1,9 @@
 """Newton's method, for each case on the mesh that meets its tolerance.
 
 A case whose estimated error is above its tolerance goes on to the next finer mesh. It begins there at the state by
-which the error was estimated. Cases that the finest mesh does not resolve are solved on panels, one by one. So are those of a
-punch whose profile is no smooth function of r², from the beginning: there two polynomials may be wrong alike.
+which the error was estimated. Cases that the finest mesh does not resolve are solved on panels, one by one. So are
+those of a punch whose profile is no smooth function of r², from the beginning: there two polynomials may be wrong
+alike.
 """
 
 from dataclasses import replace

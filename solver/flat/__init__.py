@@ -1,4 +1,4 @@
-"""Rough contacts of the flat punch, whose contact radius is its own: the depth is the unknown that closes the equation."""
+"""Rough contacts of the flat punch, whose contact radius is its own: the depth closes the equation."""
 
 from .solve import solve_flat
 

@@ -4,8 +4,8 @@ The drop is (2/a²) [f(a) - f(ax)], and at fixed x
 
     d drop/d ln a = (2/a) [f'(a) - x f'(ax)] - 2 drop.
 
-First guesses of the radius come from closed forms of the shape, whose roots are found by bracketing: the loads P(a) that
-a half-space, springs and asperities would each bear alone increase with a.
+First guesses of the radius come from closed forms of the shape, whose roots are found by bracketing: the loads P(a)
+that a half-space, springs and asperities would each bear alone increase with a.
 """
 
 from typing import NamedTuple
@@ -106,8 +106,8 @@ def _between(v, least, most):
 
 
 def kept_within(shape, new, old):
-    """ln a (B,) after a step from `old` to `new` (B,): no nearer to a bound of the shape than _LEFT of the distance that
-    there was."""
+    """ln a (B,) after a step from `old` to `new` (B,): no nearer to a bound of the shape than _LEFT of the distance
+    that there was."""
     before, after = np.exp(old), np.exp(new)
     least, most = shape.least(), shape.most()
     low = least + _LEFT * (before - least)

@@ -23,15 +23,15 @@ def meshes(solution, problem):
 
 
 def without_state(problem):
-    """(B,) bool: cases whose equation is not that of :mod:`..contact`: smooth punches of other shapes than a paraboloid,
-    what sticks, and flat punches."""
+    """(B,) bool: cases whose equation is not that of :mod:`..contact`: smooth punches of other shapes than a
+    paraboloid, what sticks, and flat punches."""
     shaped = problem.shape != PARABOLOID
     return shaped & (~problem.rough() | (problem.shape == flat.KIND.name)) | (problem.w_adhesion > 0)
 
 
 def stacks(problem, nodes, a, most):
-    """Yield the indices of cases of one law, base, shape and mesh, and their number of nodes; 0: of one case on panels. No
-    stack has more than `most` unknowns."""
+    """Yield the indices of cases of one law, base, shape and mesh, and their number of nodes; 0: of one case on panels.
+    No stack has more than `most` unknowns."""
     kinds = np.stack([problem.micro, problem.base, problem.shape, nodes.astype(str)])
     for kind in np.unique(kinds, axis=1).T:
         index, count = np.flatnonzero(np.all(kinds == kind[:, None], axis=0)), int(kind[-1])

@@ -61,7 +61,8 @@ class Changes(NamedTuple):
     """Derivatives of the numbers of B cases by k inputs, (k, B) each: of the groups X, Y, Z; of the logarithms of p*,
     A* and the controlled value; of the numbers of the law, `own`; and of ln h of the body, whose operator depends on
     h/a. `depth` (k, B) is that of the depth of the punch, and `drop` (s (m,) -> (k, B, m)) makes that of its drop:
-    numbers of a shape change both. `cases`: the 2 k B moved ones; `on_body`: indices of the inputs that change the operator in another way."""
+    numbers of a shape change both. `cases`: the 2 k B moved ones; `on_body`: indices of the inputs that change the
+    operator in another way."""
 
     cases: Cases
     X: np.ndarray

@@ -1,10 +1,11 @@
 """How often `error` is below the truth under rough punches of every shape: `python tools/errors/rough_shapes.py [SIZE
 [SEED]]`, some minutes.
 
-SIZE random contacts (10 by default) of each shape, of random laws on half-spaces and layers, are solved at a given load,
-or radius or depth, and rtol 1e-9, which is the truth; and again at rtol 1e-3 and 1e-6. A line for each shape: how they
-end (the names of the statuses); how many answers have an `error` ten times that of the truth, how many of these are
-farther from the truth than `error`, and the largest distance in units of `error`; and seconds of processor time a case.
+SIZE random contacts (10 by default) of each shape, of random laws on half-spaces and layers, are solved at a given
+load, radius or depth, and rtol 1e-9, which is the truth; and again at rtol 1e-3 and 1e-6. A line for each shape: how
+they end (the names of the statuses); how many answers have an `error` ten times that of the truth, how many of these
+are farther from the truth than `error`, and the largest distance in units of `error`; seconds of processor time a case.
+After SIZE and SEED there may be the names of some shapes.
 """
 
 import sys
@@ -59,7 +60,7 @@ def distance(answer, truth) -> float:
 
 def main(size: int = 10, seed: int = 1, show: float = 1.0) -> None:
     np.seterr(all="ignore")
-    for shape in SHAPES:
+    for shape in SHAPES if len(sys.argv) < 4 else sys.argv[3:]:
         ends, far, before = Counter(), [], process_time()
         for i in range(size):
             case = contact(shape, np.random.default_rng([seed, i, SHAPES.index(shape)]))

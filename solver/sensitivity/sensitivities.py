@@ -119,7 +119,8 @@ def _of_solved(scaled, solution, inputs, x):
     shapes, left = np.full((2, k, size, len(x)), np.nan), np.ones(size, dtype=bool)
     now, above = held(scaled, solution.model_used), moved(scaled, inputs)
     beside = held(above, np.tile(solution.model_used, 2 * k))
-    again = np.flatnonzero(~without_state(scaled))
+    stateless = without_state(scaled)
+    again = np.flatnonzero(~stateless)
     for rows, nodes in stacks(now.written.take(again), meshes(solution, scaled)[again], solution.a[again], _STACK):
         index = again[rows]
         rows = (np.arange(2 * k)[:, None] * size + index).ravel()
@@ -129,9 +130,11 @@ def _of_solved(scaled, solution, inputs, x):
         for name, values in derivatives.items():
             logs[name][:, index[good]] = values[:, good]
         shapes[:, :, index[good]] = at_x[:, :, good]
-    rest = np.flatnonzero(left & ~now.added)
-    if len(rest):
-        derivatives, shapes[:, :, rest] = by_differences(now.named.take(rest), inputs, QUANTITIES, x)
+    for fine in (False, True):
+        rest = np.flatnonzero(left & ~now.added & (stateless == fine))
+        if not len(rest):
+            continue
+        derivatives, shapes[:, :, rest] = by_differences(now.named.take(rest), inputs, QUANTITIES, x, fine)
         for name, values in derivatives.items():
             logs[name][:, rest] = values
     return logs, shapes

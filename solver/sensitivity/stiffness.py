@@ -5,17 +5,25 @@ depth is formed at two states next to the solution, on the tangent of the branch
 and cancels. At such a state one transposed system serves all inputs. Then, under the control,
 
     d ln S/dθ = [d(d ln P/dθ)/d ln D + (dS/d ln D) (d ln D/dθ)]/S,    dP/dD = S P/D.
+
+Where the punch has kinks inside the contact, the panels follow them, and the states beside are solved anew.
 """
+
+from dataclasses import replace
 
 import numpy as np
 
+from ..contact.driver import BUDGET
 from ..contact.equation import State, control_gradient, evaluate, jacobian
+from ..contact.panels import solve_on_panels
 from ..numerics.linalg import solve_stack
 from .changes import changes_of
-from .state import explicit, moving_numbers, of_law
+from .state import explicit, moving_numbers, of_law, operators_of
 
 #: Distance of the two states in ln a.
 STEP = 3e-4
+#: Tolerance of the states that are solved anew: far below STEP.
+_EXACT = 1e-10
 
 
 def stiffness_slopes(ev, part, derivatives, operators):
@@ -32,12 +40,14 @@ def stiffness_slopes(ev, part, derivatives, operators):
 
 def _beside(ev, part, derivatives, operators, step):
     """d ln P/dθ at a fixed depth (k, B), and S (B,), at the state with η + `step` on the tangent of the branch."""
-    tangent = derivatives.tangent
-    y = ev.state.y + step * tangent / ev.curve.dq
-    at = evaluate(ev.cases, State(y, ev.state.eta + step), ev.mesh)
+    tangent, anew = derivatives.tangent, ev.cases.shape is not None and ev.cases.shape.kinks().size > 0
+    at = _solved_beside(ev, step) if anew else _on_tangent(ev, tangent, step)
     changes = changes_of(part, at.state.eta, len(derivatives.eta))
-    law = of_law(at.cases.law, y, at.curve, moving_numbers(changes))
-    moved = {i: _beside_products(change, ev.curve.q, tangent, step) for i, change in operators.items()}
+    law = of_law(at.cases.law, at.state.y, at.curve, moving_numbers(changes))
+    if anew:
+        moved = {i: change.products(at.curve.q) for i, change in operators_of(at, changes).items()}
+    else:
+        moved = {i: _beside_products(change, ev.curve.q, tangent, step) for i, change in operators.items()}
     fixed = explicit(at, changes, {i: slopes[0] for i, slopes in law.by_own.items()}, moved)
     diagonal, dF_deta = jacobian(at)
     gradients = [control_gradient(name, at) for name in ("P", "D")]
@@ -48,6 +58,17 @@ def _beside(ev, part, derivatives, operators, step):
     S = P_eta / D_eta
     of_load, of_depth = (np.einsum("bn,kbn->kb", v, fixed.F) for v in (P, D))
     return fixed.P - of_load - S * (fixed.D - of_depth), S
+
+
+def _on_tangent(ev, tangent, step):
+    y = ev.state.y + step * tangent / ev.curve.dq
+    return evaluate(ev.cases, State(y, ev.state.eta + step), ev.mesh)
+
+
+def _solved_beside(ev, step):
+    """The equation of one case at its solution for a radius beside that of `ev`."""
+    case = ev.cases._replace(control="a", value=np.exp(ev.state.eta + step))
+    return replace(solve_on_panels(case, _EXACT, BUDGET)[0].at, cases=ev.cases)
 
 
 def _beside_products(change, q, tangent, step):

@@ -15,7 +15,7 @@ from ..numerics.mesh import mesh_of
 from ..solution import Solution
 from ..status import Status
 from .answer import Answer, Goal, Verdict, answer, at_floor, may_be_error, tensile_centre
-from .driver import BUDGET, newton_steps, solve_on
+from .driver import BUDGET, budget_of, newton_steps, solve_on
 from .equation import evaluate
 from .panels import solve_on_panels
 from .start import first_guess, guess_radius, nodes_wanted
@@ -72,7 +72,8 @@ def _split(cases, settings, direct, limit, x):
     none = Solution.of(1, len(x), status=Status.ITERATION_LIMIT)
     before = Answer(none, np.zeros(1), np.zeros(1, bool), np.full(1, Verdict.OPEN, np.int8), None)
     for i in np.flatnonzero(direct):
-        pieces.append(([i], _on_panels(cases.take([i]), before, settings[0][i], x, BUDGET)))
+        case = cases.take([i])
+        pieces.append(([i], _on_panels(case, before, settings[0][i], x, budget_of(case))))
     return Solution.join(size, len(x), pieces)
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..contact.driver import BUDGET, solve_on
+from ..contact.driver import budget_of, solve_on
 from ..contact.equation import evaluate
 from ..contact.panels import solve_on_panels
 from ..contact.results import quantities
@@ -44,7 +44,7 @@ def found_again(cases, nodes, a, rtol):
     """:class:`~solver.contact.driver.Iterated` of cases of about the radii a (B,), in units R = E2* = 1, on `nodes`
     nodes; 0: of one case on panels of its own."""
     if not nodes:
-        return solve_on_panels(cases, rtol[0], BUDGET)[0]
+        return solve_on_panels(cases, rtol[0], budget_of(cases))[0]
     mesh = mesh_of(nodes)
     return solve_on(evaluate(cases, first_guess(cases, mesh, a), mesh))
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..contact.driver import BUDGET
+from ..contact.driver import budget_of
 from ..contact.equation import State, control_gradient, evaluate, jacobian
 from ..contact.panels import solve_on_panels
 from ..numerics.linalg import solve_stack
@@ -40,7 +40,8 @@ def stiffness_slopes(ev, part, derivatives, operators):
 
 def _beside(ev, part, derivatives, operators, step):
     """d ln P/dθ at a fixed depth (k, B), and S (B,), at the state with η + `step` on the tangent of the branch."""
-    tangent, anew = derivatives.tangent, ev.cases.shape is not None and ev.cases.shape.kinks().size > 0
+    tangent, kinked = derivatives.tangent, ev.cases.shape is not None and ev.cases.shape.kinks().size > 0
+    anew = kinked and ev.mesh.order < ev.mesh.n
     at = _solved_beside(ev, step) if anew else _on_tangent(ev, tangent, step)
     changes = changes_of(part, at.state.eta, len(derivatives.eta))
     law = of_law(at.cases.law, at.state.y, at.curve, moving_numbers(changes))
@@ -68,7 +69,7 @@ def _on_tangent(ev, tangent, step):
 def _solved_beside(ev, step):
     """The equation of one case at its solution for a radius beside that of `ev`."""
     case = ev.cases._replace(control="a", value=np.exp(ev.state.eta + step))
-    return replace(solve_on_panels(case, _EXACT, BUDGET)[0].at, cases=ev.cases)
+    return replace(solve_on_panels(case, _EXACT, budget_of(case))[0].at, cases=ev.cases)
 
 
 def _beside_products(change, q, tangent, step):

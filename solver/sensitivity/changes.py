@@ -12,11 +12,15 @@ import numpy as np
 from ..contact.equation import Cases, groups
 from ..layers import numbers_of, table
 from ..parameters import CONTROL, is_ratio
+from ..punches.shaped import Shaped
 from ..scaling import as_cases
+from ..shapes import PARABOLOID, SHAPES, shape_of
 
 #: An input is moved up and down by this part of itself, a Poisson ratio by this number. The curvature then adds 1e-8
 #: times a third derivative, and rounding 1e-12.
 STEP = 1e-4
+#: Numbers of a shape are moved by this part of STEP: rounding then adds 1e-10.
+_NEARER = 1e-2
 #: Numbers that are no inputs: they say how a case is solved, or are units, whose effect follows from dimensions.
 _NO_INPUTS = {"accuracy", "k", "rtol", "R", "E2"}
 
@@ -93,15 +97,27 @@ def changes_of(part, eta, k):
             slopes = slope_of(values, k)
             acts |= np.any(slopes != 0, axis=tuple(range(1, slopes.ndim)))
     h[acts] = 0.0  # the operators of the moved bodies have the change of h already
-    return Changes(cases, X, Y, Z, *logs, own, h, np.flatnonzero(acts).tolist(), *_of_punch(cases, eta, k))
+    return Changes(cases, X, Y, Z, *logs, own, h, np.flatnonzero(acts).tolist(), *_of_punch(part, eta, k))
 
 
-def _of_punch(cases, eta, k):
-    """Derivatives of the depth of the punch, (k, B), and a function that has those of its drop."""
-    if cases.shape is None:
+def _of_punch(part, eta, k):
+    """Derivatives of the depth of the punch, (k, B), and a function that has those of its drop; `part`: the moved cases.
+
+    Numbers of a shape are moved by _NEARER of what the others are: a kink moves with them, and nodes next to it must
+    stay on its other side.
+    """
+    if part.shape[0] == PARABOLOID:
         return np.zeros((k, len(eta))), lambda s: 0.0
-    a = np.tile(np.exp(eta), 2 * k)
-    return slope_of(cases.punch.depth(a), k), lambda s: slope_of(cases.punch.drop(a, s), k)
+    nearer = {}
+    for name in SHAPES[str(part.shape[0])].parameters:
+        values = getattr(part, name)
+        if values.dtype.kind == "f":
+            both = values.reshape(k, 2, len(eta))
+            middle = both.mean(axis=1, keepdims=True)
+            nearer[name] = (middle + _NEARER * (both - middle)).ravel()
+    punch, a = Shaped(shape_of(part.but(**nearer))), np.tile(np.exp(eta), 2 * k)
+    step = STEP * _NEARER
+    return slope_of(punch.depth(a), k, step), lambda s: slope_of(punch.drop(a, s), k, step)
 
 
 def _leaves(body, name=""):

@@ -13,17 +13,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..contact.driver import budget_of
+from ..contact.driver import solve_on
 from ..contact.equation import State, control_gradient, evaluate, jacobian
-from ..contact.panels import solve_on_panels
 from ..numerics.linalg import solve_stack
+from ..numerics.mesh import panel_mesh
+from ..punches.kinks import ends_of, followed
 from .changes import changes_of
 from .state import explicit, moving_numbers, of_law, operators_of
 
 #: Distance of the two states in ln a.
 STEP = 3e-4
-#: Tolerance of the states that are solved anew: far below STEP.
-_EXACT = 1e-10
 
 
 def stiffness_slopes(ev, part, derivatives, operators):
@@ -41,7 +40,7 @@ def stiffness_slopes(ev, part, derivatives, operators):
 def _beside(ev, part, derivatives, operators, step):
     """d ln P/dθ at a fixed depth (k, B), and S (B,), at the state with η + `step` on the tangent of the branch."""
     tangent, kinked = derivatives.tangent, ev.cases.shape is not None and ev.cases.shape.kinks().size > 0
-    anew = kinked and ev.mesh.order < ev.mesh.n
+    anew = kinked and ev.mesh.order < ev.mesh.n and len(_ends(ev, 0.0)) == len(_ends(ev, step))
     at = _solved_beside(ev, step) if anew else _on_tangent(ev, tangent, step)
     changes = changes_of(part, at.state.eta, len(derivatives.eta))
     law = of_law(at.cases.law, at.state.y, at.curve, moving_numbers(changes))
@@ -67,9 +66,16 @@ def _on_tangent(ev, tangent, step):
 
 
 def _solved_beside(ev, step):
-    """The equation of one case at its solution for a radius beside that of `ev`."""
+    """The equation of one case at its solution for a radius beside that of `ev`, on the panels of `ev` that follow the
+    kinks: so errors of the mesh are those of the other side, and cancel."""
     case = ev.cases._replace(control="a", value=np.exp(ev.state.eta + step))
-    return replace(solve_on_panels(case, _EXACT, budget_of(case))[0].at, cases=ev.cases)
+    mesh = panel_mesh(ev.mesh.order, followed(ev.mesh.breaks, _ends(ev, 0.0), _ends(ev, step)))
+    at = solve_on(evaluate(case, State(ev.state.y, ev.state.eta + step), mesh)).at
+    return replace(at, cases=ev.cases)
+
+
+def _ends(ev, step):
+    return ends_of(ev.cases.shape, float(np.exp(ev.state.eta[0] + step)))
 
 
 def _beside_products(change, q, tangent, step):

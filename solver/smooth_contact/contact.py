@@ -9,6 +9,7 @@ from ..status import Status
 from . import adhesive
 from .radius import touching
 from .state import State, answer, pinned
+from .tabulated import Tabulated
 
 
 def kinds_of(problem):
@@ -28,6 +29,8 @@ def shape_in(part):
 def free(part, x):
     """:class:`~..solution.Solution` of cases without adhesion in units R = E2* = 1, at the radii x (m,)."""
     shape, body = shape_in(part), BODIES[str(part.base[0])](part)
+    if hasattr(body, "kernel") and body.kernel.sampler is None:  # of many layers
+        body = Tabulated.of(body)
     if str(part.shape[0]) == "flat":
         state, counts = pinned(part, shape, body), np.ones(len(part), dtype=np.int32)
     else:
@@ -39,4 +42,4 @@ def free(part, x):
 
 def sticking(part, x):
     """The same of cases with adhesion, w > 0."""
-    return adhesive.solve(part, shape_in(part), BODIES[str(part.base[0])](part), x)
+    return adhesive.solve(part, shape_in(part), Tabulated.of(BODIES[str(part.base[0])](part)), x)

@@ -101,8 +101,10 @@ def lowest(law, x, index, radii):
 
 
 class Turn(NamedTuple):
-    """The last minimum of Q in B cases: x, the state there, and whether it is the corner of what is flat."""
+    """The last minimum of Q in B cases: x, the state there, and whether it is the corner of what is flat, where x is
+    -inf. `above` is an x beyond every minimum."""
 
+    above: np.ndarray
     x: np.ndarray
     state: State
     corner: np.ndarray
@@ -128,7 +130,7 @@ def last_minimum(curve, held, start):
         )
     x = np.where(found.ended & ~corner, np.nan, np.where(corner, -np.inf, x))
     state, _ = curve.at(x, np.arange(len(x)))
-    return Turn(x, state, corner)
+    return Turn(start, x, state, corner)
 
 
 class Interval(NamedTuple):
@@ -223,7 +225,8 @@ def beyond(curve, held, value, turn, start):
             index
         ]
 
-    return rising_root(evaluate, np.fmax(start, turn.x + 0.3), low=turn.x)[0]
+    start = np.fmax(start, np.where(turn.corner, turn.above, turn.x + 0.3))
+    return rising_root(evaluate, start, low=turn.x)[0]
 
 
 def below(curve, held, value, start, rises):

@@ -10,6 +10,8 @@ from .pressure import flat_pressure, pressure_changes, pressures
 
 #: Radii at which the pressure is looked at, for tension and for its error; denser towards the edge.
 _LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
+#: Where dD/da is below this part of what the shape adds to it, D has its minimum, to rounding.
+_FLAT = 1e-12
 
 
 class State(NamedTuple):
@@ -35,8 +37,9 @@ class State(NamedTuple):
 
     @property
     def stiffness(self):
-        """dP/dD along the curve, (B,)."""
-        return np.where(self.A == 0, self.response.S, self.dP / self.dD)
+        """dP/dD along the curve, (B,): infinite where the depth has its minimum."""
+        steep = np.abs(self.dD) < _FLAT * self.response.slope
+        return np.where(self.A == 0, self.response.S, np.where(steep, np.inf, self.dP / self.dD))
 
     @classmethod
     def free(cls, response):

@@ -28,7 +28,7 @@ _CORNER = 1e-6
 #: The variable of the last radius before the end of a profile.
 _LAST = 30.0
 #: Waves u = kh at which the kernel is looked at.
-_WAVES = np.concatenate([[0.0], np.geomspace(1e-7, 30.0, 60)])
+_WAVES = np.geomspace(1e-9, 30.0, 72)
 #: Width of a bracket, in the variable, in which a minimum or a radius is found.
 _NARROW = 1e-14
 
@@ -75,7 +75,7 @@ def highest(law, radii):
     softest = np.ones(len(law.w))
     if hasattr(body, "kernel"):
         L = body.kernel.whole(np.tile(_WAVES, (len(softest), 1)))
-        softest = np.maximum((L.max(axis=1) + body.m) / (1 + body.m), 1.0)
+        softest = np.maximum((np.maximum(L.max(axis=1), body.kernel.L0) + body.m) / (1 + body.m), 1.0)
 
     def evaluate(x, index):
         a, da = radii.at(x, index)

@@ -13,15 +13,14 @@ from .products import in_blocks
 #: Points of a panel. A panel ends at twice the u at which it begins; L - 1 is analytic but near the imaginary axis, and
 #: so the series of Chebyshev falls by 5.8 with each term.
 _POINTS = 20
-#: The first panel, from 0, ends below 0.15 over the stiffness: L is nearly straight there. Beyond _END, the end of the last,
-#: L - 1 is 0 here.
+#: The first panel, from 0, ends below 0.15 over the stiffness: L is nearly straight there. The last ends at _END.
 _FIRST = tuple(2.0 ** np.floor(np.log2(0.15 / np.array(STIFFEST))))
 _END = 32.0
 
 
 class Tabulated(NamedTuple):
     """A :class:`~..body.hankel.Hankel` body with the series of (L - 1)/(1 + m), `series` (B, p, _POINTS), on p panels
-    in u = kh, of which the first ends at `first` (B,)."""
+    in u = kh, of which the first ends at `first` (B,); beyond the last it is 0."""
 
     body: Hankel
     first: np.ndarray

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..layers import full_name, numbers_of
 from ..parameters import STACKED
-from ..solution import JUDGED, Solution
+from ..solution import JUDGED, PULLS, Solution
 from ..status import Status
 from .named import solve_named
 
@@ -19,9 +19,11 @@ _COUNTS = (2, 4, 8, 16, 32)
 #: Powers of 1/m that are taken out: 1/m² and 1/m⁴.
 _ORDERS = 2
 #: Numbers that are extrapolated; the rest are those of the last sublayers.
-_NUMBERS = (*JUDGED, "A0", "dP_dD", "p", "lam")
-#: Statuses of cases that have numbers.
-_SOLVED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
+_NUMBERS = (*JUDGED, "A0", "dP_dD", *PULLS, "p", "lam")
+#: Those whose last change is the error; of cases that stick P_off and D_off are among them.
+_JUDGED = (*JUDGED, "P_off", "D_off")
+#: Statuses of cases that have numbers; of the last, those of pull-off and pull-in.
+_SOLVED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET, Status.PULLED_OFF)
 
 
 def is_graded(problem):
@@ -50,7 +52,7 @@ def solve_graded(problem, x):
         rows = [row.take(np.flatnonzero(~ended)) for row in rows]
         if not len(left):
             break
-    return whole
+    return replace(whole, error=np.where(whole.status == Status.PULLED_OFF, np.nan, whole.error))
 
 
 def _extrapolated(rows, rtol):
@@ -60,17 +62,27 @@ def _extrapolated(rows, rtol):
     for name in _NUMBERS:
         values, before = _limits([getattr(row, name) for row in rows])
         numbers[name] = np.clip(values, 0.0, 1.0) if name in ("lam", "Ar_An") else values
-        if name in JUDGED:
-            change = np.fmax(change, np.abs(values / before - 1))  # NaN: what a point leaves unknown
+        if name in _JUDGED:
+            change = np.fmax(change, _change(values, before, getattr(last, name)))
         elif name == "p":
-            largest = np.fmax(np.fmax.reduce(np.abs(values), axis=1, initial=0.0), last.p0)
-            of_profile = np.fmax.reduce(np.abs(values - before), axis=1, initial=0.0) / largest
-    error = last.error + (change if len(rows) > 1 else np.inf)
-    solved = np.isin(last.status, _SOLVED)
-    status = np.where(solved & ~(error <= rtol), Status.TOLERANCE_NOT_MET, last.status).astype(np.int8)
-    numbers = {name: np.where(_wide(solved, v), v, getattr(last, name)) for name, v in numbers.items()}
+            finite = np.where(np.isfinite(values), values, 0.0)
+            largest = np.fmax(np.abs(finite).max(axis=1, initial=0.0), np.where(np.isfinite(last.p0), last.p0, 0.0))
+            of_profile = np.abs(np.where(finite == 0, 0.0, values - before)).max(axis=1, initial=0.0) / largest
+    solved, pulled = np.isin(last.status, _SOLVED), last.status == Status.PULLED_OFF
+    error = np.where(pulled, 0.0, last.error) + (change if len(rows) > 1 else np.inf)
+    status = np.where(solved & ~pulled & ~(error <= rtol), Status.TOLERANCE_NOT_MET, last.status).astype(np.int8)
+    for name, values in numbers.items():
+        before = getattr(last, name)
+        numbers[name] = np.where(_wide(solved, values) & np.isfinite(values), values, before)
     profile_error = np.maximum(last.profile_error + of_profile, error)
     return replace(last, **numbers, error=error, profile_error=profile_error, status=status)
+
+
+def _change(values, before, last):
+    """Relative change (B,) of extrapolated numbers: 0 where there is none, or the `last` solution has no number."""
+    change = np.abs(values / before - 1)
+    change = np.where((values == before) | np.isnan(last), 0.0, change)
+    return np.where(np.isnan(change), np.inf, change)
 
 
 def _limits(values):
@@ -79,7 +91,7 @@ def _limits(values):
     for order in range(1, min(_ORDERS, len(values) - 1) + 1):
         before = columns[-1]
         columns.append([b + (b - a) / (4.0**order - 1) for a, b in zip(before, before[1:], strict=False)])
-    best = columns[-1][-1]
+    best = np.where(np.isfinite(columns[-1][-1]), columns[-1][-1], values[-1])  # not of what is infinite
     if len(values) == 1:
         return best, best
     return best, columns[-1][-2] if len(columns[-1]) > 1 else columns[-2][-2]

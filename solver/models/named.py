@@ -12,7 +12,6 @@ from ..scaling import as_cases, dimensionless, restore, with_a_stiff_base, with_
 from ..schemes import SCHEMES
 from ..shapes import PARABOLOID, SHAPES
 from ..smooth_contact.contact import kinds_of
-from ..smooth_contact.contact import solve as of_shapes
 from ..solution import Model, Solution
 from ..status import Status
 from .range_of_law import edge_error, outside_law
@@ -94,7 +93,7 @@ def _ways(problem, solvable):
     half_space, thin = problem.base == "half_space", problem.base == "thin_layer"
     is_smooth, shaped = ~problem.rough(), problem.shaped() | (problem.w_adhesion > 0)
     if np.any(of_shape := solvable & is_smooth & shaped):
-        yield from ((of_shape & mask, of_shapes) for mask in kinds_of(problem))
+        yield from ((of_shape & mask, way) for mask, way in kinds_of(problem))
         solvable = solvable & ~of_shape
     yield solvable & is_smooth & half_space, _smooth_half_space
     yield solvable & is_smooth & thin, _smooth_layer

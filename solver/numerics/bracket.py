@@ -14,8 +14,14 @@ def false_position(evaluate, start, tolerance):
     tolerance : (B,); a case is done, and not evaluated again, when abs(g) or the width of its bracket is below this
     """
     (low, high), (g_low, g_high) = _outwards(evaluate, start)
+    return between(evaluate, low, high, g_low, g_high, tolerance)
+
+
+def between(evaluate, low, high, g_low, g_high, tolerance):
+    """The same from the ends `low`, `high` (B,) of a bracket, which it narrows in place, and the function there. A case
+    whose function is NaN at an end is given up."""
     x, g = high.copy(), g_high.copy()
-    active, was_below = np.flatnonzero(np.isfinite(g_low + g_high)), np.full(len(start), np.nan)
+    active, was_below = np.flatnonzero(np.isfinite(g_low + g_high)), np.full(len(low), np.nan)
     for _ in range(80):
         if not len(active):
             break

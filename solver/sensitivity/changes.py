@@ -101,7 +101,7 @@ def changes_of(part, eta, k):
 
 
 def _of_punch(part, eta, k):
-    """Derivatives of the depth of the punch, (k, B), and a function that has those of its drop; `part`: the moved cases.
+    """Derivatives of the depth of the punch, (k, B), and a function that has those of its drop, for the moved cases.
 
     Numbers of a shape are moved by _NEARER of what the others are: a kink moves with them, and nodes next to it must
     stay on its other side.

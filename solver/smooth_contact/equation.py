@@ -17,11 +17,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..body.part import parts_of, runs
-from .products import Products, coarser, size_of
+from ..body.wave_rule import FILM, MILD, place_of
+from .products import Products, coarser, nodes, size_of
 from .rises import rises
+from .tabulated import excess
 
 _EPS = np.finfo(float).eps
+#: Number of classes of stiffness.
+_CLASSES = MILD + 1
 #: Rounding of closed forms, relative; and that of the equation, over eps times its size and the norm of its matrix.
 _ROUNDING, _FLOOR = 16 * _EPS, 8
 
@@ -84,19 +87,19 @@ class Response(NamedTuple):
 
 
 def respond(shape, body, a):
-    """:class:`Response` of B shapes on a body at radii a (B,)."""
+    """:class:`Response` of B shapes on a body at radii a (B,); NaN where a is."""
     if not hasattr(body, "kernel"):
         return _on_half_space(shape, body, a)
-    pieces = []
-    for part in parts_of(body, a, np.arange(len(a))):
-        for octave, rows in runs(part.octave) if part.film is None else ():
-            places, even = part.index[rows], shape.even[part.index[rows]]
-            for kind in (True, False):
-                chosen = np.flatnonzero(even == kind)
-                if len(chosen):
-                    N, index = size_of(octave, kind), places[chosen]
-                    products = Products.of(part.L1[rows][chosen], part.sampler, octave, part.stiffness, N)
-                    pieces.append((index, _on_kernel(shape.take(index), body.take(index), a[index], products)))
+    octave, place = place_of(body, a)
+    kinds, pieces = 2 * ((octave - FILM) * _CLASSES + place) + shape.even, []
+    usable = (a > 0) & np.isfinite(a)
+    for kind in np.unique(kinds[usable]).tolist():
+        index = np.flatnonzero(usable & (kinds == kind))
+        which = int(octave[index[0]]), int(place[index[0]])
+        part, size = body.take(index), size_of(which[0], bool(kind % 2))
+        L1 = excess(part, nodes(body.kernel.sampler, *which) * (part.h / a[index])[:, None])
+        products = Products.of(L1, body.kernel.sampler, *which, size)
+        pieces.append((index, _on_kernel(shape.take(index), part, a[index], products)))
     return Response.join(len(a), pieces)
 
 

@@ -15,6 +15,8 @@ from ..shapes.shape import column
 from .products import in_blocks
 from .rises import on_half_space
 
+_CENTRE = np.zeros(1).tobytes()
+
 
 def pressures(shape, response, A, x):
     """p (B, m) at x (m,) with the edge value A (B,); at x = 1 it is 0 or infinite, by the sign of A."""
@@ -54,3 +56,9 @@ def pressure_changes(response, A, x):
     """By how much p (B, m) changes at x (m,) < 1 with the last functions of the basis."""
     changes = response.changes + column(A) * response.flat_changes
     return in_blocks(changes, _slopes(changes.shape[1], x.tobytes())) * column(response.E / (np.pi * response.a))
+
+
+def flat_pressure(response):
+    """p(0) (B,) of a flat punch of the radius a, over its depth."""
+    bent = in_blocks(response.flat_bent, _slopes(response.flat_bent.shape[1], _CENTRE))[:, 0]
+    return response.E / (np.pi * response.a) * (1 - bent) / response.flat_D

@@ -13,10 +13,12 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import spherical_jn
+from scipy.special import spherical_jn, spherical_yn
 
-from ..body.wave_rule import few, quadrature
+from ..body.film import step
+from ..body.wave_rule import CUT, FILM, few, quadrature
 from ..numerics.kept import Kept
+from ..numerics.quadrature import gauss_legendre
 
 #: Numbers N of functions in the basis for octaves of h/a from 3 downwards, of shapes that are smooth in r², and of all
 #: others; of thicker layers, as for octave 3.
@@ -26,12 +28,17 @@ _SIZES = {
 }
 #: Bytes of tables that are kept.
 _MOST = 256_000_000
-_TABLES = Kept(_MOST)
+_TABLES, _WAVES = Kept(_MOST), Kept(_MOST)
+#: Octave of h/a below which few nodes are not enough: they are chosen for functions that fall like 1/κ², and cos κ, of
+#: the edge, does not. A table would also be large.
+_THINNEST = -5
+#: Octaves of far waves, and their nodes in each.
+_OCTAVES, _FAR = 30, 12
 
 
 def size_of(octave, even):
     """The number N of functions of the basis in an octave of h/a."""
-    return _SIZES[even][min(max(3 - octave, 0), len(_SIZES[even]) - 1)]
+    return _SIZES[even or octave == FILM][min(max(3 - octave, 0), 11)]
 
 
 def coarser(size):
@@ -55,12 +62,83 @@ class Products(NamedTuple):
 
     @classmethod
     def of(cls, L1, sampler, octave, stiffness, size):
-        """L1 (B, M) : L - 1 at the few nodes of an octave and class of stiffness, or where `sampler` is None at all."""
+        """L1 (B, M) : L - 1 at :func:`nodes`."""
+        if not _has_few(sampler, octave):
+            return cls._summed(L1, octave, stiffness, size)
         key = sampler, octave, stiffness, size
         flat = in_blocks(L1, _TABLES.get(key, lambda: _table(*key)))
         places = _places(size)
         count = (size + 1) * (size + 2) // 2
         return cls(flat[:, places[:-1, :-1]], flat[:, places[:-1, -1]], flat[:, places[-1, -1]], flat[:, count:])
+
+    @classmethod
+    def _summed(cls, L1, octave, stiffness, size):
+        """The same from sums over all nodes, case by case: a table would be too large."""
+        waves = _WAVES.get((octave, stiffness, size), lambda: _waves(octave, stiffness, size))
+        near, far, count = waves.near, waves.far, waves.near.shape[1]
+        out = np.empty((len(L1), size + 2, size + 2))
+        for sums, values in zip(out, 2 / np.pi * waves.weight * L1, strict=True):
+            sums[...] = (near * values[:count]) @ near.T
+            if far.shape[1]:
+                sums += ((far * values[count:]) @ far.conj().T).real / 2
+        slope = out[:, -1, :size].copy()
+        slope[:, 0] += out[:, -1, size]
+        return cls(out[:, :size, :size], out[:, :size, size], out[:, size, size], slope)
+
+
+class Waves(NamedTuple):
+    """The functions d_0 ... d_(N-1), cos κ, κ sin κ at G near and G' far nodes κ, and their `weight` (G + G',).
+
+    Far waves swing so often that only the means of products count. There a function is the real part of A e^iκ, with
+    A smooth, and the mean of a product is the real part of half of A and the conjugate of the other.
+
+    near : (N + 2, G), the functions
+    far : (N + 2, G'), A
+    """
+
+    near: np.ndarray
+    far: np.ndarray
+    weight: np.ndarray
+
+
+def nodes(sampler, octave, stiffness):
+    """κ (M,) at which L - 1 is needed in an octave of h/a and a class of stiffness."""
+    if octave == FILM:
+        return np.concatenate([_film_rule(stiffness)[0], _far_rule()[0]])
+    return few(sampler, octave, stiffness).k if _has_few(sampler, octave) else quadrature(octave, stiffness)[0]
+
+
+def _has_few(sampler, octave):
+    """Whether L - 1 at few nodes is enough."""
+    return sampler is not None and octave >= _THINNEST
+
+
+def _film_rule(stiffness):
+    k, weight = quadrature(FILM, stiffness)
+    return k, weight * step(k / CUT)
+
+
+@lru_cache(maxsize=1)
+def _far_rule():
+    """Nodes and weights of waves beyond those of the film's quadrature: evenly in ln κ."""
+    t, w = gauss_legendre(_FAR)
+    ends = CUT * 2.0 ** np.arange(-2.0, _OCTAVES + 1)
+    k = (ends[:-1, None] * 2.0**t).ravel()
+    return k, k * np.log(2) * np.tile(w, len(ends) - 1) * (1 - step(k / CUT))
+
+
+def _waves(octave, stiffness, size):
+    if octave == FILM:
+        k, weight = _film_rule(stiffness)
+        far, far_weight = _far_rule()
+    else:
+        (k, weight), (far, far_weight) = quadrature(octave, stiffness), np.empty((2, 0))
+    near = np.vstack([differences(size, k), np.cos(k), k * np.sin(k)])
+    m, turned = np.arange(size)[:, None], np.exp(-1j * far)
+    amplitudes = (-1.0) ** m * np.sqrt(4 * m + 1) * (spherical_jn(2 * m, far) + 1j * spherical_yn(2 * m, far)) * turned
+    if len(far):
+        amplitudes[0] = -1 - 1j / far
+    return Waves(near, np.vstack([amplitudes, np.ones_like(far), -1j * far]), np.append(weight, far_weight))
 
 
 def in_blocks(rows, matrix, block=16):
@@ -82,8 +160,8 @@ def _places(size):
 def _table(sampler, octave, stiffness, size):
     """(M, C): what L - 1 at the nodes is multiplied with, for the upper triangle of the products of d_0 ... d_(N - 1),
     cos κ, row by row, and then for those of ê_n and κ sin κ."""
-    k, weight = quadrature(octave, stiffness)
-    spread = np.diag(weight) if sampler is None else few(sampler, octave, stiffness).spread
+    k, _ = quadrature(octave, stiffness)
+    spread = few(sampler, octave, stiffness).spread
     functions = np.vstack([differences(size, k), np.cos(k)])
     sums, column = 2 / np.pi * spread, 0
     table = np.empty((len(spread), (size + 1) * (size + 2) // 2 + size))

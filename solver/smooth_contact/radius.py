@@ -41,17 +41,18 @@ class Radii:
             return np.log(np.where(self.ends, over / (self.most - a), over))
 
 
-def rising_root(evaluate, start, most=_MOST):
+def rising_root(evaluate, start, low=-np.inf):
     """Root of a rising function g of each of B cases, by Newton's method inside a bracket that it narrows itself: x
     (B,), and how often each case was evaluated (B,).
 
     evaluate : ``evaluate(x, index) -> g, slope`` at x (b,) for the cases `index` (b,)
-    start : (B,). A case whose g is NaN there, or stays so, is given up: x is NaN
+    start : (B,). A case whose g is NaN somewhere on the way is given up: x is NaN
+    low : (B,), or a number below all roots
     """
     x, counts = start.copy(), np.zeros(len(start), dtype=np.int32)
-    low, high = np.full(len(x), -np.inf), np.full(len(x), np.inf)
+    low, high = np.full(len(x), low), np.full(len(x), np.inf)
     active = np.arange(len(x))
-    for _ in range(most):
+    for _ in range(_MOST):
         g, slope = evaluate(x[active], active)
         counts[active] += 1
         here = x[active]
@@ -89,13 +90,13 @@ def touching(control, value, shape, body):
     if control == "a":
         pieces.append((np.arange(len(value)), respond(shape, body, value)))
         return pieces[0][1], np.ones(len(value), dtype=np.int32)
-    x, counts = rising_root(evaluate, _guess(control, value, shape, body, radii))
+    x, counts = rising_root(evaluate, guess(control, value, shape, body, radii))
     response = Response.join(len(value), pieces)
     reached = np.abs(np.log(getattr(response, control) / value)) < _REACHED
     return response.only(np.isfinite(x) & reached & (response.slope > 0)), counts
 
 
-def _guess(control, value, shape, body, radii):
+def guess(control, value, shape, body, radii):
     """x (B,) on a half-space that yields as the body does to waves as long as the contact."""
 
     def evaluate(x, index):

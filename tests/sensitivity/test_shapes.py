@@ -88,3 +88,28 @@ def test_what_does_not_act_is_0_and_a_mixed_batch_is_its_cases():
         for name in ("P", "half_angle"):
             assert_allclose(of(alone, "D", name)[0], of(result, "D", name)[i], rtol=1e-7, atol=1e-12)
     assert (of(result, "a", "w_adhesion") == 0).all() and (of(result, "a", "flat_radius") == 0).all()
+
+
+@pytest.mark.parametrize("P", [1e-5, -2e-5])
+def test_what_sticks_on_a_half_space(P):
+    """JKR: P = (4/3) a³ - s a^(3/2) with s = sqrt(8 π w), D = a² - sqrt(2 π a w), of sizes that may be negative."""
+    w = 1e-5
+    problem = Problem.of(P=P, w_adhesion=w, base="half_space", micro="smooth")
+    solution, result = solve(problem), logs(problem)
+    a, s, t = solution.a[0], np.sqrt(8 * np.pi * w), np.sqrt(2 * np.pi * w)
+    D, dP_da, dD_da = a**2 - t * a**0.5, 4 * a**2 - 1.5 * s * a**0.5, 2 * a - t / (2 * a**0.5)
+    by_w = s * a**1.5 / 2 / (a * dP_da)  # of ln a, as P stays: dP by ln w is -s a^(3/2)/2
+    assert_allclose(of(result, "a", "P"), P / (a * dP_da), rtol=1e-6)
+    assert_allclose(of(result, "a", "w_adhesion"), by_w, rtol=1e-6)
+    assert_allclose(of(result, "D", "P"), P * dD_da / dP_da / D, rtol=1e-6)
+    assert_allclose(of(result, "D", "w_adhesion"), (dD_da * a * by_w - t * a**0.5 / 2) / D, rtol=1e-6)
+
+
+def test_of_no_load_and_no_contact():
+    """A load of 0 has no logarithm, and a punch that is pulled off no numbers."""
+    sticks = {"w_adhesion": 1e-5, "base": "half_space", "micro": "smooth"}
+    result = logs(Problem.of(P=0.0, **sticks))
+    assert np.isnan(result.logs["P"]).all() and of(result, "a", "P") == 0
+    assert_allclose(of(result, "a", "w_adhesion"), 1 / 3, rtol=1e-6)  # a³ ~ w
+    problem = Problem.of(P=-1.0, **sticks)
+    assert all(np.isnan(values).all() for values in sensitivities(problem, solve(problem)).logs.values())

@@ -1,0 +1,82 @@
+"""Smooth contacts that stick: the answers of a batch."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..status import Status
+from .jkr import Jkr
+from .pull import Curve, Held, below, beyond, highest, last_minimum
+from .radius import guess
+from .state import answer, pinned
+
+
+def solve(part, shape, body, x):
+    """:class:`~..solution.Solution` of cases of one base, one shape and one law of adhesion, w > 0, in units R = E2* =
+    1, at the radii x (m,)."""
+    law, every = Jkr(shape, body, part.w_adhesion), np.arange(len(part))
+    if str(part.shape[0]) == "flat":
+        return _flat(part, law, x)
+    curve, held = Curve(law), Held.by(machine(part))
+    control = Held.by(np.full(len(part), np.inf if part.control == "D" else 0.0))
+    turn = last_minimum(curve, held, highest(law, curve.radii))
+    state = law.at(part.value) if part.control == "a" else curve.at(_asked(part, curve, held, control, turn), every)[0]
+    jumped, _ = curve.at(_jump(curve, held, turn), every)
+    pulls = {"P_off": turn.state.P, "D_off": turn.state.D, "a_off": turn.state.a}
+    pulls |= {"P_in": np.where(held.load, 0.0, jumped.P), "a_in": jumped.a}
+    return _answered(part, shape, state, pulls, curve.counts, x)
+
+
+def _answered(part, shape, state, pulls, counts, x):
+    """The solution of the states, with the numbers `pulls` of pull-off and pull-in; PULLED_OFF where a state is NaN."""
+    solution, _ = answer(part, shape, state, counts, x)
+    solution = solution.refused(~np.isfinite(state.P), Status.PULLED_OFF)
+    failed = np.isnan(pulls["P_off"])
+    numbers = {"stable": solution.a >= pulls["a_off"], part.control: part.value}
+    return replace(solution, **pulls, **numbers).refused(failed, Status.DIVERGED)
+
+
+def machine(part):
+    """Stiffness (B,) of what holds the punches: 0 and infinite where nothing is said, for loads and for depths."""
+    usual = np.inf if part.control == "D" else 0.0
+    return np.where(np.isnan(part.k_machine), usual, part.k_machine)
+
+
+def _asked(part, curve, held, control, turn):
+    """x (B,) of the asked branch where P or D is given; NaN where it has no such state. The largest radius with the
+    value of the control is on the stable branch where it is beyond the :class:`~.pull.Turn` of what holds the punch."""
+    same = held.load.tolist() == control.load.tolist() and held.compliance.tolist() == control.compliance.tolist()
+    of_control = turn if same else last_minimum(curve, control, highest(curve.law, curve.radii))
+    least, unstable = control.of(of_control.state.P, of_control.state.D), part.branch == "unstable"
+    largest = beyond(curve, control, np.where(part.value >= least, part.value, np.nan), of_control, _start(part, curve))
+    stays = largest >= turn.x
+    x = np.where(stays ^ unstable, largest, np.nan)
+    rest = unstable & np.isnan(x) & ~of_control.corner
+    if rest.any():
+        smaller = below(curve, control, part.value, np.where(rest, of_control.x, np.nan), False)
+        x = np.where(rest & (smaller < turn.x), smaller, x)
+    return x
+
+
+def _start(part, curve):
+    """First guess of x (B,): without adhesion."""
+    value = np.maximum(part.value, 0.0)
+    return guess(part.control, np.where(value > 0, value, np.nan), curve.law.shape, curve.law.body, curve.radii)
+
+
+def _jump(curve, held, turn):
+    """x (B,) to which the contact jumps from where the punch only touches, Q = 0: beyond the :class:`~.pull.Turn`; or
+    below it, where Q is positive there."""
+    least = held.of(turn.state.P, turn.state.D)
+    x = beyond(curve, held, np.where(least <= 0, 0.0, np.nan), turn, turn.x + 1)
+    if (rest := least > 0).any():
+        x = np.where(rest, below(curve, held, 0 * least, np.where(rest, turn.x, np.nan), True), x)
+    return x
+
+
+def _flat(part, law, x):
+    """A flat punch: it holds at its radius down to the load, or depth, at which its edge gives way."""
+    off, state = law.at(law.shape.b), pinned(part, law.shape, law.body)
+    holds = (state.A >= off.A) & (part.branch == "stable")
+    pulls = {"P_off": off.P, "D_off": off.D, "a_off": off.a, "P_in": 0 * off.a, "a_in": off.a}
+    return _answered(part, law.shape, state.only(holds), pulls, np.ones(len(part), dtype=np.int32), x)

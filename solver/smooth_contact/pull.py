@@ -1,0 +1,254 @@
+"""Where a contact that sticks is pulled off, and which of its radii have a given load or depth.
+
+What moves the punch has the stiffness k, and the end of it is moved by Q = D + P/k: the depth where k is infinite, and
+where k is 0, the load itself. Along the curve of :mod:`.jkr` the contact is stable where Q rises with a. From large
+radii down Q falls, to its last minimum: there the punch is pulled off. A stiff plate has more minima, at smaller radii.
+
+Q is looked at on radii from above the last minimum down. Between two of them it is a cubic polynomial with the right
+slopes; where that turns within, radii in between are looked at too.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..numerics.bracket import between
+from ..shapes.shape import column
+from .jkr import State
+from .radius import Radii, rising_root
+
+#: Distance of the radii in the variable of :class:`~.radius.Radii`, and how many are looked at together.
+_STEP, _TOGETHER = 0.25, 8
+#: Radii begin at this multiple of the largest radius of pull-off of a half-space which yields as the body does to any
+#: wave; and end where what the shape adds to the slope of D is below this part of what the edge takes, and below this
+#: part of the thickness of the first layer.
+_ABOVE, _BELOW, _THIN = 4.0, 1e-3, 0.02
+#: Beyond what is flat, (a - b)/b where the search ends: there the slope of a frustum is that of its corner.
+_CORNER = 1e-6
+#: The variable of the last radius before the end of a profile.
+_LAST = 30.0
+#: Waves u = kh at which the kernel is looked at.
+_WAVES = np.geomspace(1e-9, 30.0, 72)
+#: Width of a bracket, in the variable, in which a minimum or a radius is found.
+_NARROW = 1e-14
+
+
+class Held(NamedTuple):
+    """What holds the punches: of B cases whether the load counts alone, k = 0, and the compliance 1/k else."""
+
+    load: np.ndarray
+    compliance: np.ndarray
+
+    @classmethod
+    def by(cls, k):
+        """The stiffnesses k (B,), from 0 to infinite."""
+        with np.errstate(divide="ignore"):
+            return cls(k == 0, np.where(k == 0, 0.0, 1 / k))
+
+    def take(self, index):
+        return Held(self.load[index], self.compliance[index])
+
+    def of(self, P, D):
+        """Q, or its slope, of P and D, or their slopes."""
+        with np.errstate(invalid="ignore"):
+            return np.where(self.load, P, D + self.compliance * P)
+
+
+class Curve:
+    """The states of B cases by the variable x of their radii; every state that was computed is kept."""
+
+    def __init__(self, law):
+        self.law, self.radii = law, Radii(law.shape)
+        self.pieces, self.counts = [], np.zeros(len(law.w), dtype=np.int32)
+
+    def at(self, x, index):
+        """The :class:`~.jkr.State` at x (b,) of the cases `index`, and da/dx."""
+        a, da = self.radii.at(x, index)
+        np.add.at(self.counts, index, 1)
+        return self.law.take(index).at(a), da
+
+
+def highest(law, radii):
+    """x (B,) beyond every minimum of Q. On a half-space of modulus E, which yields to the edge as that of the surface
+    does, all are below the radius at which F²/a = 9π w/(2 E); E is that to which the body yields most."""
+    body = law.body
+    softest = np.ones(len(law.w))
+    if hasattr(body, "kernel"):
+        L = body.kernel.whole(np.tile(_WAVES, (len(softest), 1)))
+        softest = np.maximum((np.maximum(L.max(axis=1), body.kernel.L0) + body.m) / (1 + body.m), 1.0)
+
+    def evaluate(x, index):
+        a, da = radii.at(x, index)
+        part = law.shape.take(index)
+        F, slope = (f(column(a))[:, 0] for f in (part.lifted, part.lifted_slope))
+        g = np.log(F**2 / a) - np.log(4.5 * np.pi * law.w[index] * softest[index] / body.E[index])
+        return np.where(np.abs(g) < 0.01, 0.0, g), (2 * slope / F - 1 / a) * da
+
+    x, _ = rising_root(evaluate, np.where(np.isfinite(radii.most) | (radii.least > 0), -1.0, np.log(0.05)))
+    return np.where(radii.ends, np.minimum(x + np.log(_ABOVE), _LAST), x + np.log(_ABOVE))
+
+
+def lowest(law, x, index, radii):
+    """(b,) bool: below x Q falls, of all cases `index`; or it is next to the corner of what is flat."""
+    a, _ = radii.at(x, index)
+    part, w, E = law.shape.take(index), law.w[index], law.body.E[index]
+    slope = part.lifted_slope(column(a))[:, 0]
+    falls = slope < _BELOW * np.sqrt(2 * np.pi * w / E / a)
+    if hasattr(law.body, "kernel"):
+        falls &= a < _THIN * law.body.h[index]
+    least = radii.least[index]
+    return np.where(least > 0, a - least < _CORNER * least, falls)
+
+
+class Turn(NamedTuple):
+    """The last minimum of Q in B cases: x, the state there, and whether it is the corner of what is flat, where x is
+    -inf. `above` is an x beyond every minimum."""
+
+    above: np.ndarray
+    x: np.ndarray
+    state: State
+    corner: np.ndarray
+
+
+def last_minimum(curve, held, start):
+    """The :class:`Turn` of B cases from x = `start` (B,), beyond it, down."""
+
+    def slope(x, index):
+        state, _ = curve.at(x, index)
+        return held.take(index).of(state.dP, state.dD)
+
+    found = descend(curve, held, start, lambda Q, dQ, _: (dQ[:, :-1] >= 0) & (dQ[:, 1:] < 0))
+    x, corner = found.high.copy(), found.ended & (curve.radii.least > 0)
+    inside = np.flatnonzero(~found.ended)
+    if len(inside):
+        low, high = found.low[inside], found.high[inside]
+        ends = found.dQ_low[inside], found.dQ_high[inside]
+        tolerance = np.full(len(inside), _NARROW)
+        scale = ends[1] - ends[0]
+        x[inside], _ = between(
+            lambda y, i: slope(y, inside[i]) / scale[i], low, high, ends[0] / scale, ends[1] / scale, tolerance
+        )
+    x = np.where(found.ended & ~corner, np.nan, np.where(corner, -np.inf, x))
+    state, _ = curve.at(x, np.arange(len(x)))
+    return Turn(start, x, state, corner)
+
+
+class Interval(NamedTuple):
+    """Neighbours low < high in x, and Q and its slope dQ by a there; (B,) each. `ended`: there are none."""
+
+    low: np.ndarray
+    high: np.ndarray
+    Q_low: np.ndarray
+    Q_high: np.ndarray
+    dQ_low: np.ndarray
+    dQ_high: np.ndarray
+    ended: np.ndarray
+
+
+def descend(curve, held, start, wanted):
+    """The highest :class:`Interval` below `start` (B,) which is `wanted`.
+
+    wanted : ``wanted(Q, dQ, index) -> (b, m - 1) bool`` of Q and its slope (b, m) at radii that go down, for the
+        intervals of the cases `index`
+    """
+    size = len(start)
+    out = Interval(*np.full((6, size), np.nan), np.ones(size, dtype=bool))
+    active, looked = np.arange(size), _looked_at(curve, held, start[:, None], np.arange(size))
+    while len(active):
+        below = looked[0] - _STEP * np.arange(1, _TOGETHER + 1)
+        more = _looked_at(curve, held, below, active)
+        looked = tuple(np.hstack(pair) for pair in zip(looked, more, strict=True))
+        turns = _turns(curve, *looked, active)
+        goes_on = np.ones(len(active), dtype=bool)
+        for rows in (np.flatnonzero(~turns), np.flatnonzero(turns)):
+            if len(rows):
+                x, Q, dQ = (values[rows] for values in looked)
+                if turns[rows[0]]:
+                    x, Q, dQ = _with_middles(curve, held, x, Q, dQ, active[rows])
+                goes_on[rows] = ~_note(out, active[rows], wanted(Q, dQ, active[rows]), x, Q, dQ)
+        last = looked[0][:, -1]
+        goes_on &= ~lowest(curve.law, last, active, curve.radii) & ~np.isnan(last)
+        active, looked = active[goes_on], tuple(values[goes_on, -1:] for values in looked)
+    return out
+
+
+def _note(out, index, hits, x, Q, dQ):
+    """Write the first of the intervals that are `hits` (b, m - 1) into `out`, at `index`; (b,) bool, there is one."""
+    rows, first = np.flatnonzero(hits.any(axis=1)), hits.argmax(axis=1)
+    places, index_of = first[rows], index[rows]
+    for low, high, values in zip(out[:6:2], out[1:6:2], (x, Q, dQ), strict=True):
+        low[index_of], high[index_of] = values[rows, places + 1], values[rows, places]
+    out.ended[index_of] = False
+    return hits.any(axis=1)
+
+
+def _looked_at(curve, held, x, index):
+    """x, and Q and its slope by a, at x (b, m) of the cases `index`."""
+    places = np.repeat(index, x.shape[1])
+    state, _ = curve.at(x.ravel(), places)
+    part = held.take(places)
+    return x, part.of(state.P, state.D).reshape(x.shape), part.of(state.dP, state.dD).reshape(x.shape)
+
+
+def _turns(curve, x, Q, dQ, index):
+    """(b,) bool: between two radii at which Q rises, or falls, the cubic polynomial through both turns."""
+    _, da = curve.radii.at(x.ravel(), np.repeat(index, x.shape[1]))
+    slope, width = dQ * da.reshape(x.shape), -np.diff(x, axis=1)
+    high, low, mean = slope[:, :-1], slope[:, 1:], -np.diff(Q, axis=1) / width
+    # the slope of the polynomial is low + linear t + quadratic t², 0 <= t <= 1
+    quadratic, linear = 3 * (low + high - 2 * mean), 2 * (3 * mean - 2 * low - high)
+    t = -linear / (2 * quadratic)
+    extreme = low + linear * t / 2
+    inside = (t > 0) & (t < 1) & (np.sign(high) == np.sign(low)) & (np.sign(extreme) == -np.sign(low))
+    return inside.any(axis=1)
+
+
+def _with_middles(curve, held, x, Q, dQ, index):
+    """x, Q and dQ with the middles of all intervals."""
+    middles = _looked_at(curve, held, (x[:, 1:] + x[:, :-1]) / 2, index)
+    out = [np.empty((len(index), 2 * x.shape[1] - 1)) for _ in range(3)]
+    for array, ends, inner in zip(out, (x, Q, dQ), middles, strict=True):
+        array[:, ::2], array[:, 1::2] = ends, inner
+    return out
+
+
+def beyond(curve, held, value, turn, start):
+    """x (B,) > turn.x at which Q has the `value` (B,), which is not below Q at the :class:`Turn`; `start` is a first
+    guess. NaN where there is none."""
+    Q_off = held.of(turn.state.P, turn.state.D)
+    scale = np.maximum(np.abs(value), np.abs(Q_off))
+
+    def evaluate(x, index):
+        state, da = curve.at(x, index)
+        part = held.take(index)
+        return (part.of(state.P, state.D) - value[index]) / scale[index], part.of(state.dP, state.dD) * da / scale[
+            index
+        ]
+
+    start = np.fmax(start, np.where(turn.corner, turn.above, turn.x + 0.3))
+    return rising_root(evaluate, start, low=turn.x)[0]
+
+
+def below(curve, held, value, start, rises):
+    """The largest x (B,) < `start` at which Q has the `value` (B,); NaN where there is none. `rises` : Q rises with a
+    there, or it falls."""
+    sign = 1.0 if rises else -1.0
+
+    def wanted(Q, _, index):
+        off = sign * (Q - value[index, None])
+        return (off[:, :-1] > 0) & (off[:, 1:] <= 0)
+
+    interval = descend(curve, held, start, wanted)
+    x, inside = np.full(len(start), np.nan), np.flatnonzero(~interval.ended)
+    if len(inside):
+        v, part = value[inside], held.take(inside)
+        scale = np.abs(interval.Q_high - interval.Q_low)[inside]
+
+        def off(y, i):
+            state, _ = curve.at(y, inside[i])
+            return sign * (part.take(i).of(state.P, state.D) - v[i]) / scale[i]
+
+        ends = (sign * (Q[inside] - v) / scale for Q in (interval.Q_low, interval.Q_high))
+        low, high = interval.low[inside], interval.high[inside]
+        x[inside], _ = between(off, low, high, *ends, np.full(len(inside), _NARROW))
+    return x

@@ -1,0 +1,104 @@
+"""A smooth contact at a radius, with and without adhesion, and its answers."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..solution import Solution
+from .equation import Response, respond
+from .pressure import flat_pressure, pressure_changes, pressures
+
+#: Radii at which the pressure is looked at, for tension and for its error; denser towards the edge.
+_LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
+#: Where dD/da is below this part of what the shape adds to it, D has its minimum, to rounding.
+_FLAT = 1e-12
+
+
+class State(NamedTuple):
+    """Contacts, (B,) each: load and depth at the radius `a`, their derivatives dP, dD by a, and their errors. `A`, the
+    edge value, and `response` say what the pressure is."""
+
+    a: np.ndarray
+    A: np.ndarray
+    P: np.ndarray
+    D: np.ndarray
+    dP: np.ndarray
+    dD: np.ndarray
+    P_error: np.ndarray
+    D_error: np.ndarray
+    response: Response
+
+    def take(self, index):
+        return State(*(v[index] for v in self[:-1]), self.response.take(index))
+
+    def only(self, mask):
+        """NaN in place of all numbers of cases that are not in the `mask` (B,)."""
+        return State(*(np.where(mask, v, np.nan) for v in self[:-1]), self.response.only(mask))
+
+    @property
+    def stiffness(self):
+        """dP/dD along the curve, (B,): infinite where the depth has its minimum."""
+        steep = np.abs(self.dD) < _FLAT * self.response.slope
+        return np.where(self.A == 0, self.response.S, np.where(steep, np.inf, self.dP / self.dD))
+
+    @classmethod
+    def free(cls, response):
+        """The contacts without adhesion."""
+        r = response
+        return cls(r.a, 0 * r.a, r.P, r.D, r.S * r.slope, r.slope, r.P_error, r.D_error, r)
+
+    @classmethod
+    def join(cls, size, pieces):
+        """The states of `size` cases from pairs of places and the states there; what is in none is NaN."""
+        arrays = [np.full(size, np.nan) for _ in cls._fields[:-1]]
+        for index, piece in pieces:
+            for array, values in zip(arrays, piece, strict=False):
+                array[index] = values
+        return cls(*arrays, Response.join(size, [(index, piece.response) for index, piece in pieces]))
+
+
+def pinned(part, shape, body):
+    """:class:`State` of flat punches, whose edge holds what they bear: either P or D follows from the other."""
+    r = respond(shape, body, shape.b)
+    unit, other = (r.flat_P, r.flat_D) if part.control == "P" else (r.flat_D, r.flat_P)
+    A = part.value / unit
+    error = np.abs(A) * other * (r.flat_P_error / r.flat_P + r.flat_D_error / r.flat_D)
+    P_error, D_error = (0 * error, error) if part.control == "P" else (error, 0 * error)
+    return State(r.a, A, A * r.flat_P, A * r.flat_D, r.flat_P, r.flat_D, P_error, D_error, r)
+
+
+def answer(part, shape, state, counts, x):
+    """:class:`~..solution.Solution` of the states of a problem, and whether there is tension inside (B,). Its error is
+    that of a, P and D under the control, and of p(0) where that is finite."""
+    response, A = state.response, state.A
+    p = pressures(shape, response, A, np.concatenate([x, [0.0], _LOOKED_AT]))
+    p_x, p0, looked_at = np.split(p, [len(x), len(x) + 1], axis=1)
+    p0 = p0[:, 0]
+    moved, error = _error(part.control, state)
+    of_p = np.abs(pressure_changes(response, A, _LOOKED_AT))
+    of_p0 = of_p[:, 0] + np.abs(flat_pressure(response) * state.dD) * moved
+    error = error + np.where(np.isfinite(p0), _over(of_p0, p0), 0.0)
+    largest = np.max(np.where(np.isfinite(looked_at), np.abs(looked_at), 0.0), axis=1)
+    numbers = {"a": state.a, "P": state.P, "D": state.D, part.control: part.value}
+    between = np.maximum(_over(of_p.max(axis=1), largest), error)
+    solution = Solution.of(
+        *p_x.shape, **numbers, p0=p0, p_max=p0, Ar_An=1.0, A0=0.0, dP_dD=state.stiffness, residual=0.0,
+        error=error, profile_error=between, p=p_x, lam=1.0, iterations=counts, nodes=np.nan_to_num(response.size),
+    )  # fmt: skip
+    return solution, (looked_at < 0).any(axis=1)
+
+
+def _error(control, state):
+    """By how much the radius may be off (B,), where it is not given, and the sum of the relative errors of a, P, D."""
+    if control == "a":
+        return 0 * state.a, _over(state.P_error, state.P) + _over(state.D_error, state.D)
+    off, slope = (state.P_error, state.dP) if control == "P" else (state.D_error, state.dD)
+    moved = _over(off, slope)
+    other, growth, error = (state.D, state.dD, state.D_error) if control == "P" else (state.P, state.dP, state.P_error)
+    along = np.where(moved > 0, np.abs(growth) * moved, 0.0)
+    return moved, _over(moved, state.a) + _over(error + along, other)
+
+
+def _over(error, value):
+    """error/|value|, 0 where there is no error."""
+    return np.where(error == 0, 0.0, error / np.abs(value))

@@ -4,12 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from . import shapes
 from .body import BODIES
 from .body.half_space import STIFF, local_compliance
 from .contact.equation import Cases
 from .kernels.two_layers import TwoLayers, layer_modulus, thin_layer_coefficients
 from .laws import LAWS, try_out
 from .parameters import CONTROL, PARAMETERS, allowed
+from .punches import PARABOLOID
+from .punches.shaped import Shaped
 from .solution import PULLS
 from .status import Status
 
@@ -86,8 +89,9 @@ def without_springs(scaled):
 
 
 def as_cases(part):
-    """:class:`~solver.contact.equation.Cases` of a problem whose cases have one law and one base."""
-    return Cases(part.control, law_of(part), BODIES[str(part.base[0])](part), part.value)
+    """:class:`~solver.contact.equation.Cases` of a problem whose cases have one law, one base and one shape."""
+    punch = PARABOLOID if part.shape[0] == shapes.PARABOLOID else Shaped(shapes.shape_of(part))
+    return Cases(part.control, law_of(part), BODIES[str(part.base[0])](part), part.value, punch)
 
 
 def law_of(part):
@@ -102,11 +106,21 @@ def law_of(part):
 def restore(solution, problem):
     """The solution in the units of the problem: every way to solve ends here. A case with a number that cannot be, or
     that its unit makes infinite, is ``Status.DIVERGED``."""
-    pulls = problem.w_adhesion > 0
-    solution = solution.refused(solution.out_of_range(pulls), Status.DIVERGED)
+    pulls, unknown = problem.w_adhesion > 0, without_centre(problem)
+    solution = solution.refused(solution.out_of_range(pulls, unknown), Status.DIVERGED)
     arrays = {}
     for name, (of_E2, of_R) in _UNITS.items():
         array, factor = getattr(solution, name), problem.R**of_R * problem.E2**of_E2
         arrays[name] = array * factor.reshape(-1, *[1] * (array.ndim - 1))
     solution = replace(solution, **arrays)
-    return solution.refused(solution.not_finite(problem.shaped() | pulls), Status.DIVERGED)
+    return solution.refused(solution.not_finite(problem.shaped() | pulls, unknown), Status.DIVERGED)
+
+
+def without_centre(problem):
+    """(B,) bool: cases of which the pressure on the axis is not known: rough ones under a point
+    (:func:`~solver.contact.results.pointed`)."""
+    without, shaped = np.zeros(len(problem), dtype=bool), problem.shaped() & problem.rough()
+    for word in np.unique(problem.shape[shaped]).tolist():
+        index = np.flatnonzero(shaped & (problem.shape == word))
+        without[index] = shapes.shape_of(problem.take(index)).pointed
+    return without

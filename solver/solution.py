@@ -18,6 +18,8 @@ _NUMBERS = (*_POSITIVE, "A0", "residual", "error", "profile_error", *_PROFILES)
 #: Those that may be infinite under some shapes and where the punch sticks; and those that may be negative there.
 _INFINITE = ("p0", "p_max", "dP_dD", "p")
 _SIGNED = (*_INFINITE, "P", "D")
+#: Those that the pressure on the axis decides.
+_OF_CENTRE = ("p0", "p_max", "A0", *_PROFILES)
 #: Integers: codes and counts.
 _WHOLE = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes": np.int32, "stable": np.bool_}
 #: Numbers of pull-off and pull-in, 0 without adhesion.
@@ -170,13 +172,14 @@ class Solution:
         """
         return Solution(**{name: values[index] for name, values in vars(self).items()})
 
-    def not_finite(self, infinite: Any = False) -> np.ndarray:
+    def not_finite(self, infinite: Any = False, unknown: Any = False) -> np.ndarray:
         """Which cases lack a number that they should have.
 
         Parameters
         ----------
         infinite : (B,) bool, the cases whose pressures may be infinite, and whose stiffness: of a shape that is pointed
             or flat, or that sticks
+        unknown : (B,) bool, the cases whose pressure on the axis is not known: it may be NaN, as what follows from it
 
         Returns
         -------
@@ -188,10 +191,11 @@ class Solution:
         for name in _NUMBERS:
             values = getattr(self, name)
             allowed = infinite & _of_all(~np.isnan(values)) if name in _INFINITE else False
+            allowed = allowed | unknown if name in _OF_CENTRE else allowed
             right &= _of_all(np.isfinite(values)) | allowed
         return ended & ~right
 
-    def out_of_range(self, pulls: Any = False) -> np.ndarray:
+    def out_of_range(self, pulls: Any = False, unknown: Any = False) -> np.ndarray:
         """Which cases have converged to a number that cannot be.
 
         To be asked in units R = E2* = 1: in others a positive number may underflow to 0.
@@ -199,6 +203,7 @@ class Solution:
         Parameters
         ----------
         pulls : (B,) bool, the cases that stick: loads, depths, pressures and the stiffness may be negative
+        unknown : (B,) bool, as of :meth:`not_finite`
 
         Returns
         -------
@@ -209,6 +214,7 @@ class Solution:
         for name in _NUMBERS:
             values = getattr(self, name)
             sign = _of_all(values > 0 if name in _POSITIVE else ~(values < 0))
+            sign = sign | unknown & _of_all(~(values < 0)) if name in _OF_CENTRE else sign
             right &= sign | pulls & _of_all(~np.isnan(values)) if name in _SIGNED else sign
             if name in _SHARES:
                 right &= _of_all(~(values > 1 + _ROUNDING))

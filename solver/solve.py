@@ -11,6 +11,7 @@ from .models.model_error import judged
 from .models.named import model_of, solve_named
 from .models.plastic_share import has_yield, plastic_share
 from .models.range_of_law import RADII, has_range
+from .models.table_ends import beyond_table
 from .problem import Problem
 from .scaling import dimensionless, refused
 from .smooth_contact.fitness import unfit
@@ -72,6 +73,9 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
             part = problem if len(index) == len(problem) else problem.take(index)
             pieces.append((index, way(part, radii)))
     solution = Solution.join(*size, pieces)
+    if problem.shaped().any():
+        beyond = ~invalid & beyond_table(scaled, solution, lambda last: solve_named(last, radii))
+        solution = solution.refused(beyond, Status.OUTSIDE_LAW)
     if yields:
         solution = replace(solution, plastic_share=plastic_share(problem, solution.lam[:, len(x) :]))
     profiles = {name: getattr(solution, name)[:, : len(x)] for name in ("p", "lam")}

@@ -81,9 +81,10 @@ def _by_inputs(contact: xr.Dataset, again: Again, x: Any) -> tuple[dict, dict]:
         logs = {name: _by_si(by_input, of_si, VOCABULARY[name].powers) for name, by_input in logs.items()}
         p = _by_si(p, of_si, VOCABULARY["p"].powers, solution.p)
         p = {name: values * of_all_cases(scene.unit, dims, shape)[:, None] for name, values in p.items()}
-    # those of the control are exact
+    # those of the control are exact; a load or depth of 0 has no logarithm
     control, good = problem.control, (solution.status == 0) & (contact["status"].values.ravel() == 0)
-    logs[control] = {name: 0 * values + (name == control) for name, values in logs["a"].items()}
+    sized = np.where(problem.value == 0, np.nan, 0.0)
+    logs[control] = {name: 0 * values + (name == control) + sized for name, values in logs["a"].items()}
     for by_input in logs.values():
         by_input.update({name: np.where(good, values, np.nan) for name, values in by_input.items()})
     return logs, p

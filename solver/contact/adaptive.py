@@ -1,7 +1,9 @@
 """Newton's method, for each case on the mesh that meets its tolerance.
 
 A case whose estimated error is above its tolerance goes on to the next finer mesh. It begins there at the state by
-which the error was estimated. Cases that the finest mesh does not resolve are solved on panels, one by one.
+which the error was estimated. Cases that the finest mesh does not resolve are solved on panels, one by one. So are
+those of a punch whose profile is no smooth function of r², from the beginning: there two polynomials may be wrong
+alike.
 """
 
 from dataclasses import replace
@@ -13,7 +15,7 @@ from ..numerics.mesh import mesh_of
 from ..solution import Solution
 from ..status import Status
 from .answer import Answer, Goal, Verdict, answer, at_floor, may_be_error, tensile_centre
-from .driver import BUDGET, newton_steps, solve_on
+from .driver import BUDGET, budget_of, newton_steps, solve_on
 from .equation import evaluate
 from .panels import solve_on_panels
 from .start import first_guess, guess_radius, nodes_wanted
@@ -35,6 +37,9 @@ def solve_newton(cases, rtol, nodes, limit, x):
     x : (m,), radii of the profiles.
     """
     size, free = len(rtol), nodes == 0
+    direct = free & (limit == 0) & (cases.shape is not None and ~cases.shape.even)
+    if direct.any():
+        return _split(cases, (rtol, nodes), direct, limit, x)
     work, before, a = np.zeros(size), np.full(size, np.inf), guess_radius(cases)
 
     def on_mesh(index, n, start):
@@ -56,6 +61,20 @@ def solve_newton(cases, rtol, nodes, limit, x):
     ends = [([i], _on_panels(cases.take([i]), answered.take([i]), rtol[i], x, BUDGET - work[i])) for i in rest]
     ended = _ended(answered.solution, answered.verdict)
     return Solution.join(size, len(x), [(np.arange(size), ended), *ends]) if ends else ended
+
+
+def _split(cases, settings, direct, limit, x):
+    """:class:`~solver.solution.Solution` of a batch of which the cases `direct` (B,) bool begin on panels. `settings` :
+    rtol, nodes (B,)."""
+    rest, pieces, size = np.flatnonzero(~direct), [], len(direct)
+    if len(rest):
+        pieces.append((rest, solve_newton(cases.take(rest), *(v[rest] for v in settings), limit, x)))
+    none = Solution.of(1, len(x), status=Status.ITERATION_LIMIT)
+    before = Answer(none, np.zeros(1), np.zeros(1, bool), np.full(1, Verdict.OPEN, np.int8), None)
+    for i in np.flatnonzero(direct):
+        case = cases.take([i])
+        pieces.append(([i], _on_panels(case, before, settings[0][i], x, budget_of(case))))
+    return Solution.join(size, len(x), pieces)
 
 
 def _together(rungs, size, points):

@@ -12,7 +12,7 @@ from ..status import Status
 from . import newton
 from .equation import State
 from .error import completed, estimate, profile_error, refine
-from .results import profiles, quantities
+from .results import pointed, profiles, quantities
 
 #: A ring of tension may lie between two nodes: so the pressure is formed at this many times as many points.
 _DENSER = 3
@@ -179,9 +179,14 @@ def answer(iterated, x, goal=None):
     p, lam = np.full((2, size, len(x)), np.nan)
     p[done], lam[done] = profiles(ev, x, done)
     between = np.full(size, np.nan)
-    between[done] = profile_error(ev, refined, done)
+    between[done] = profile_error(ev, refined, done, x)
     status = np.where(closed, Status.CONVERGED, Status.ITERATION_LIMIT)
     errors = {"residual": ev.residual, "error": error, "profile_error": np.maximum(error, between)}
+    without = pointed(ev.cases)
+    if without.any():
+        for values in (numbers.p0, numbers.p_max, numbers.A0):
+            values[without] = np.nan
+        p[np.ix_(without, x == 0)] = lam[np.ix_(without, x == 0)] = np.nan
     rest = {"dP_dD": slope, "p": p, "lam": lam, "status": status, "nodes": ev.mesh.n, "iterations": count}
     solution = Solution.of(size, len(x), **numbers._asdict(), **errors, **rest)
     return Answer(solution.refused(~finite, Status.DIVERGED), tension, gap, verdict, refined.end.state)

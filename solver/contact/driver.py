@@ -18,6 +18,9 @@ _STEPS, _NODES, _FEWEST = 1000, 96, 60
 #: extremes_layered none spends this budget, and about 1 % would spend half of it (`make extremes`).
 #: `python tools/fuzz/fuzz_solver.py` prints the longest time of a lone case.
 BUDGET = 1_500_000
+#: Cases that begin on panels, which follow the kinks of their shape, may take so many times as much. With it 1 of 112
+#: random cases spends its budget at rtol 1e-6 (`python tools/errors/rough_shapes.py 8 4`).
+_ON_PANELS = 4
 
 
 class Iterated(NamedTuple):
@@ -55,6 +58,11 @@ def iterate(start, step, limit):
             now = now.take(np.flatnonzero(~leaves))
         now = step(now)
     return Iterated(parts[0] if len(parts) == 1 else start.join(start.cases, parts, places), closed, count)
+
+
+def budget_of(cases):
+    """Most work of one case, the only one of `cases`."""
+    return BUDGET if cases.shape is None or cases.shape.even.all() else _ON_PANELS * BUDGET
 
 
 def newton_steps(nodes):

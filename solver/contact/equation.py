@@ -51,6 +51,16 @@ class Cases(NamedTuple):
     punch: Punch = PARABOLOID
     edge: Edge = FREE
 
+    @property
+    def shape(self):
+        """The :class:`~solver.shapes.shape.Shape` of which the punch is made; None of one that has none."""
+        return getattr(self.punch, "shape", None)
+
+    @property
+    def is_flat(self):
+        """Whether the contact radius is that of the punch, whatever the load."""
+        return self.shape is not None and np.array_equal(self.shape.least(), self.shape.most())
+
     def take(self, index):
         law, body, punch, edge = (part.take(index) for part in (self.law, self.body, self.punch, self.edge))
         return Cases(self.control, law, body, self.value[index], punch, edge)

@@ -12,7 +12,7 @@ from ..numerics.ladder import MARGIN, finer_mesh
 from ..numerics.mesh import gauss_rule
 from . import newton
 from .equation import Evaluation, State, evaluate, groups
-from .results import cornered, difference, interpolate, quantities
+from .results import cornered, interpolate, judged_difference, pointed, quantities
 
 #: No mesh sees how λ rises between the edge and the node next to it. With λ and s at that node, this ring adds about λ
 #: s² to Ar/An. Where that matters, the error of Ar/An is at most 5.3 times λ s²/2
@@ -103,14 +103,14 @@ def nearby(ev, state):
 
 def estimate(ev, coarse, refined):
     """Estimated relative error (B,) of a solution with the quantities `coarse`, from the two meshes alone."""
-    change, start = difference(coarse, refined.numbers), refined.start
+    change, start = judged_difference(ev.cases, coarse, refined.numbers), refined.start
     if ev.mesh.order == ev.mesh.n:
         first = np.searchsorted(start.mesh.s, _MIDDLE)
         around = np.abs(refined.end.curve.q - start.curve.q)[:, first:].max(axis=1) / ev.curve.q[:, -1]
         counts = around > np.maximum(change, _NEAR)
         if ev.curve.q.min() <= 0:  # where there is tension, the centre alone judges whether the punch lifts off
             counts &= ev.curve.q.min(axis=1) > 0
-        change = np.where(counts, around, change)
+        change = np.where(counts & ~pointed(ev.cases), around, change)
     if not ev.cases.law.rough:  # asperities show that a mesh is too coarse for the edge, by how they yield there
         unseen = ev.cases.body.unseen(np.exp(ev.state.eta), ev.mesh.s[0])
         change = np.maximum(change, _OF_RADIUS[ev.cases.control] * unseen)
@@ -179,19 +179,26 @@ def _blind(ev):
     return ev.cases.law.rough & (ev.Z[:, 0] * ev.curve.g[:, 0] / ev.drop[:, 0] < 0.5)
 
 
-def profile_error(ev, refined, rows):
-    """Estimated error (b,) of the profiles of the cases `rows` (b,), over the largest p or λ. It is what the step on
-    the finer mesh changes at its nodes, most of which lie between the others. A smooth punch has no pressure at the
-    edge: so what the polynomial through the nodes has there is an error too."""
+def profile_error(ev, refined, rows, x):
+    """Estimated error (b,) of the profiles at the radii x (m,) of the cases `rows` (b,), over the largest p or λ. It is
+    what the step on the finer mesh changes at its nodes, most of which lie between the others. A smooth punch has no
+    pressure at the edge: so what the polynomial through the nodes has there is an error too. Under a point, the nodes
+    nearer to the axis than the least of the radii do not count."""
     law = ev.cases.law.take(rows)
     start, end = refined.start, refined.end
-    q, new_q = start.curve.q[rows], end.curve.q[rows]
+    seen = slice(None, max(1, _outside(start.mesh, x)) if pointed(ev.cases)[rows].any() else None)
+    q, new_q = start.curve.q[rows, seen], end.curve.q[rows, seen]
     if law.rough:
-        lam, new_lam = law.area(start.state.y[rows], q), law.area(end.state.y[rows], new_q)
+        lam, new_lam = (law.area(at.state.y[rows], at.curve.q[rows])[:, seen] for at in (start, end))
         other = np.abs(new_lam - lam).max(axis=1) / new_lam.max(axis=1)
     else:
         other = np.abs(ev.curve.q[rows] @ ev.mesh.basis(np.zeros(1))[0]) / new_q.max(axis=1)
     return margin(ev)[rows] * np.maximum(np.abs(new_q - q).max(axis=1) / new_q.max(axis=1), other)
+
+
+def _outside(mesh, x):
+    """Number of nodes at radii above the least of x (m,) that is not 0."""
+    return np.count_nonzero(mesh.x >= np.min(x[x > 0], initial=1.0))
 
 
 def completed(ev, Ar_An, error, rows):

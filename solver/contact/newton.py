@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..numerics.linalg import solve_stack
+from ..punches.shaped import kept_within
 from .equation import State, control_gradient, evaluate, jacobian
 
 #: Most steps on a mesh, where nothing else is said.
@@ -29,7 +30,8 @@ def advance(ev):
     d_eta = np.clip(d_eta, -1.0, 1.0)
     dy = (dq + dq_deta * d_eta[:, None]) / ev.curve.dq
     y = ev.cases.law.limit(ev.state.y + dy, ev.state.y)
-    return State(y, ev.state.eta + d_eta), dq_deta
+    eta, shape = ev.state.eta + d_eta, ev.cases.shape
+    return State(y, eta if shape is None else kept_within(shape, eta, ev.state.eta)), dq_deta
 
 
 def step(ev):

@@ -3,6 +3,9 @@
 Where asperities saturate inside a contact, A → B̄²/(3Ra), the pressure has a corner at s² = Z/3; the stiffer the body,
 the more it is rounded. On a stiff or thin body the pressure also rises steeply at the edge. Both are found by the
 coefficients of the pressure and of λ on each panel, and enclosed by halving the panels.
+
+Where the profile of a punch has a kink, its pressure has one too: the panels begin with an end there. The kinks move
+with the contact radius, and the panels follow them (:mod:`..punches.kinks`).
 """
 
 from itertools import pairwise
@@ -11,19 +14,22 @@ import numpy as np
 
 from ..numerics.mesh import on_panels, panel_mesh
 from ..numerics.quadrature import radau_nodes
+from ..punches.kinks import bends_on_axis, ends_of, followed, panels_between, settled
 from .driver import Iterated, solve_on
 from .equation import State, evaluate
 from .results import interpolate
 from .start import first_guess, guess_radius
 
-#: Panels to begin with, nodes on each, and the narrowest panel as a power of 1/2.
-START = (0.0, 0.0625, 0.25, 0.5, 0.75, 1.0)
+#: Nodes on a panel, and the narrowest panel as a power of 1/2.
 ORDER = 12
 DEPTH = 30
 #: From values at the nodes of a panel to the last two coefficients of their Legendre series: (ORDER, 2).
 _LAST = np.linalg.inv(np.polynomial.legendre.legvander(2 * radau_nodes(ORDER) - 1, ORDER - 1)).T[:, -2:]
 #: Most panels: the operator is not accurate enough to resolve more.
 _MOST = 32
+#: Of punches with kinks or a point: how often a panel is halved in a round, for an error spoils panels beside it too,
+#: rounds for each of _GOALS, panels that each kink may have besides, and rounds in which panels follow kinks at last.
+_AT_ONCE, _ROUNDS, _MORE, _FOLLOWING = 1, 3, 8, 8
 #: Tolerances of the rounds: each solves and then halves panels. A coarse solution cannot tell where a fine one will not
 #: be resolved, so rtol is approached in steps.
 _GOALS = (1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
@@ -41,16 +47,23 @@ def solve_on_panels(case, rtol, budget, at=None):
     Returns its :class:`.driver.Iterated`, and the work: more than the budget if that was spent before every panel was
     resolved.
     """
-    iterated, work = (
-        _first(case, rtol, budget) if at is None else (Iterated(at, at.closed, np.zeros(1, dtype=int)), 0.0)
-    )
     radius, count = guess_radius(case), 0
+    if at is None:
+        iterated, work, place = _first(case, rtol, budget, radius)
+    else:
+        iterated, work, place = Iterated(at, at.closed, np.zeros(1, dtype=int)), 0.0, _radius(at)
     least = max(rtol, case.body.error(radius, ORDER)[0])  # panels do not take the operator's own error away
-    for goal in np.maximum(least, _GOALS):
+    goals = np.maximum(least, _GOALS).tolist()
+    if case.shape is not None:
+        goals = [*np.repeat(goals, _ROUNDS), *goals[-1:] * _FOLLOWING]
+    for goal in goals:
         count, iterated = count + iterated.count, iterated._replace(count=0 * iterated.count)
         if iterated.at.lost[0]:
             break
-        breaks, y = resolve(iterated.at, goal)
+        breaks, y, now = *resolve(iterated.at, goal), _radius(iterated.at)
+        if not settled(case.shape, place, now, rtol):
+            breaks, y = _followed(iterated.at, breaks, y, place)
+            place = now
         if breaks == iterated.at.mesh.breaks:
             continue
         nodes = ORDER * (len(breaks) - 1)
@@ -66,24 +79,41 @@ def solve_on_panels(case, rtol, budget, at=None):
     return iterated._replace(count=count + iterated.count), work
 
 
-def _first(case, rtol, budget):
-    """:class:`.driver.Iterated` of one case on its first panels, and the work.
+def _radius(at):
+    return float(np.exp(at.state.eta[0]))
+
+
+def _followed(at, breaks, y, place):
+    """The panels `breaks` with y (1, n) at their nodes, made for the contact radius `place`, at that of the solution
+    `at`. They are begun anew where another number of kinks is inside the contact."""
+    before, now = ends_of(at.cases.shape, place), ends_of(at.cases.shape, _radius(at))
+    if len(before) == len(now):
+        return followed(breaks, before, now), y
+    breaks = panels_between(now, at.cases.shape)
+    return breaks, np.concatenate(_between(at, list(pairwise(breaks))), axis=1)
+
+
+def _first(case, rtol, budget, radius):
+    """:class:`.driver.Iterated` of one case of about the `radius` (1,) on its first panels, the work, and the contact
+    radius for which these have their ends at the kinks.
 
     If a far cheaper body yields nearly alike, the first panels are those that resolve the contact with that body. This
     saves a seventh of the time of the study extremes_layered. Without it (:meth:`~solver.body.operator.Body.alike`
     returned None) 2 of 600 cases of that study spent their budget, though they have a solution. One of them is
     test_a_film_that_begins_as_a_thin_layer of tests/contact/extremes/test_budget.py.
     """
-    alike, start, mesh, count, work = case.body.alike(guess_radius(case)), None, panel_mesh(ORDER, START), 0, 0.0
+    place = float(radius[0])
+    mesh = panel_mesh(ORDER, panels_between(ends_of(case.shape, place), case.shape))
+    alike, start, count, work = case.body.alike(radius), None, 0, 0.0
     if alike is not None:
         iterated, work = solve_on_panels(case._replace(body=alike), rtol, budget)
         count = iterated.count
         if iterated.closed[0]:
-            mesh, start = iterated.at.mesh, iterated.at.state
-    operator, step = case.body.work(guess_radius(case), mesh.n)
+            mesh, start, place = iterated.at.mesh, iterated.at.state, _radius(iterated.at)
+    operator, step = case.body.work(radius, mesh.n)
     work += operator[0]
-    iterated = solve_on(evaluate(case, start or first_guess(case, mesh), mesh), budget=budget - work)
-    return iterated._replace(count=count + iterated.count), work + iterated.count[0] * step[0]
+    iterated = solve_on(evaluate(case, start or first_guess(case, mesh, radius), mesh), budget=budget - work)
+    return iterated._replace(count=count + iterated.count), work + iterated.count[0] * step[0], place
 
 
 def resolve(ev, rtol):
@@ -93,11 +123,15 @@ def resolve(ev, rtol):
     values = np.concatenate([ev.curve.q, law.area(ev.state.y, ev.curve.q)])
     scale = values @ mesh.w * max(_SHARE * rtol, _FLOOR)
     inside = dict(zip(pairwise(mesh.breaks), np.split(ev.state.y, len(mesh.breaks) - 1, axis=1), strict=True))
-    done, room = {}, _MOST - len(inside)
+    done, room = {}, _MOST - len(inside) + _MORE * (len(ends_of(ev.cases.shape, _radius(ev))) - 2)
+    levels = DEPTH + 1 if ev.cases.shape is None else _AT_ONCE
+    # what the profile bends on the axis is little of the load, but much of the pressure there
+    centre = max(rtol, _FLOOR) * values[:, -1] if bends_on_axis(ev.cases.shape) else np.inf
     while inside:  # panel -> y at its nodes
-        halves = []
+        halves, levels = [], levels - 1
         for (low, high), y in inside.items():
-            if room > 0 and high - low > 2.0**-DEPTH and np.any(_tail(law, y) * (high**2 - low**2) > scale):
+            tail, least = _tail(law, y), scale if high < 1.0 else np.minimum(scale, centre * (high**2 - low**2))
+            if levels >= 0 and room > 0 and high - low > 2.0**-DEPTH and np.any(tail * (high**2 - low**2) > least):
                 middle = (low + high) / 2
                 halves += [(low, middle), (middle, high)]
                 room -= 1

@@ -17,6 +17,8 @@ _APART = 1e-4
 #: Where λ bends: between two nodes y is interpolated to _FEW Gauss points, with the relative tolerance _NEAR,
 #: and λ is looked up at _MANY.
 _FEW, _MANY, _NEAR = 5, 10, 1e-10
+#: Quantities that the pressure in the centre does not decide.
+_AWAY_FROM_CENTRE = tuple(name for name in JUDGED if name not in ("p0", "p_max"))
 #: Arrays (B,) in units R = E2* = 1, named as in :class:`~solver.solution.Solution`.
 Quantities = namedtuple("Quantities", (*JUDGED, "A0"))
 
@@ -37,9 +39,21 @@ def quantities(ev):
     )
 
 
-def difference(first, second):
-    """Largest relative difference (B,) of two :class:`Quantities`, over those of JUDGED."""
-    return np.max([np.abs(getattr(first, name) / getattr(second, name) - 1) for name in JUDGED], axis=0)
+def difference(first, second, names=JUDGED):
+    """Largest relative difference (B,) of two :class:`Quantities`, over those of `names`."""
+    return np.max([np.abs(getattr(first, name) / getattr(second, name) - 1) for name in names], axis=0)
+
+
+def pointed(cases):
+    """(B,) bool: the punch has a point, f'(0+) > 0. What asperities under it bear is set so near to the axis, within A'
+    times the modulus, that no mesh tells it: the centre is not judged, and not reported."""
+    return np.zeros(len(cases.value), dtype=bool) if cases.shape is None else cases.shape.pointed
+
+
+def judged_difference(cases, first, second):
+    """:func:`difference` (B,) in what is reported of the `cases`."""
+    change, without = difference(first, second), pointed(cases)
+    return np.where(without, difference(first, second, _AWAY_FROM_CENTRE), change) if without.any() else change
 
 
 @lru_cache(maxsize=32)

@@ -15,6 +15,8 @@ def guess_radius(cases):
     springs and asperities would each have alone."""
     if cases.control == "a":
         return cases.value
+    if cases.is_flat:
+        return cases.shape.least()
     punch, body, law, value = cases.punch, cases.body, cases.law, cases.value
     if cases.control == "D":
         return punch.radius_at_depth(value)
@@ -23,11 +25,18 @@ def guess_radius(cases):
     spots = punch.on_asperities(value, law.p_star, law.A_star * gamma, 1 / beta)
     a, softness = np.inf, np.ones(len(value))
     for _ in range(7):  # the modulus that the contact feels depends on its radius
-        before, a = a, (punch.on_half_space(value, body.E, softness) ** 4 + springs**4 + spots**4) ** 0.25
+        before, a = a, _together(cases.shape, punch.on_half_space(value, body.E, softness), springs, spots)
         if np.array_equal(a, before):
             break
         softness = body.softness(a)
     return a
+
+
+def _together(shape, *radii):
+    """Contact radius (B,) of what yields together, from the `radii` (B,) that each would have alone."""
+    least = 0.0 if shape is None else shape.least()
+    a = least + sum(np.maximum(radius - least, 0.0) ** 4 for radius in radii) ** 0.25
+    return a if shape is None else np.minimum(a, (np.max(radii, axis=0) + shape.most()) / 2)
 
 
 def guess_pressure(cases, a, s):

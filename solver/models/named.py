@@ -10,6 +10,7 @@ from ..contact import smooth
 from ..laws import LAWS
 from ..scaling import as_cases, dimensionless, restore, with_a_stiff_base, with_rigid_punch, without_springs
 from ..schemes import SCHEMES
+from ..shapes import PARABOLOID, SHAPES
 from ..smooth_contact.contact import kinds_of
 from ..solution import Model, Solution
 from ..status import Status
@@ -97,11 +98,12 @@ def _ways(problem, solvable):
     yield solvable & is_smooth & half_space, _smooth_half_space
     yield solvable & is_smooth & thin, _smooth_layer
     iterated = solvable & ~(is_smooth & (half_space | thin))
+    words = PARABOLOID, *SHAPES
     # of each kind the words that occur, and the cases that have them
-    kinds = (LAWS, problem.micro), (BODIES, problem.base), (SCHEMES, problem.scheme)
+    kinds = (LAWS, problem.micro), (BODIES, problem.base), (SCHEMES, problem.scheme), (words, problem.shape)
     present = ([(word, words == word) for word in names if np.any(words == word)] for names, words in kinds)
-    for (_, of_law), (_, on_body), (scheme, by_scheme) in product(*present):
-        chosen = iterated & of_law & on_body & by_scheme
+    for (_, of_law), (_, on_body), (scheme, by_scheme), (_, of_shape) in product(*present):
+        chosen = iterated & of_law & on_body & by_scheme & of_shape
         for limit in np.unique(problem.max_iterations[chosen]):
             yield chosen & (problem.max_iterations == limit), SCHEMES[scheme]
 
@@ -116,7 +118,7 @@ def _smooth_layer(part, x):
 
 def _with_model(problem, solution):
     """The solution with its `model_used`, and its `model_error` without that of the range of the law."""
-    solved, thin = np.isfinite(solution.p0), problem.base == "thin_layer"
+    solved, thin = np.isfinite(solution.P) & np.isfinite(solution.D), problem.base == "thin_layer"
     error = np.where(solved & ~thin & (problem.base != "thin_stack"), 0.0, np.nan)
     judged = np.flatnonzero(solved & thin)
     if len(judged):

@@ -21,13 +21,16 @@ def has_yield(problem):
 def plastic_share(problem, lam):
     """(B,): the share of pi a² on which the spots have yielded; NaN of a law that has none, and where λ is NaN.
 
-    lam : (B, m), λ at the radii RADII
+    lam : (B, m), λ at the radii RADII. Under a point that of the axis is not known: if the spots at the next radius
+        have yielded, those on the axis have
     """
     share = np.full(len(problem), np.nan)
     for name in np.unique(problem.micro[has_yield(problem)]):
         index = np.flatnonzero(problem.micro == name)
         law = law_of(dimensionless(problem.take(index)))
-        share[index] = _share_above(np.log(lam[index] / law.law.yielded(*law.own)))
+        level = np.log(lam[index] / law.law.yielded(*law.own))
+        level[:, -1] = np.where(np.isnan(level[:, -1]) & (level[:, -2] > 0), level[:, -2], level[:, -1])
+        share[index] = _share_above(level)
     return share
 
 

@@ -26,7 +26,7 @@ def outside_law(problem, solution):
     outside = np.zeros(len(problem), dtype=bool)
     for law in _laws(problem):
         index, p0, E = _of_law(problem, solution, law)
-        largest = np.maximum(p0, solution.p[index].max(axis=1, initial=0.0))
+        largest = np.maximum(p0, np.fmax.reduce(solution.p[index], axis=1, initial=0.0))
         outside[index] = (p0 < law.least * E) | (largest > law.most * E)
     return outside
 
@@ -47,8 +47,10 @@ def _laws(problem):
 
 
 def _of_law(problem, solution, law):
-    """Index, p(0) and the modulus E that the asperities feel, of the cases of a law."""
+    """Index, p(0) and the modulus E that the asperities feel, of the cases of a law. Where p(0) is not known, under a
+    point, the largest pressure of the profile stands for it."""
     index = np.flatnonzero(problem.micro == law.name)
     part = problem.take(index)
     E = part.E2 * np.where(part.base == "half_space", 1.0, layer_modulus(part.n)) / (1 + part.m)
-    return index, solution.p0[index], E
+    p0 = solution.p0[index]
+    return index, np.where(np.isnan(p0), np.fmax.reduce(solution.p[index], axis=1, initial=np.nan), p0), E

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..contact.driver import BUDGET, solve_on
+from ..contact.driver import budget_of, solve_on
 from ..contact.equation import evaluate
 from ..contact.panels import solve_on_panels
 from ..contact.results import quantities
@@ -10,6 +10,7 @@ from ..contact.start import first_guess
 from ..numerics.ladder import LADDER
 from ..numerics.mesh import mesh_of
 from ..scaling import as_cases
+from ..shapes import PARABOLOID, flat
 
 #: The closed form of the smooth half-space is a polynomial in s that the coarsest mesh has.
 _LEAST = LADDER[0]
@@ -21,12 +22,19 @@ def meshes(solution, problem):
     return np.where((problem.nodes > 0) | np.isin(nodes, LADDER), nodes, 0)
 
 
+def without_state(problem):
+    """(B,) bool: cases whose equation is not that of :mod:`..contact`: smooth punches of other shapes than a
+    paraboloid, what sticks, and flat punches."""
+    shaped = problem.shape != PARABOLOID
+    return shaped & (~problem.rough() | (problem.shape == flat.KIND.name)) | (problem.w_adhesion > 0)
+
+
 def stacks(problem, nodes, a, most):
-    """Yield the indices of cases of one law, base and mesh, and their number of nodes; 0: of one case on panels. No
-    stack has more than `most` unknowns."""
-    kinds = np.stack([problem.micro, problem.base, nodes.astype(str)])
+    """Yield the indices of cases of one law, base, shape and mesh, and their number of nodes; 0: of one case on panels.
+    No stack has more than `most` unknowns."""
+    kinds = np.stack([problem.micro, problem.base, problem.shape, nodes.astype(str)])
     for kind in np.unique(kinds, axis=1).T:
-        index, count = np.flatnonzero(np.all(kinds == kind[:, None], axis=0)), int(kind[2])
+        index, count = np.flatnonzero(np.all(kinds == kind[:, None], axis=0)), int(kind[-1])
         order = as_cases(problem.take(index)).body.order(a[index])
         index = index if order is None else index[order]
         yield from ((part, count) for part in np.array_split(index, -(-len(index) * count // most) or len(index)))
@@ -36,7 +44,7 @@ def found_again(cases, nodes, a, rtol):
     """:class:`~solver.contact.driver.Iterated` of cases of about the radii a (B,), in units R = E2* = 1, on `nodes`
     nodes; 0: of one case on panels of its own."""
     if not nodes:
-        return solve_on_panels(cases, rtol[0], BUDGET)[0]
+        return solve_on_panels(cases, rtol[0], budget_of(cases))[0]
     mesh = mesh_of(nodes)
     return solve_on(evaluate(cases, first_guess(cases, mesh, a), mesh))
 

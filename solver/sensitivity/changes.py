@@ -4,6 +4,7 @@ All derivatives are by the logarithm of an input; by a Poisson ratio itself. The
 for their numbers a little above and a little below: nothing is solved, so that there is no noise of an iteration.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -11,11 +12,15 @@ import numpy as np
 from ..contact.equation import Cases, groups
 from ..layers import numbers_of, table
 from ..parameters import CONTROL, is_ratio
+from ..punches.shaped import Shaped
 from ..scaling import as_cases
+from ..shapes import PARABOLOID, SHAPES, shape_of
 
 #: An input is moved up and down by this part of itself, a Poisson ratio by this number. The curvature then adds 1e-8
 #: times a third derivative, and rounding 1e-12.
 STEP = 1e-4
+#: Numbers of a shape are moved by this part of STEP: rounding then adds 1e-10.
+_NEARER = 1e-2
 #: Numbers that are no inputs: they say how a case is solved, or are units, whose effect follows from dimensions.
 _NO_INPUTS = {"accuracy", "k", "rtol", "R", "E2"}
 
@@ -59,7 +64,9 @@ def moved_along(values, slopes):
 class Changes(NamedTuple):
     """Derivatives of the numbers of B cases by k inputs, (k, B) each: of the groups X, Y, Z; of the logarithms of p*,
     A* and the controlled value; of the numbers of the law, `own`; and of ln h of the body, whose operator depends on
-    h/a. `cases`: the 2 k B moved ones; `on_body`: indices of the inputs that change the operator in another way."""
+    h/a. `depth` (k, B) is that of the depth of the punch, and `drop` (s (m,) -> (k, B, m)) makes that of its drop:
+    numbers of a shape change both. `cases`: the 2 k B moved ones; `on_body`: indices of the inputs that change the
+    operator in another way."""
 
     cases: Cases
     X: np.ndarray
@@ -71,6 +78,8 @@ class Changes(NamedTuple):
     own: tuple
     h: np.ndarray
     on_body: list
+    depth: np.ndarray
+    drop: Callable
 
 
 def changes_of(part, eta, k):
@@ -88,7 +97,27 @@ def changes_of(part, eta, k):
             slopes = slope_of(values, k)
             acts |= np.any(slopes != 0, axis=tuple(range(1, slopes.ndim)))
     h[acts] = 0.0  # the operators of the moved bodies have the change of h already
-    return Changes(cases, X, Y, Z, *logs, own, h, np.flatnonzero(acts).tolist())
+    return Changes(cases, X, Y, Z, *logs, own, h, np.flatnonzero(acts).tolist(), *_of_punch(part, eta, k))
+
+
+def _of_punch(part, eta, k):
+    """Derivatives of the depth of the punch, (k, B), and a function that has those of its drop, for the moved cases.
+
+    Numbers of a shape are moved by _NEARER of what the others are: a kink moves with them, and nodes next to it must
+    stay on its other side.
+    """
+    if part.shape[0] == PARABOLOID:
+        return np.zeros((k, len(eta))), lambda s: 0.0
+    nearer = {}
+    for name in SHAPES[str(part.shape[0])].parameters:
+        values = getattr(part, name)
+        if values.dtype.kind == "f":
+            both = values.reshape(k, 2, len(eta))
+            middle = both.mean(axis=1, keepdims=True)
+            nearer[name] = (middle + _NEARER * (both - middle)).ravel()
+    punch, a = Shaped(shape_of(part.but(**nearer))), np.tile(np.exp(eta), 2 * k)
+    step = STEP * _NEARER
+    return slope_of(punch.depth(a), k, step), lambda s: slope_of(punch.drop(a, s), k, step)
 
 
 def _leaves(body, name=""):

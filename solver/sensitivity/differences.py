@@ -1,7 +1,8 @@
 """Derivatives by moved inputs: each case solved again with each input a little larger and a little smaller.
 
 It takes 2 k solutions, which have errors. It is for cases whose equation is not found again, such as those on panels
-that would be chosen otherwise a second time.
+that would be chosen otherwise a second time, and for those that :mod:`.state` does not know: smooth punches of other
+shapes than a paraboloid, what sticks, and flat punches.
 """
 
 import numpy as np
@@ -9,15 +10,30 @@ import numpy as np
 from ..solve import solve
 from .changes import moved, slope_of
 
-#: By how much an input is moved, and the rtol of the moved cases. The error is about _RTOL/_STEP, and _STEP².
+#: By how much an input is moved, and the rtol of the moved cases. The error is about _RTOL/_STEP, and _STEP². Where
+#: `fine` is True the inputs are moved twice as far as well, which leaves _STEP⁴: results of a cone, for example, change
+#: ten times as fast as its angle.
 _STEP, _RTOL = 1e-3, 1e-9
 
 
-def by_differences(problem, inputs, quantities, x):
-    """Quantity -> (k, B), derivatives of its logarithm; and those of p and λ at the radii x, (2, k, B, m). `problem` is
-    in units R = E2* = 1; NaN where a moved case has no numbers."""
-    cases = moved(problem, inputs, _STEP)
+def by_differences(problem, inputs, quantities, x, fine=False):
+    """Quantity -> (k, B), derivatives of the logarithm of its size; and those of p and λ at the radii x, (2, k, B, m).
+    `problem` is in units R = E2* = 1; NaN where a moved case has no numbers, or infinite ones."""
+    logs, profiles = _by_step(problem, inputs, quantities, x, _STEP)
+    if fine:
+        wide, wide_profiles = _by_step(problem, inputs, quantities, x, 2 * _STEP)
+        logs = {name: (4 * values - wide[name]) / 3 for name, values in logs.items()}
+        profiles = (4 * profiles - wide_profiles) / 3
+    return logs, profiles
+
+
+def _by_step(problem, inputs, quantities, x, step):
+    cases = moved(problem, inputs, step)
     solution = solve(cases.but(rtol=np.minimum(cases.rtol, _RTOL)), x)
     k = len(inputs)
-    logs = {name: slope_of(np.log(getattr(solution, name)), k, _STEP) for name in quantities}
-    return logs, np.stack([slope_of(values, k, _STEP) for values in (solution.p, solution.lam)])
+    logs = {name: slope_of(np.log(np.abs(getattr(solution, name))), k, step) for name in quantities}
+    return logs, np.stack([slope_of(_finite(values), k, step) for values in (solution.p, solution.lam)])
+
+
+def _finite(values):
+    return np.where(np.isfinite(values), values, np.nan)

@@ -11,15 +11,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..contact.results import pointed
 from ..numerics.ladder import STACK
-from ..parameters import uses
+from ..parameters import is_ratio, uses
 from ..problem import Problem
 from ..scaling import as_cases, dimensionless
 from ..solution import Solution
 from ..status import Status
 from ..threads import one_blas_thread
 from .added import added_slopes
-from .again import found_again, meshes, same, stacks
+from .again import found_again, meshes, same, stacks, without_state
 from .changes import changes_of, inputs_of, moved, slope_of
 from .differences import by_differences
 from .held import Held, held
@@ -31,6 +32,10 @@ from .stiffness import stiffness_slopes
 #: unit has the modulus as a factor.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD", "A0")
 _OF_MODULUS = ("P", "p0", "p_max", "dP_dD")
+#: Those whose sensitivity is not known where they are 0, as a load may be under adhesion, or infinite, or not known.
+_NEVER_0 = tuple(name for name in QUANTITIES if name != "A0")
+#: Those that the pressure on the axis decides, which is not known under a point.
+_OF_CENTRE = ("p0", "p_max", "A0")
 #: Most unknowns of a stack: with k inputs it has k right-hand sides.
 _STACK = STACK // 4
 
@@ -77,7 +82,8 @@ def sensitivities(
     [0.333333 0.333333]
     """
     inputs, x = tuple(inputs_of(problem) if inputs is None else inputs), np.asarray(x, dtype=float)
-    solved = np.isfinite(solution.p0) & np.isin(solution.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
+    solved = np.isfinite(solution.P) & np.isfinite(solution.D)
+    solved &= np.isin(solution.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
     index, acting = np.flatnonzero(solved), [name for name in inputs if _acts(problem, name)]
     size, places = len(problem), [inputs.index(name) for name in acting]
     logs = {name: np.where(solved[:, None], 0.0, np.full((size, len(inputs)), np.nan)) for name in QUANTITIES}
@@ -89,12 +95,20 @@ def sensitivities(
         for name, values in by_name.items():
             logs[name][np.ix_(index, places)] = values.T
         shapes[np.ix_((0, 1), index, places)] = np.moveaxis(at_x, 1, 2)
+    for name in _NEVER_0:
+        values = getattr(solution, name)
+        logs[name][~np.isfinite(values) | (values == 0)] = np.nan
     return Sensitivities(inputs, logs, shapes[0] * problem.E2[:, None, None], shapes[1])
 
 
 def _acts(problem, name):
-    """Whether an input changes the answer of some case."""
-    return name == problem.control or bool(np.any(uses(name, lambda key: getattr(problem, key))))
+    """Whether an input changes the answer of some case: it is used, and neither left out nor, but for Poisson ratios,
+    0 everywhere."""
+    if name == problem.control:
+        return True
+    values = getattr(problem, name)
+    there = np.isfinite(values) & (is_ratio(name) | (values != 0))
+    return bool(np.any(there & uses(name, lambda key: getattr(problem, key))))
 
 
 def _of_solved(scaled, solution, inputs, x):
@@ -105,7 +119,10 @@ def _of_solved(scaled, solution, inputs, x):
     shapes, left = np.full((2, k, size, len(x)), np.nan), np.ones(size, dtype=bool)
     now, above = held(scaled, solution.model_used), moved(scaled, inputs)
     beside = held(above, np.tile(solution.model_used, 2 * k))
-    for index, nodes in stacks(now.written, meshes(solution, scaled), solution.a, _STACK):
+    stateless = without_state(scaled)
+    again = np.flatnonzero(~stateless)
+    for rows, nodes in stacks(now.written.take(again), meshes(solution, scaled)[again], solution.a[again], _STACK):
+        index = again[rows]
         rows = (np.arange(2 * k)[:, None] * size + index).ravel()
         part = now.take(index), beside.take(rows), above.take(rows)
         good, derivatives, at_x = _of_stack(*part, solution.take(index), nodes, x)
@@ -113,9 +130,11 @@ def _of_solved(scaled, solution, inputs, x):
         for name, values in derivatives.items():
             logs[name][:, index[good]] = values[:, good]
         shapes[:, :, index[good]] = at_x[:, :, good]
-    rest = np.flatnonzero(left & ~now.added)
-    if len(rest):
-        derivatives, shapes[:, :, rest] = by_differences(now.named.take(rest), inputs, QUANTITIES, x)
+    for fine in (False, True):
+        rest = np.flatnonzero(left & ~now.added & (stateless == fine))
+        if not len(rest):
+            continue
+        derivatives, shapes[:, :, rest] = by_differences(now.named.take(rest), inputs, QUANTITIES, x, fine)
         for name, values in derivatives.items():
             logs[name][:, rest] = values
     return logs, shapes
@@ -143,6 +162,8 @@ def _of_stack(now: Held, beside: Held, above, solution, nodes, x):
         spots, lam = added_slopes(ev, changes, derivatives, above, (now.E2, d_E2), x)
         logs = {name: np.where(now.added, spots.get(name, values), values) for name, values in logs.items()}
         d_lam = np.where(now.added[:, None], lam, d_lam)
-    finite = np.all([np.isfinite(values).all(axis=0) for values in logs.values()], axis=0)
+    finite = np.ones(len(now.E2), dtype=bool)
+    for name, values in logs.items():
+        finite &= np.isfinite(values).all(axis=0) | (pointed(ev.cases) & (name in _OF_CENTRE))
     good = iterated.closed & finite & same(ev, solution, rtol)
     return good, logs, np.stack([d_p, d_lam])

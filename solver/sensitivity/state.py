@@ -100,8 +100,8 @@ def explicit(ev, changes, moving, operators):
     """:class:`Explicit` at the state of `ev`. `moving`: own number of the law -> derivative of g by its logarithm, (B,
     n); `operators`: input -> derivatives of K q (B, n) and edge @ q (B,)."""
     X, q, g = ev.X, ev.curve.q, ev.curve.g
-    F = changes.X[..., None] * ev.Kq + changes.Y[..., None] * q + changes.Z[..., None] * g
-    edge = changes.X * ev.edge_q
+    F = changes.X[..., None] * ev.Kq + changes.Y[..., None] * q + changes.Z[..., None] * g - changes.drop(ev.mesh.s)
+    edge = changes.X * ev.edge_q + changes.depth
     slopes = ev.slopes if changes.h.any() else (0 * q, 0 * q[:, 0])
     F = F - changes.h[..., None] * (X * slopes[0])
     edge = edge - changes.h * X[:, 0] * slopes[1]

@@ -5,14 +5,21 @@ depth is formed at two states next to the solution, on the tangent of the branch
 and cancels. At such a state one transposed system serves all inputs. Then, under the control,
 
     d ln S/dθ = [d(d ln P/dθ)/d ln D + (dS/d ln D) (d ln D/dθ)]/S,    dP/dD = S P/D.
+
+Where the punch has kinks inside the contact, the panels follow them, and the states beside are solved anew.
 """
+
+from dataclasses import replace
 
 import numpy as np
 
+from ..contact.driver import solve_on
 from ..contact.equation import State, control_gradient, evaluate, jacobian
 from ..numerics.linalg import solve_stack
+from ..numerics.mesh import panel_mesh
+from ..punches.kinks import ends_of, followed
 from .changes import changes_of
-from .state import explicit, moving_numbers, of_law
+from .state import explicit, moving_numbers, of_law, operators_of
 
 #: Distance of the two states in ln a.
 STEP = 3e-4
@@ -32,12 +39,15 @@ def stiffness_slopes(ev, part, derivatives, operators):
 
 def _beside(ev, part, derivatives, operators, step):
     """d ln P/dθ at a fixed depth (k, B), and S (B,), at the state with η + `step` on the tangent of the branch."""
-    tangent = derivatives.tangent
-    y = ev.state.y + step * tangent / ev.curve.dq
-    at = evaluate(ev.cases, State(y, ev.state.eta + step), ev.mesh)
+    tangent, kinked = derivatives.tangent, ev.cases.shape is not None and ev.cases.shape.kinks().size > 0
+    anew = kinked and ev.mesh.order < ev.mesh.n and len(_ends(ev, 0.0)) == len(_ends(ev, step))
+    at = _solved_beside(ev, step) if anew else _on_tangent(ev, tangent, step)
     changes = changes_of(part, at.state.eta, len(derivatives.eta))
-    law = of_law(at.cases.law, y, at.curve, moving_numbers(changes))
-    moved = {i: _beside_products(change, ev.curve.q, tangent, step) for i, change in operators.items()}
+    law = of_law(at.cases.law, at.state.y, at.curve, moving_numbers(changes))
+    if anew:
+        moved = {i: change.products(at.curve.q) for i, change in operators_of(at, changes).items()}
+    else:
+        moved = {i: _beside_products(change, ev.curve.q, tangent, step) for i, change in operators.items()}
     fixed = explicit(at, changes, {i: slopes[0] for i, slopes in law.by_own.items()}, moved)
     diagonal, dF_deta = jacobian(at)
     gradients = [control_gradient(name, at) for name in ("P", "D")]
@@ -48,6 +58,24 @@ def _beside(ev, part, derivatives, operators, step):
     S = P_eta / D_eta
     of_load, of_depth = (np.einsum("bn,kbn->kb", v, fixed.F) for v in (P, D))
     return fixed.P - of_load - S * (fixed.D - of_depth), S
+
+
+def _on_tangent(ev, tangent, step):
+    y = ev.state.y + step * tangent / ev.curve.dq
+    return evaluate(ev.cases, State(y, ev.state.eta + step), ev.mesh)
+
+
+def _solved_beside(ev, step):
+    """The equation of one case at its solution for a radius beside that of `ev`, on the panels of `ev` that follow the
+    kinks: so errors of the mesh are those of the other side, and cancel."""
+    case = ev.cases._replace(control="a", value=np.exp(ev.state.eta + step))
+    mesh = panel_mesh(ev.mesh.order, followed(ev.mesh.breaks, _ends(ev, 0.0), _ends(ev, step)))
+    at = solve_on(evaluate(case, State(ev.state.y, ev.state.eta + step), mesh)).at
+    return replace(at, cases=ev.cases)
+
+
+def _ends(ev, step):
+    return ends_of(ev.cases.shape, float(np.exp(ev.state.eta[0] + step)))
 
 
 def _beside_products(change, q, tangent, step):

@@ -24,8 +24,8 @@ OURS = {"roughcoat", "solver", "study", "studies"}
 ROOMS = {
     "solver": (
         *("threads", "status", "closed_forms", "numerics", "parameters", "layers", "shapes", "punches", "laws"),
-        *("kernels", "body", "edges", "problem", "solution", "contact", "compiled", "scaling", "estimate", "schemes"),
-        *("smooth_contact", "models", "solve", "sensitivity", "fields", "yields"),
+        *("kernels", "body", "edges", "problem", "solution", "contact", "compiled", "scaling", "estimate"),
+        *("flat", "schemes", "smooth_contact", "models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (
         *("terminal", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives", "fields", "in_words"),

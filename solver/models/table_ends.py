@@ -1,0 +1,32 @@
+"""Contacts that would reach beyond the last row of the table of their shape."""
+
+import numpy as np
+
+from ..problem import Problem
+from ..shapes import shape_of
+from ..shapes.table import PREFIX
+from ..status import Status
+
+#: A contact radius so near to the last row stands for the last row; rtol of what a contact up to there bears.
+_LAST, _ROUGHLY = 1 - 1e-9, 1e-4
+
+
+def beyond_table(scaled, solution, solve):
+    """(B,) bool: cases whose contact would reach beyond the last row of their table. Where load or depth are given and
+    the case was not solved, they are compared with those of a contact up to there, by ``solve(problem) -> Solution``.
+
+    scaled : the problem in units R = E2* = 1
+    """
+    beyond, of_table = np.zeros(len(scaled), dtype=bool), np.char.startswith(scaled.shape, PREFIX)
+    for word in np.unique(scaled.shape[of_table]).tolist():
+        index = np.flatnonzero(scaled.shape == word)
+        most = shape_of(scaled.take(index)).most()
+        if scaled.control == "a":
+            beyond[index] = scaled.value[index] >= most
+            continue
+        left = np.flatnonzero(solution.status[index] != Status.CONVERGED)
+        if len(left):
+            part, control = scaled.take(index[left]), scaled.control
+            last = Problem("a", most[left] * _LAST, part.parameters).but(rtol=_ROUGHLY, w_adhesion=0.0)
+            beyond[index[left]] = part.value > getattr(solve(last), control)
+    return beyond

@@ -14,7 +14,7 @@ from solver.parameters import allowed
 
 from .grid import Grid, along
 from .scene.layers import declare
-from .vocabulary import BODIES, PARAMETERS, SCENE, VOCABULARY, Entry, names
+from .vocabulary import BODIES, OF_PARAMETERS, PARAMETERS, SCENE, VOCABULARY, Entry, names
 
 MOST_FITS = 1000
 """Most different values of Nbar Ra² in a study. A law is fitted to each, in 2 ms."""
@@ -31,7 +31,7 @@ laws.RESERVED.update(SCENE, BODIES)
 
 def update_vocabulary() -> None:
     """Make PARAMETERS and VOCABULARY fit the micro laws that are registered now."""
-    built_in = names("control", "material", "roughness", "numerics")
+    built_in = names(*OF_PARAMETERS)
     for name in set(PARAMETERS) - set(built_in):  # their laws may have been replaced
         VOCABULARY.pop(name, None)
     PARAMETERS[:] = built_in

@@ -50,6 +50,7 @@ class Entry:
     powers: tuple[int, int] = (0, 0)
     equation: str = ""
     interval: str = ""
+    written: str = ""
 
     @property
     def parameter(self) -> Parameter:
@@ -60,7 +61,7 @@ class Entry:
     @cached_property
     def unit(self) -> str:
         """The SI unit of the physical quantity."""
-        return si_unit(self.powers)
+        return self.written or si_unit(self.powers)
 
     @cached_property
     def ratio(self) -> str:
@@ -119,7 +120,8 @@ def names(*roles: str) -> tuple[str, ...]:
 
     Parameters
     ----------
-    roles : "control", "material", "roughness", "numerics", "result", "derived", "coordinate"
+    roles : "control", "material", "shape", "adhesion", "roughness", "numerics", "result", "pull_off", "derived",
+        "coordinate"
 
     Returns
     -------
@@ -135,7 +137,9 @@ def names(*roles: str) -> tuple[str, ...]:
 
 CONTROLS = names("control")
 NUMERICS = names("numerics")
-PARAMETERS = list(names("control", "material", "roughness", "numerics"))
+OF_PARAMETERS = ("control", "material", "shape", "adhesion", "roughness", "numerics")
+"""Roles of parameters."""
+PARAMETERS = list(names(*OF_PARAMETERS))
 """Names of parameters; `study.inputs.laws.update_vocabulary` adds those of registered laws here and to VOCABULARY."""
 
 

@@ -23,6 +23,7 @@ from .draft import Draft
 from .grid import along, usual_block
 from .identity import digest_of, law_versions
 from .laws import results_of
+from .punch import sticking
 from .request import MOST_MESSAGES, Request
 from .scene.layers import axes_in
 from .vocabulary import NUMERICS, absent, suggest
@@ -96,6 +97,7 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
         draft.check({})
     draft.put_dimensions()
     grid = draft.finish()
+    errors += [] if errors else sticking.rough_and_sticking(grid, scene and scene.unit)
     inputs = () if errors or scene is None or not scene.spreads else inputs_of(scene, grid)
     title, x, profiles, dtype, stresses = settings(tables, errors)
     if stresses and not errors and np.isin(along(grid, "base"), STACKED[1]).any():
@@ -103,7 +105,7 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
-    results = results_of(grid.values["micro"][1] if "micro" in grid.values else ())
+    results = results_of(grid.values["micro"][1] if "micro" in grid.values else (), "w_adhesion" in grid.values)
     definition = Definition(
         *(name, title, text, grid, x, profiles, dtype, block, ""),
         scene=scene,

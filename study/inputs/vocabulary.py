@@ -22,6 +22,8 @@ from ..terminal import shown
 __all__ = ["SCENE", "VOCABULARY", "names"]
 INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "nodes_used": "int16"}
 """Results that are whole numbers -> the type in which they are stored."""
+TRUTHS = {"stable": "int8"}
+"""Results that are true or false, of some studies alone -> the type in which blocks store them."""
 WITH_SPREADS = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD", "A0", "lam0")
 """Results that have spreads, as profiles do; the others say how well the case is solved."""
 BY_INPUT = "_by_input"

@@ -16,7 +16,7 @@ from solver.laws.trial import going_on
 
 from ..inputs.definition import Definition
 from ..inputs.grid import columns
-from ..inputs.vocabulary import BY_INPUT, CONTROLS, INTEGERS
+from ..inputs.vocabulary import BY_INPUT, CONTROLS, INTEGERS, TRUTHS
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +99,7 @@ def arrays_of(solution: Solution, results: tuple[str, ...], profiles: tuple[str,
     names = (*CONTROLS, *results, *INTEGERS)
     arrays = {name: special[name] if name in special else getattr(solution, name) for name in names}
     arrays |= {name: getattr(solution, name) for name in profiles}
-    return {name: np.asarray(array, dtype=INTEGERS.get(name, np.float64)) for name, array in arrays.items()}
+    return {name: np.asarray(array, dtype=(INTEGERS | TRUTHS).get(name, np.float64)) for name, array in arrays.items()}
 
 
 def stresses_of(problem: Problem, solution: Solution) -> dict[str, np.ndarray]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..punch.shapes import MICROMETRE
 from ..vocabulary import SCENE, VOCABULARY
 from .layers import moduli_of
 from .scene import Scene
@@ -22,6 +23,8 @@ def make_dimensionless(scene: Scene) -> None:
     values = scene.values
     if "R1" in values:
         values["R"] = 1 / (1 / values["R1"] + 1 / values["R2"])
+    if scene.scale:
+        values["R"] = values.get(scene.scale, MICROMETRE)
     scene.R, scene.unit, layer, body = values["R"], *moduli(values, scene.parameters)
     if "E1" in values:
         scene.parameters["n"] = layer / body
@@ -35,6 +38,8 @@ def make_dimensionless(scene: Scene) -> None:
     for name, value in values.items():
         if name not in SCENE:
             scene.parameters[name] = without_unit(value, VOCABULARY[name].powers, scene.unit, scene.R)
+    if np.any(scene.metres):
+        scene.parameters["table_unit"] = _where(scene.metres, 1 / scene.R, 1.0)
 
 
 def moduli(values: dict, parameters: dict) -> tuple:

@@ -127,6 +127,8 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     by_input = {name.removesuffix(BY_INPUT): unflatten(grid, arrays[name]) for name in arrays if BY_INPUT in name}
     laws = law_versions(grid)
     about = provenance(definition, command) | ({"micro_laws": "\n".join(laws)} if laws else {})
+    if "shape" in grid.values:  # what 1 is of a length
+        about["scale"] = (definition.scene.scale or "R") if definition.scene else "1"
     return Parts(variables, coordinates, about, by_input)
 
 

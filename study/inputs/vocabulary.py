@@ -193,7 +193,7 @@ def check(parameter: Parameter, value) -> str:
         table = value.removeprefix("Table:") if isinstance(value, str) and value.endswith(".csv") else ""
         hint = f'; a table of your own is "table:{table}"' * bool(table)
         return "" if isinstance(value, str) and value in parameter.choices else allowed(parameter) + hint
-    if not finite(value):
+    if not finite(value) and not (parameter.interval.endswith("inf]") and value == math.inf):
         return f"must be a finite number, {allowed(parameter).removeprefix('must be ')}"
     if parameter.whole and value != int(value):
         return "must be a whole number"

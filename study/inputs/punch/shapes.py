@@ -20,8 +20,8 @@ ANGLES = ("half_angle",)
 ROUND = (shapes.PARABOLOID, "sphere")
 #: Inputs with a length of which the first that is given is the unit of length of a shape without a radius.
 LENGTHS = ("flat_radius", "tip_radius", "h")
-#: That unit where no such input is given, in m.
-MICROMETRE = 1e-6
+#: That unit where no such input is given.
+MICROMETRE = "1 um"
 
 
 def declare() -> None:
@@ -41,7 +41,13 @@ def words_of(values: list) -> list:
     Raises ValueError for a table that cannot be used.
     """
     words = [_plain(value) if isinstance(value, str) else value for value in values]
-    shapes.named([word for word in words if isinstance(word, str)])
+    for word in {word for word in words if isinstance(word, str) and word.startswith(table.PREFIX)}:
+        table.TABLES.pop(word, None)  # the file may have changed
+        shapes.SHAPES.pop(word, None)
+        try:
+            shapes.named(word)
+        except ValueError as error:
+            raise ValueError(str(error).removeprefix("shape ")) from None
     declare()
     return words
 
@@ -87,9 +93,10 @@ def radius_needed(words: Any) -> bool:
     return bool(np.isin(words, ROUND).any())
 
 
-def in_metres(words: Any) -> bool:
-    """Whether some shape is a table with units of length in its header."""
-    return any(word in table.TABLES and table.TABLES[word].metres for word in np.unique(words).tolist())
+def in_metres(words: Any) -> Any:
+    """Whether a shape is a table with units of length in its header, of the form of `words`: a text or an array."""
+    there = [word for word, rows in table.TABLES.items() if rows.metres]
+    return words.isin(there) if hasattr(words, "isin") else np.isin(words, there) if np.ndim(words) else words in there
 
 
 def mistakes(grid: Grid, sections: Any, physical: bool) -> list[str]:
@@ -103,7 +110,7 @@ def mistakes(grid: Grid, sections: Any, physical: bool) -> list[str]:
     if "a" in grid.values and ((words == "sphere") & (values("a") >= 1)).any():
         a = float(np.broadcast_to(values("a"), grid.shape)[np.broadcast_to(words == "sphere", grid.shape)].max())
         messages.append(f'a = {a:g} R with shape = "sphere": the radius of the contact must be below that of the ball')
-    if in_metres(words) and not physical:
+    if np.any(in_metres(words)) and not physical:
         example = 'R = "1 um", E2 = "1 MPa"'
         messages.append(f"shape: the table has units in its header: give the other inputs with units too ({example})")
     return messages

@@ -14,7 +14,7 @@ from ...specimen.quantities import READABLE, quantity
 from ...terminal import on_one_line
 from ..draft import Draft
 from ..grid import equal_values
-from ..punch.shapes import LENGTHS, in_metres
+from ..punch.shapes import LENGTHS, MICROMETRE, in_metres
 from ..request import NEEDS_NAMES, Input, Request
 from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY
 from .bodies import assumed, with_materials
@@ -76,11 +76,8 @@ def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scen
 def _measure(scene: Scene) -> None:
     """Note what the unit of length is of shapes without a radius, and which tables of shapes have units."""
     if "R" not in scene.values and "R1" not in scene.values:
-        scene.scale = next((name for name in LENGTHS if name in scene.values), "1 um")
-    words = scene.parameters.get("shape", "")
-    if in_metres(words):
-        there = [word for word in np.unique(words).tolist() if in_metres([word])]
-        scene.metres = words.isin(there) if isinstance(words, xr.DataArray) else True
+        scene.scale = next((name for name in LENGTHS if name in scene.values), MICROMETRE)
+    scene.metres = in_metres(scene.parameters.get("shape", ""))
 
 
 def _read(scene: Scene, draft: Draft, entry: Input) -> None:

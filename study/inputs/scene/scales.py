@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..punch.shapes import MICROMETRE
 from ..vocabulary import SCENE, VOCABULARY
 from .layers import moduli_of
 from .scene import Scene
 
 #: Default of the Poisson ratio of a punch, that of the other bodies.
 _POISSON = VOCABULARY["nu1"].parameter.default
+#: The unit of length in m of a punch of which no length is given.
+_MICROMETRE = 1e-6
 
 
 def make_dimensionless(scene: Scene) -> None:
@@ -24,7 +25,7 @@ def make_dimensionless(scene: Scene) -> None:
     if "R1" in values:
         values["R"] = 1 / (1 / values["R1"] + 1 / values["R2"])
     if scene.scale:
-        values["R"] = values.get(scene.scale, MICROMETRE)
+        values["R"] = values.get(scene.scale, _MICROMETRE)
     scene.R, scene.unit, layer, body = values["R"], *moduli(values, scene.parameters)
     if "E1" in values:
         scene.parameters["n"] = layer / body

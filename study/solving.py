@@ -69,6 +69,37 @@ class Parameters(TypedDict, total=False):
         | Law
         | Many
     )
+    shape: (
+        Literal[
+            "paraboloid",
+            "sphere",
+            "cone",
+            "berkovich",
+            "vickers",
+            "cube_corner",
+            "power",
+            "frustum",
+            "blunt_cone",
+            "flat",
+            "rounded_flat",
+        ]
+        | str
+        | Many
+    )
+    half_angle: Value
+    flat_radius: Value
+    tip_radius: Value
+    tip: Literal["paraboloid", "sphere"] | Many
+    edge_radius: Value
+    shape_power: Value
+    shape_coefficient: Value
+    table_unit: Value
+    w_adhesion: Value
+    adhesion: Literal["jkr", "dmt", "maugis"] | Many
+    sigma0: Value
+    z0: Value
+    branch: Literal["stable", "unstable"] | Many
+    k_machine: Value
     B: Value
     beta: Value
     sigma: Value
@@ -143,6 +174,17 @@ def solve(
     R1, R2 : in place of R, of two bodies: R = 1/(1/R1 + 1/R2), a cup negative, a flat body "flat"
     punch, layer, body : materials, or names of some (docs/materials.md), in place of their moduli and Poisson ratios
     nu_punch : Poisson ratio of the punch, 0.3 if not given
+    shape : of the punch: "paraboloid", r^2/(2R); "sphere", "cone", "berkovich", "vickers", "cube_corner", "power",
+        "frustum", "blunt_cone", "flat", "rounded_flat", or "table:" and the path of a CSV file of r and f
+        (docs/shapes.md)
+    half_angle : from the axis to the side of a cone, in degrees, or "70.3 deg"
+    flat_radius, tip_radius, edge_radius : of a flat end, of the tip of a blunt cone, of a rounded edge
+    tip : of a blunt cone, "paraboloid" or "sphere"
+    shape_power, shape_coefficient : k and c of f/R = c (r/R)^k; table_unit : what 1 is in a table without units
+    w_adhesion : work of adhesion of a smooth punch, "50 mJ/m^2"; P and D may then be 0 and negative (docs/adhesion.md)
+    adhesion : its model, "jkr", "dmt" or "maugis", which has its stress sigma0 or its range z0
+    branch : of two contacts under one load or at one depth the "stable", with the larger radius, or "unstable"
+    k_machine : stiffness of the cantilever or machine that moves the punch; it decides when the contact comes off
     scheme, k : how it is solved, and the relaxation of "picard"
     rtol : wanted relative error
     accuracy : allowed relative model error of base = "auto"

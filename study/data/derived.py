@@ -28,6 +28,7 @@ from ..rules.assumptions import (  # noqa: F401 - names of study.derived
     STEEP_SPOT,
     STRETCHED,
 )
+from ..rules.punch import SLOPE, ZONE  # noqa: F401 - names of study.derived
 from ..rules.rule import ASSUMPTIONS, validity  # noqa: F401 - names of study.derived
 from .units import physical_attributes, reduced_modulus
 

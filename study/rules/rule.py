@@ -89,7 +89,10 @@ def validity_of(variables: Mapping, times: float = 1.0) -> xr.Variable:
     status, v = variables["status"], numbers(variables)
     violated = (np.int32(mask) * RULES[name].condition(v, times) for mask, name in ASSUMPTIONS.items())
     flags = sum(violated, np.zeros(status.shape, np.int32))
-    return xr.Variable(status.dims, flags, attributes("validity") | validity_attributes())
+    about = attributes("validity") | validity_attributes()
+    if "w_adhesion" in variables and not {"z0", "sigma0"} & {*variables}:
+        about["comment"] = "not_jkr: not known, since neither z0 nor sigma0 is given"
+    return xr.Variable(status.dims, flags, about)
 
 
 def numbers(variables: Mapping) -> Mapping:

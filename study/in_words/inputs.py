@@ -73,7 +73,11 @@ def _of_punch_hidden(contacts: xr.Dataset) -> set[str]:
     """Inputs of the shape and of adhesion that say nothing: defaults, and what is there for the solver alone."""
     hidden = {"table_unit"} if "shape" in contacts and np.any(in_metres(contacts["shape"].values)) else set()
     if "w_adhesion" in contacts:
-        hidden |= {name for name in names("adhesion") if name != "w_adhesion"} if (contacts["w_adhesion"] == 0).all() else set()
+        hidden |= (
+            {name for name in names("adhesion") if name != "w_adhesion"}
+            if (contacts["w_adhesion"] == 0).all()
+            else set()
+        )
         hidden |= {"branch"} if "a" in contacts.coords or (contacts["branch"] == "stable").all() else set()
     return hidden
 

@@ -10,10 +10,10 @@ from ..data.si import ASSUMED
 from ..inputs.vocabulary import BODIES, VOCABULARY
 from ..rules import rule
 from .influence import influence
-from .punch import of_adhesion, of_shape, sticks, unit_of_length
+from .notes.punch import of_adhesion, of_shape, sticks, unit_of_length
+from .notes.unloading import falling
 from .pressures import largest_of_all
 from .strength import RUBBER, holds, which_yields
-from .unloading import falling
 
 _BASES = {
     "half_space": "a half-space",

@@ -8,9 +8,9 @@ from ..inputs.vocabulary import NOT_RUN, VOCABULARY
 from ..specimen.pictures import curve, with_picture
 from .fits import of_fit
 from .inputs import given, is_rigid
+from .notes.punch import OF_PULL_OFF
 from .numbers import given_text, peak_text, result_text, ring_text
 from .pressures import largest
-from .punch import OF_PULL_OFF
 from .sentences import sentences
 
 MOST_CASES = 20  # of a grid that a summary writes out

@@ -58,8 +58,8 @@ PURE = {
     "n", "m", "nu1", "nu2", "bonding", "base", "micro", "B", "beta", "cut", "scheme", "k", "rtol", "accuracy",
     "model_check", "nodes", "max_iterations", "Ar_An", "plastic_share", "lam0", "lam", "status", "error",
     "profile_error", "model_error", "model_used", "residual", "iterations", "nodes_used", "validity", "An_ratio",
-    "spots", "x", "case", "label", "shape", "half_angle", "tip", "shape_power", "shape_coefficient", "adhesion", "branch",
-    "stable",
+    "spots", "x", "case", "label", "shape", "half_angle", "tip", "shape_power", "shape_coefficient", "adhesion",
+    "branch", "stable",
 } | {f"{name}_{axis}" for name in STRESSES for axis in "rz"}
 # fmt: on
 

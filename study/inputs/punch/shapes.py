@@ -7,12 +7,11 @@ import numpy as np
 
 from solver import shapes
 from solver.shapes import table
-from solver.status import Status
 
-from ...specimen.quantities import Quantity, has_unit, quantity
+from ...specimen.quantities import has_unit, quantity
 from ...terminal import shown
 from ..grid import Grid, along
-from ..vocabulary import CONTROLS, PARAMETERS, VOCABULARY, Entry, cases_with, names
+from ..vocabulary import PARAMETERS, VOCABULARY, Entry, cases_with
 
 #: Angles of the punch: numbers of degrees.
 ANGLES = ("half_angle",)

@@ -66,7 +66,9 @@ class Scene:
         changed = {table: {name: cut(v) for name, v in getattr(self, table).items()} for table in tables}
         labels = self.labels[window["case"]] if self.labels else []
         names = {body: (dim, texts[window[dim]] if dim else texts) for body, (dim, texts) in self.names.items()}
-        return replace(self, **changed, labels=labels, names=names, R=cut(self.R), unit=cut(self.unit), metres=cut(self.metres))
+        return replace(
+            self, **changed, labels=labels, names=names, R=cut(self.R), unit=cut(self.unit), metres=cut(self.metres)
+        )
 
 
 def over(value: Any, dims: tuple[str, ...]) -> np.ndarray:

@@ -6,9 +6,9 @@ import xarray as xr
 from solver.shapes import PARABOLOID, SHAPES
 from solver.shapes.cone import KIND, PYRAMIDS
 
-from ..inputs.vocabulary import names
-from ..specimen.quantities import readable
-from .numbers import in_its_unit
+from ...inputs.vocabulary import names
+from ...specimen.quantities import readable
+from ..numbers import in_its_unit
 
 #: Results of pull-off and pull-in that a summary lists, in this order.
 OF_PULL_OFF = tuple(name for name in names("pull_off") if name != "stable")

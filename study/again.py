@@ -9,12 +9,12 @@ import xarray as xr
 from solver import Problem
 from solver.laws import LAWS
 from solver.laws.elastic_plastic import TABOR
-from solver.parameters import STACKED
 from solver.shapes import PARABOLOID, SHAPES
 
 from .inputs.definition import StudyError
 from .inputs.laws import recall
 from .inputs.punch.shapes import MICROMETRE, in_metres
+from .inputs.punch.stresses import without_stresses
 from .inputs.scene.layers import moduli_of
 from .inputs.scene.layers import recall as recall_layers
 from .inputs.scene.names import is_ratio
@@ -59,10 +59,11 @@ class Again(NamedTuple):
         return cls(problem, numbers, scene, dims, shape)
 
 
-def refuse_stacks(again: Again, who: str) -> None:
-    """Raise StudyError where a contact is on a stack of layers: its stresses are not computed yet."""
-    if np.isin(again.problem.base, STACKED[1]).any():
-        raise StudyError([f"{who}: there are no stresses in stacks of layers yet, but of one layer (base = layered)"])
+def refuse_without_stresses(again: Again, who: str) -> None:
+    """Raise StudyError where stresses of a contact are not computed yet, as in a stack of layers."""
+    problem = again.problem
+    if reason := without_stresses(problem.base, problem.micro, problem.shape, problem.w_adhesion):
+        raise StudyError([f"{who}: {reason}"])
 
 
 def _checked(contact: xr.Dataset, who: str) -> dict[str, Any]:

@@ -131,7 +131,9 @@ def refuse_shapes(again: Again, who: str) -> None:
     others = [word for word in np.unique(again.problem.shape).tolist() if word not in ROUND]
     if others:
         way = "study.extremes computes the stresses at a load"
-        raise StudyError([f"{who} looks for loads under paraboloids and spheres, not shape = {shown(others[0])}: {way}"])
+        raise StudyError(
+            [f"{who} looks for loads under paraboloids and spheres, not shape = {shown(others[0])}: {way}"]
+        )
 
 
 def own_materials(parameters: dict) -> dict[str, Material]:

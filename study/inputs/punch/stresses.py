@@ -14,7 +14,10 @@ def without_stresses(base, micro, shape=PARABOLOID, w_adhesion=0.0) -> str:
     reasons = (
         (np.isin(base, STACKED[1]), "in stacks of layers yet, but of one layer (base = layered)"),
         (np.asarray(w_adhesion) > 0, "of contacts that stick (w_adhesion > 0) yet"),
-        (np.asarray(shape) == "flat", "under a flat punch, whose edge makes them infinite, but under a rounded_flat one"),
+        (
+            np.asarray(shape) == "flat",
+            "under a flat punch, at whose edge they are infinite, but under a rounded_flat one",
+        ),
         (rough & (np.asarray(shape) != PARABOLOID), "under rough punches of this shape yet, but under smooth ones"),
     )
     return next((f"there are no stresses {text}" for where, text in reasons if np.any(where)), "")

@@ -95,9 +95,8 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     moved = tuple(name for name in scene.spreads if name not in unknowns and name not in CONTROLS)
     model = Model.of(definition, x, y, unknowns, moved)
     if model.sticks and (x, y) != ("D", "P"):
-        raise StudyError(
-            [f'x = {shown(x)}, y = {shown(y)}: of what sticks the load over the depth is fitted: x = "D", y = "P"']
-        )
+        way = 'of what sticks the load over the depth is fitted: x = "D", y = "P"'
+        raise StudyError([f"x = {shown(x)}, y = {shown(y)}: {way}"])
     absent = [name for name in unknowns if name not in scene.values and name not in scene.parameters]
     if absent:
         raise StudyError([f"free: {name} does not act in this contact" for name in absent])

@@ -80,7 +80,7 @@ def of_contacts(problem, solution, r, z, mu=0.0):
 
 
 def have_fields(problem, solution):
-    """(B,) bool: solved contacts of which there are stresses. There are none yet of stacks of layers, of what sticks, of
+    """(B,) bool: solved contacts of which there are stresses. There are none yet of stacks, of what sticks, of
     flat punches, whose pressure is infinite at the edge, and of rough punches of other shapes than the paraboloid."""
     without = np.isin(problem.base, STACKED[1]) | (problem.w_adhesion > 0) | (problem.shape == "flat")
     return (solution.status == Status.CONVERGED) & ~without & ~(problem.shaped() & problem.rough())

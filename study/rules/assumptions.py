@@ -106,7 +106,8 @@ def asperity_strain_not_small(v, times):
     yield before that, and pmax is larger than any real pressure."""
     E = np.where(v["layered"], v["E1*"], 1.0) / (1 + v["m"])  # of layer and punch in series
     # By (13) this is at most b/Ra of the central spot. It also serves laws whose b(0) is a mean, and those without Ra.
-    steep = np.pi / 2 * (v["p_max"] - v["p0"]) / E
+    with np.errstate(invalid="ignore"):  # of sharp tips both are infinite
+        steep = np.pi / 2 * (v["p_max"] - v["p0"]) / E
     return v["rough"] & ((v["b"] > times * STEEP_SPOT * v["Ra"]) | (steep > times * STEEP_SPOT))
 
 

@@ -18,7 +18,7 @@ blunt = rc.solve(**coating, shape="blunt_cone", half_angle="70.3 deg", tip_radiu
 rc.summary(sharp.isel(D=5, h=1))
 
 # %%
-# The modulus of a half-space that is as stiff, (dP/dD)/(2a): in the beginning that of the coating and the tip, on thin coatings
+# The modulus of a half-space that is as stiff, (dP/dD)/(2a): in the beginning that of coating and tip, on thin coatings
 # more and more that of the steel. It is the same for each shape at one contact radius.
 stiffness = rc.derived.effective_modulus(sharp)
 assert (stiffness.isel(D=-1).diff("h") > 0).all() and (stiffness.isel(D=0).std("h") < 0.05 * stiffness.isel(D=0).mean())

@@ -96,8 +96,8 @@ def load_error(formula: Formula, contacts: xr.Dataset) -> tuple[np.ndarray, np.n
     columns="formula; shape; constants read in" + "".join(f"; a/h = {x:g} | +.2% | $a/h = {x:g}$" for x in SHOWN_AT),
 )
 def loads_of_shapes(contacts: xr.Dataset) -> list[tuple]:
-    """Formulas of the load on a cone (half angle 70.3 degrees), a flat punch and a ball (a = 0.4 R on a half-space) on a
-    bonded layer of nu = 1/2 on a rigid base: their errors at one depth."""
+    """Formulas of the load on a cone (half angle 70.3 degrees), a flat punch and a ball (a = 0.4 R on a half-space) on
+    a bonded layer of nu = 1/2 on a rigid base: their errors at one depth."""
     from scipy.interpolate import CubicSpline
 
     rows = []

@@ -1,6 +1,7 @@
 """Shapes in calls and study files: names, angles, units, the unit of length, what is refused, keys, words."""
 
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -62,7 +63,7 @@ def test_an_angle_is_in_degrees(angle):
 def test_an_angle_may_have_a_spread_and_a_unit_of_its_own_in_an_array():
     found = study.solve(D="10 nm", shape="cone", half_angle="70.0 ± 0.5", **GEL)
     assert_allclose((found.half_angle, found.half_angle_spread), (70, 0.5))
-    radians = xr.DataArray(np.radians([60.0, 70.0]), dims="tip", attrs={"units": "rad"})
+    radians = xr.DataArray(np.radians([60.0, 70.0]), dims="cone", attrs={"units": "rad"})
     assert_allclose(study.solve(D=0.01, shape="cone", half_angle=radians, **ALONE).half_angle, [60, 70], rtol=1e-14)
 
 
@@ -137,7 +138,7 @@ def test_a_table_is_read_anew_and_its_numbers_are_in_the_key(tip):
 
     first, same = tip("0,0\n1,1\n2,3\n"), tip("# the same\nr,f\n0,0\n1,1\n2,3\n")
     assert (keys(first) == keys(same)).all()
-    open(first.removeprefix("table:"), "w").write("0,0\n1,1\n2,4\n")
+    Path(first.removeprefix("table:")).write_text("0,0\n1,1\n2,4\n")
     assert (keys(first) != keys(same)).any()
     with pytest.raises(study.StudyError, match="shape: table:.*is not convex beyond r = 1"):
         keys(tip("0,0\n1,1\n2,1.5\n"))
@@ -190,7 +191,7 @@ def test_stresses_of_a_smooth_shape_and_what_has_none():
     flat = study.solve(P=1e-5, shape="flat", flat_radius=0.1, **ALONE)
     with pytest.raises(study.StudyError, match="no stresses under a flat punch"):
         study.stresses(flat)
-    with pytest.raises(study.StudyError, match="first_yield is for paraboloids and spheres"):
+    with pytest.raises(study.StudyError, match="first_yield looks for loads under paraboloids and spheres"):
         study.first_yield(Y2=0.01, shape="Berkovich", **ALONE)
 
 

@@ -26,7 +26,7 @@ _LOOKED_AT = np.sin(np.pi / 2 * (np.arange(40) + 0.37) / 40)
 def shaped_pressures(scaled, a):
     """Yield indices of smooth cases with a shape, their :class:`~.pressure.Pressure` in units of E2*, and its error
     (b,), over the largest pressure that is looked at."""
-    for mask in kinds_of(scaled):
+    for mask, _ in kinds_of(scaled):
         index = np.flatnonzero(mask)
         part = scaled.take(index)
         shape, body = shape_in(part), BODIES[str(part.base[0])](part)

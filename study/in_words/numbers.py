@@ -21,7 +21,8 @@ def given_text(case: xr.Dataset, name: str) -> str:
     value = case[name].values[()]
     assumed = " (assumed)" * (case[name].attrs.get("comment") == ASSUMED)
     if isinstance(value, (str, np.str_)):
-        said = f"{_WORDS[name]} {value}" if name in _WORDS else str(value).replace("_", " ")
+        word = str(value).upper() if name == "adhesion" and value != "maugis" else str(value)
+        said = f"{_WORDS[name]} {word}" if name in _WORDS else word.replace("_", " ")
         return f"{name} of {value}" if name in BODIES else said + assumed
     text = f"{name} = {in_its_unit(case, name, float(value), spread_of(case, name))}"
     text += " Ra/E1*^beta" * (name == "B") + "°" * (name in ANGLES) + assumed

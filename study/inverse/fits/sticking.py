@@ -10,6 +10,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from solver import Problem, solve
+from solver.body import BODIES
+from solver.smooth_contact.contact import shape_in
+from solver.smooth_contact.jkr import Jkr
 
 from ...inputs.scene.scales import with_unit
 from ...inputs.vocabulary import PARAMETERS, VOCABULARY
@@ -18,8 +21,8 @@ from .model import Model
 #: Radii of the ladder, by equal steps of the logarithm from the largest radius down to this part of it: the largest
 #: error of P in tests/inverse/fits/test_sticking.py is 1e-6 of the largest load, with half as many radii 2e-5.
 _RADII, _LEAST = 80, 1 / 60
-#: Points between two radii at which the spline is searched for a depth, before a step of Newton's method.
-_BETWEEN = 20
+#: Points between two radii at which the spline is searched for a depth, and steps of Newton's method from there.
+_BETWEEN, _NEWTON = 20, 3
 #: By which part of themselves unknowns are moved for derivatives (Poisson ratios by this itself).
 _STEP = 1e-4
 
@@ -59,7 +62,8 @@ class Direct(NamedTuple):
         fine = fine[turns[-1] + 1 if len(turns) else 0 :]
         place = np.interp(depth, depths(fine), fine, left=np.nan)
         with np.errstate(all="ignore"):
-            place = place - np.clip((depths(place) - depth) / depths(place, 1), -0.05, 0.05)
+            for _ in range(_NEWTON):
+                place = place - np.clip((depths(place) - depth) / depths(place, 1), -0.02, 0.02)
             slope = load(place, 1) / depths(place, 1)
         there = np.isfinite(place)
         return np.where(there, load(np.where(there, place, fine[0])), 0.0), np.where(there, slope, 0.0)
@@ -70,10 +74,31 @@ class Direct(NamedTuple):
         unit, R = changed.unit, changed.R
         names = {name: value for name, value in changed.parameters.items() if name in PARAMETERS}
         names = {name: value for name, value in names.items() if name not in ("P", "a", "D", "k_machine", "branch")}
-        solution = solve(Problem.of(**{control: numbers / R}, **names), np.array([0.0]))
-        answers = [np.where(solution.status == 0, getattr(solution, name), np.nan) for name in ("a", "P", "D")]
+        problem = Problem.of(**{control: numbers / R}, **names)
+        answers = _forward(problem) if control == "a" and _is_forward(problem) else _in_full(problem)
         powers = [VOCABULARY[name].powers for name in ("a", "P", "D")]
         return tuple(with_unit(answer, power, unit, R) for answer, power in zip(answers, powers, strict=True))
+
+
+def _is_forward(problem: Problem) -> bool:
+    """Whether the equation at one radius is all that is needed: of JKR, whose pull-off is found here."""
+    exact = np.isin(problem.base, ("layered", "stack")) | (problem.base == "half_space") & (problem.m == 0)
+    sticks = (problem.adhesion == "jkr") & (problem.w_adhesion > 0) & (problem.shape != "flat")
+    return bool((exact & sticks).all())
+
+
+def _forward(problem: Problem) -> list[np.ndarray]:
+    """a, P, D of contacts whose radius is given, in units R = E2* = 1, without a search for their pull-off."""
+    body = BODIES[str(problem.base[0])](problem)
+    with np.errstate(all="ignore"):
+        state = Jkr(shape_in(problem), body, problem.w_adhesion).at(problem.value)
+    return [state.a, state.P, state.D]
+
+
+def _in_full(problem: Problem) -> list[np.ndarray]:
+    """a, P, D of contacts, NaN where there is no solution."""
+    solution = solve(problem, np.array([0.0]))
+    return [np.where(solution.status == 0, getattr(solution, name), np.nan) for name in ("a", "P", "D")]
 
 
 def moved_by(value: Any, is_ratio: bool) -> tuple[Any, float]:

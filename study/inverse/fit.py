@@ -25,8 +25,6 @@ from .fits.block import FitStatus
 from .fits.model import HERTZ, Model
 from .fits.parts import Part, fit_part, forget
 from .fits.said import said
-from .fits.sticking import Direct
-from .fits.tables import Table
 
 _BLOCK, _PART = 64, 64  # curves at a time, and their points are filled up to a multiple of this
 _calls = count()
@@ -107,7 +105,6 @@ def fit(
     X, Y, S = _arrays(data, question.model, sigma)
     if plan:
         Y = _planned(question, X)
-    table = Direct(question.model) if question.model.sticks else Table(question.model)
     unknowns = len(question.model.unknowns) + len(question.shifts)
     there = np.isfinite(X) & np.isfinite(Y)
     status = np.where(_usable(X, Y, there, unknowns, "D0" in question.shifts), -1, FitStatus.INVALID_INPUT)

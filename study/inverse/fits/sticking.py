@@ -11,8 +11,8 @@ from scipy.interpolate import CubicSpline
 
 from solver import Problem, solve
 from solver.body import BODIES
+from solver.smooth_contact.adhesion.jkr import Jkr
 from solver.smooth_contact.contact import shape_in
-from solver.smooth_contact.jkr import Jkr
 
 from ...inputs.scene.scales import with_unit
 from ...inputs.vocabulary import PARAMETERS, VOCABULARY

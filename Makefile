@@ -45,7 +45,8 @@ tradeoff: figures/tradeoff.pdf ## error against time of every way to solve: docs
 picard_domain: figures/picard_domain.pdf ## where the paper's successive approximations converge: figures/picard_domain.*
 
 literature: figures/literature.pdf figures/yielding.pdf ## published formulas beside the exact layer, and their safe ranges: docs/literature.md, .png
-	$(RUN) table --run literature literature_coatings literature_decided literature_rough
+	$(RUN) table --run literature literature_coatings literature_decided literature_rough literature_shapes \
+	  literature_pull_off
 	@cp figures/literature.png figures/yielding.png docs/
 	$(VENV)/bin/python tools/literature_page.py docs/literature.md
 

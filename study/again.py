@@ -9,10 +9,12 @@ import xarray as xr
 from solver import Problem
 from solver.laws import LAWS
 from solver.laws.elastic_plastic import TABOR
-from solver.parameters import STACKED
+from solver.shapes import PARABOLOID, SHAPES
 
 from .inputs.definition import StudyError
 from .inputs.laws import recall
+from .inputs.punch.shapes import MICROMETRE, in_metres
+from .inputs.punch.stresses import without_stresses
 from .inputs.scene.layers import moduli_of
 from .inputs.scene.layers import recall as recall_layers
 from .inputs.scene.names import is_ratio
@@ -46,7 +48,7 @@ class Again(NamedTuple):
         """
         inputs = _checked(contact, who)
         dims, shape = contact["status"].dims, contact["status"].shape
-        scene = _scene(inputs) if "R" in inputs else None
+        scene = _scene(inputs, contact.attrs.get("scale", "R")) if "R" in inputs else None
         numbers = scene.parameters if scene else inputs
         try:
             problem = Problem.of(
@@ -57,10 +59,11 @@ class Again(NamedTuple):
         return cls(problem, numbers, scene, dims, shape)
 
 
-def refuse_stacks(again: Again, who: str) -> None:
-    """Raise StudyError where a contact is on a stack of layers: its stresses are not computed yet."""
-    if np.isin(again.problem.base, STACKED[1]).any():
-        raise StudyError([f"{who}: there are no stresses in stacks of layers yet, but of one layer (base = layered)"])
+def refuse_without_stresses(again: Again, who: str) -> None:
+    """Raise StudyError where stresses of a contact are not computed yet, as in a stack of layers."""
+    problem = again.problem
+    if reason := without_stresses(problem.base, problem.micro, problem.shape, problem.w_adhesion):
+        raise StudyError([f"{who}: {reason}"])
 
 
 def _checked(contact: xr.Dataset, who: str) -> dict[str, Any]:
@@ -81,6 +84,10 @@ def _checked(contact: xr.Dataset, who: str) -> dict[str, Any]:
     unknown = {*np.unique(contact["micro"].values.astype(str)).tolist()} - {*LAWS}
     if unknown:
         raise StudyError([f"micro = {shown(min(unknown))}: no law of this name is registered here"])
+    words = contact["shape"].values.astype(str) if "shape" in contact.coords else PARABOLOID
+    unknown = {*np.unique(words).tolist()} - {PARABOLOID, *SHAPES}
+    if unknown:  # whoever sends a results file must not choose which files are opened
+        raise StudyError([f"shape = {shown(min(unknown))}: no shape of this name is registered here"])
     return settings | {name: _without_coordinates(contact[name]) for name in coordinates}
 
 
@@ -89,13 +96,19 @@ def _without_coordinates(array: xr.DataArray) -> Any:
     return xr.DataArray(values, dims=array.dims) if array.dims else values.item()
 
 
-def _scene(inputs: dict[str, Any]) -> Scene:
-    """The scene of inputs in SI units. What follows from others is computed again."""
+def _scene(inputs: dict[str, Any], scale: Any) -> Scene:
+    """The scene of inputs in SI units. What follows from others is computed again.
+
+    scale : the input that is the unit of length
+    """
     follows = {ratio for modulus, ratio in (("E1", "n"), ("E_punch", "m")) if modulus in inputs}
     follows |= {ratio for _, _, ratio in moduli_of(inputs)}
     in_si = [name for name in inputs if name in SCENE or is_ratio(name) or VOCABULARY[name].powers != (0, 0)]
     others = {name: value for name, value in inputs.items() if name not in {*in_si, *follows}}
-    scene = Scene(values={name: inputs[name] for name in in_si}, parameters=others)
+    metres = in_metres(others.get("shape", ""))
+    values = {name: inputs[name] for name in in_si if not (name == "table_unit" and np.any(metres))}
+    scale = scale if scale in values and scale != "R" or scale == MICROMETRE else ""
+    scene = Scene(values=values, parameters=others, scale=scale, metres=metres)
     make_dimensionless(scene)
     return scene
 

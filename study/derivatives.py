@@ -144,8 +144,9 @@ def _counts(problem: Problem, name: str) -> bool:
 def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[str, np.ndarray]]:
     """Input -> {input of the solver, or scale: d ln(it)/d ln input, (B,)}. Poisson ratios have no logarithm."""
     values = scene.values
-    names = [name for name in values if np.any(np.isfinite(values[name])) and not (name == "R" and "R1" in values)]
-    follow = {"n", "m", *(ratio for _, _, ratio in moduli_of(values))}
+    unit = {"R"} if "R1" in values or scene.scale else set()
+    names = [name for name in values if np.any(np.isfinite(values[name])) and name not in unit]
+    follow = {"n", "m", "table_unit", *(ratio for _, _, ratio in moduli_of(values))}
     pure_numbers = [name for name in PARAMETERS if name in scene.parameters and name not in {*values, *follow}]
     pure_numbers += ["n"] * ("E1" not in values) + ["m"] * ("E_punch" not in values)
     ones = np.ones(int(np.prod(shape)))

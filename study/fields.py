@@ -14,7 +14,7 @@ from solver.fields.sliding import in_plane
 from solver.yields.contact import of_contacts as extremes_of
 from solver.yields.extremes import EXTREMES
 
-from .again import Again, of_all_cases, refuse_stacks
+from .again import Again, of_all_cases, refuse_without_stresses
 from .inputs.definition import StudyError
 from .inputs.vocabulary import VOCABULARY
 from .specimen.foreign import plain
@@ -80,7 +80,7 @@ def stresses(
     r = _axis("r", _mirrored(_RADII) if r is None and mu > 0 else _RADII if r is None else r, mu > 0)
     z = _axis("z", _DEPTHS if z is None else z, False)
     again = Again.of(contact, "stresses")
-    refuse_stacks(again, "stresses")
+    refuse_without_stresses(again, "stresses")
     unit, size = units_of(again)
     solution = _solved(again, contact)
     fields = fields_of(again.problem, solution, np.abs(r), z, mu)
@@ -146,7 +146,7 @@ def extremes(contact: xr.Dataset, mu: float = 0.0, sigma_res: float | str = 0.0)
     0.62004
     """
     mu, again = friction(mu), Again.of(contact, "extremes")
-    refuse_stacks(again, "extremes")
+    refuse_without_stresses(again, "extremes")
     unit, _ = units_of(again)
     residual = residual_stress(sigma_res, again) / unit
     values = extremes_of(again.problem, _solved(again, contact), mu, residual)

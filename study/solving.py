@@ -6,12 +6,10 @@ import inspect
 import time
 import warnings
 from collections.abc import Sequence
-from typing import Any, Literal, TypedDict, Unpack
+from typing import Unpack
 
 import numpy as np
 import xarray as xr
-
-from solver.laws import Law
 
 from .carried import with_coordinates
 from .data.dataset import parts
@@ -21,77 +19,12 @@ from .in_words import FarOutside, doubts, falling, far_outside
 from .inputs.checks import unloading
 from .inputs.definition import POINTS, StudyError
 from .inputs.reading import from_call
+from .inputs.scene.hints import Parameters
 from .inputs.vocabulary import VOCABULARY
 from .specimen.foreign import plain
-from .specimen.materials import Material
 from .terminal import shown
 from .work.engine import solved
 from .work.screen import screen_of
-
-Many = Sequence | np.ndarray | xr.DataArray
-"""Several values: of a dimension called like the parameter, or over the dimensions of the DataArray."""
-Value = float | str | Many | Any
-"""A number, a text with a unit ("5 mm", "200 ± 10 GPa"), a quantity of pint, or several of these."""
-
-
-class Parameters(TypedDict, total=False):
-    """The parameters of `solve`, for editors. Registered laws have others besides."""
-
-    P: Value
-    a: Value
-    D: Value
-    h: Value
-    n: Value
-    m: Value
-    nu1: Value
-    nu2: Value
-    Y1: Value
-    Y2: Value
-    Y_punch: Value
-    bonding: Literal["frictionless", "bonded"] | Many
-    base: Literal["half_space", "thin_layer", "layered", "auto", "stack", "thin_stack"] | Many
-    layers: list[dict]
-    rigid_base: bool
-    Nbar: Value
-    Ra: Value
-    micro: (
-        Literal[
-            "disc_cell",
-            "power_law",
-            "smooth",
-            "square_lattice",
-            "hex_lattice",
-            "normal_heights",
-            "uniform_heights",
-            "elastic_plastic",
-        ]
-        | str
-        | Law
-        | Many
-    )
-    B: Value
-    beta: Value
-    sigma: Value
-    cut: Value
-    hardness: Value
-    yield_strength: Value
-    R: Value
-    R1: Value
-    R2: Value
-    E1: Value
-    E2: Value
-    E_punch: Value
-    nu_punch: Value
-    punch: str | Material | Many
-    layer: str | Material | Many
-    body: str | Material | Many
-    scheme: Literal["newton", "picard"] | Many
-    k: Value
-    rtol: Value
-    accuracy: Value
-    model_check: Literal["closed_form", "first_order"] | Many
-    nodes: int | Many
-    max_iterations: int | Many
 
 
 def solve(
@@ -143,6 +76,17 @@ def solve(
     R1, R2 : in place of R, of two bodies: R = 1/(1/R1 + 1/R2), a cup negative, a flat body "flat"
     punch, layer, body : materials, or names of some (docs/materials.md), in place of their moduli and Poisson ratios
     nu_punch : Poisson ratio of the punch, 0.3 if not given
+    shape : of the punch: "paraboloid", r^2/(2R); "sphere", "cone", "berkovich", "vickers", "cube_corner", "power",
+        "frustum", "blunt_cone", "flat", "rounded_flat", or "table:" and the path of a CSV file of r and f
+        (docs/shapes.md)
+    half_angle : from the axis to the side of a cone, in degrees, or "70.3 deg"
+    flat_radius, tip_radius, edge_radius : of a flat end, of the tip of a blunt cone, of a rounded edge
+    tip : of a blunt cone, "paraboloid" or "sphere"
+    shape_power, shape_coefficient : k and c of f/R = c (r/R)^k
+    w_adhesion : work of adhesion of a smooth punch, "50 mJ/m^2"; P and D may then be 0 and negative (docs/adhesion.md)
+    adhesion, sigma0, z0 : its model, "jkr", "dmt" or "maugis"; and of the last one its stress or its range
+    branch : of two contacts under one load or at one depth the "stable", with the larger radius, or "unstable"
+    k_machine : stiffness of the cantilever or machine that moves the punch; it decides when the contact comes off
     scheme, k : how it is solved, and the relaxation of "picard"
     rtol : wanted relative error
     accuracy : allowed relative model error of base = "auto"

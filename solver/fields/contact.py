@@ -18,6 +18,7 @@ from ..threads import one_blas_thread
 from . import normal, sliding
 from .field import integrals
 from .pressure import Pressure
+from .shaped import shaped_pressures
 from .waves import MISSED, THINNEST
 
 #: The pressure is solved again with at most this rtol, whatever that of the contact was.
@@ -71,17 +72,33 @@ def of_contacts(problem, solution, r, z, mu=0.0):
                 units = problem.E2[here[some], None, None], solution.a[here[some], None, None]
                 for name, values in field.items():
                     made[name][here[some]] = values * units[name.startswith("u")]
+        at_tip = np.isposinf(ended.p0)[:, None, None] & np.isin(np.arange(len(z) + 2), np.flatnonzero(z == 0))[:, None]
+        for name in ("sr", "st", "sz"):
+            made[name][index] = np.where(at_tip & (r == 0), -np.inf, made[name][index])
     parts = (slice(None, len(z)), len(z), len(z) + 1)
     return Fields(*({name: values[:, part] for name, values in made.items()} for part in parts), error)
 
 
 def have_fields(problem, solution):
-    """(B,) bool: solved contacts of which there are stresses; there are none yet of stacks of layers."""
-    return (solution.status == Status.CONVERGED) & ~np.isin(problem.base, STACKED[1])
+    """(B,) bool: solved contacts of which there are stresses. There are none yet of stacks, of what sticks, of
+    flat punches, whose pressure is infinite at the edge, and of rough punches of other shapes than the paraboloid."""
+    without = np.isin(problem.base, STACKED[1]) | (problem.w_adhesion > 0) | (problem.shape == "flat")
+    return (solution.status == Status.CONVERGED) & ~without & ~(problem.shaped() & problem.rough())
 
 
 def pressures(scaled, solution, a):
     """Yield indices of cases, their :class:`~.pressure.Pressure` in units of E2*, and its error (b,)."""
+    shaped = np.flatnonzero(scaled.shaped())
+    for rows, pressure, missed in shaped_pressures(scaled.take(shaped), a[shaped]) if len(shaped) else ():
+        yield shaped[rows], pressure, missed + _LEAST
+    others = np.flatnonzero(~scaled.shaped())
+    for rows, pressure, missed in _of_paraboloids(scaled.take(others), solution.take(others), a[others]):
+        yield others[rows], pressure, missed
+
+
+def _of_paraboloids(scaled, solution, a):
+    if not len(scaled):
+        return
     named = held(scaled, solution.model_used).named
     fine = np.minimum(named.rtol, _RTOL)
     at_a = replace(named, control="a", value=a).but(rtol=fine, nodes=0, max_iterations=0)

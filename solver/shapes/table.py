@@ -17,7 +17,9 @@ from .shape import Kind, column, load_by_quadrature
 
 PREFIX = "table:"
 #: Length in the unit of R that 1 in the table stands for; left out, it is R.
-TABLE_UNIT = Parameter(interval="(0, inf)", powers=(0, 1), instead="")
+TABLE_UNIT = Parameter(
+    interval="(0, inf)", powers=(0, 1), instead="", long_name="length that 1 in the table of the shape stands for"
+)
 #: Most rows, and by which part of the largest a slope may fall: the rounding of a table that is straight there.
 _ROWS, _FALLS = 1_000, 1e-9
 #: A change of f'' below this part of the largest f'' is rounding, and no kink.

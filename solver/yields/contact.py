@@ -10,6 +10,8 @@ from .loaded import Loaded
 
 #: Cases whose coarse grids are in memory together: each has some 1,000 points and as many waves.
 _TOGETHER = 64
+#: Without a layer, and with one: stresses that are infinite below a sharp tip, as sz = -p and sr = -(1 + 2 nu) p/2.
+_OF_TIPS = {True: ("mises2", "tresca2"), False: ("mises1", "tresca1")}
 
 
 @one_blas_thread()
@@ -35,10 +37,18 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
         for rows, pressure, _ in pressures(scaled, ended, a):
             nu = None if punch is None else punch[index[rows]]
             for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]], nu):
+                tips = np.isposinf(ended.p0[rows[some]]) & (touched(loaded) < 0.5)
                 for name, values in (coarsely if coarse else extremes)(loaded, names).items():
                     values[0] *= problem.E2[index[rows[some]]]
+                    if name in _OF_TIPS[loaded.bare]:
+                        values[:, tips] = [[np.inf], [0.0], [0.0]][: len(values)]
                     made[name][:, index[rows[some]]] = values
     return made
+
+
+def touched(loaded):
+    """Poisson ratio (B,) of the body that the punch touches."""
+    return loaded.layers.nu2 if loaded.bare else loaded.layers.nu1
 
 
 def alike(scaled, a, pressure, mu, residual, punch=None):

@@ -22,7 +22,7 @@ _MANY = 10_000  # cases in a map from which on converged ones are drawn as small
 #: FAILED: status of a failed case -> its colour; COLOURS: the same of all statuses.
 _FAILURES = [status for status in Status if status not in (Status.CONVERGED, *NO_SOLUTION)]
 FAILED = dict(zip(_FAILURES, ("#d55e00", "#cc79a7", "black", "#e69f00", "#0072b2", "#009e73"), strict=False))
-COLOURS = {Status.CONVERGED: "0.85"} | dict(zip(NO_SOLUTION, ("0.4", "#56b4e9"), strict=True)) | FAILED
+COLOURS = {Status.CONVERGED: "0.85"} | dict(zip(NO_SOLUTION, ("0.4", "#56b4e9", "0.6"), strict=True)) | FAILED
 ITERATIONS = (1, 5, 10, 15, 20, 30, 50, 100, 200, 500)
 
 

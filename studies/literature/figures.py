@@ -6,7 +6,7 @@ from matplotlib.ticker import FuncFormatter
 
 from study.figures.registry import TWO_COLUMNS, Columns, figure, joined, table
 
-from . import compared, formulas, yielding  # noqa: F401 - a figure of its own
+from . import compared, formulas, pull_off, shapes, yielding  # noqa: F401 - figures and tables of their own
 
 SHOWN_AT = (0.1, 0.5, 1.0, 2.0, 4.0)  # a/h whose errors the table tells
 SHOWN_N = (0.01, 0.1, 0.5, 2.0, 10.0, 100.0)

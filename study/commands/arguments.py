@@ -71,7 +71,8 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
     if command in ("point", "design"):
         from ..inputs.vocabulary import BODIES, CONTROLS, SCENE, names
 
-        words = [f"{name}=" for name in (*SCENE, *BODIES, *CONTROLS, *names("material", "roughness"), "same_piece")]
+        of_contacts = names("material", "shape", "adhesion", "roughness")
+        words = [f"{name}=" for name in (*SCENE, *BODIES, *CONTROLS, *of_contacts, "same_piece")]
     elif command == "docs":
         from ..pages import titles
 

@@ -20,6 +20,7 @@ from ..inputs.vocabulary import (
     NOT_RUN,
     NUMERICS,
     PARAMETERS,
+    TRUTHS,
     WITH_SPREADS,
     attributes,
     names,
@@ -37,14 +38,15 @@ def failed_cases(status: np.ndarray) -> np.ndarray:
 def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:
     """Arrays of `size` cases that were never computed: NaN, status NOT_RUN, counts 0."""
     numbers = (*CONTROLS, *definition.results, *definition.stresses)
-    arrays = {name: np.full(size, np.nan, definition.dtype) for name in numbers}
+    arrays = {name: np.full(size, np.nan, definition.dtype) for name in numbers if name not in TRUTHS}
     arrays |= {name: np.full((size, len(definition.x)), np.nan, definition.dtype) for name in definition.profiles}
     if definition.inputs:
         with_spreads = [(name, arrays[name]) for name in (*WITH_SPREADS, *definition.profiles)]
         shape = size, len(definition.inputs)
         for name, array in with_spreads:
             arrays[f"{name}{BY_INPUT}"] = np.full((*shape, *array.shape[1:]), np.nan, array.dtype)
-    arrays |= {name: np.zeros(size, dtype) for name, dtype in INTEGERS.items()}
+    whole_numbers = INTEGERS | {name: dtype for name, dtype in TRUTHS.items() if name in definition.results}
+    arrays |= {name: np.zeros(size, dtype) for name, dtype in whole_numbers.items()}
     arrays["status"][:] = NOT_RUN
     return arrays
 
@@ -116,14 +118,17 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     coordinates = {name: xr.Variable(*pair, attributes_of.get(name, {})) for name, pair in values.items()}
     coordinates["x"] = xr.Variable(("x",), definition.x, attributes("x"))
     dims = tuple(grid.sizes)
+    flats = {name: flat.astype(bool) if name in TRUTHS else flat for name, flat in arrays.items()}
     variables = {
         name: xr.Variable(dims + ("x",) * (flat.ndim - 1), unflatten(grid, flat), attributes(name, rigid))
-        for name, flat in arrays.items()
+        for name, flat in flats.items()
         if name not in grid.values and not name.endswith(BY_INPUT)
     }
     by_input = {name.removesuffix(BY_INPUT): unflatten(grid, arrays[name]) for name in arrays if BY_INPUT in name}
     laws = law_versions(grid)
     about = provenance(definition, command) | ({"micro_laws": "\n".join(laws)} if laws else {})
+    if "shape" in grid.values:  # what 1 is of a length
+        about["scale"] = (definition.scene.scale or "R") if definition.scene else "1"
     return Parts(variables, coordinates, about, by_input)
 
 

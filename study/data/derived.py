@@ -28,6 +28,7 @@ from ..rules.assumptions import (  # noqa: F401 - names of study.derived
     STEEP_SPOT,
     STRETCHED,
 )
+from ..rules.punch import SLOPE, ZONE  # noqa: F401 - names of study.derived
 from ..rules.rule import ASSUMPTIONS, validity  # noqa: F401 - names of study.derived
 from .units import physical_attributes, reduced_modulus
 
@@ -162,8 +163,7 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
         numbers = {name: dataset.get(name, np.nan) for name in law.parameters}
         arguments = [without_unit(value, VOCABULARY[name].powers, unit, R) for name, value in numbers.items()]
         nu = xr.where(dataset["base"] == "half_space", dataset.get("nu2", np.nan), dataset.get("nu1", np.nan))
-        arguments += [nu] * law.poisson
-        arguments = [pressures / unit, E1, *arguments]
+        arguments = [pressures / unit, E1, *arguments, *[nu] * law.poisson]
         at_spots = xr.apply_ufunc(_largest(law), *arguments, dask="parallelized", output_dtypes=[float])
         peaks = xr.where(dataset["micro"] == law.name, at_spots, peaks)
     return unit * peaks.max("x", skipna=False)

@@ -38,6 +38,8 @@ def results(definition: Definition, parts: Parts) -> xr.Dataset:
             results[f"{name}_spread"] = spread
         (coords if name in parts.coords else results)[name] = quantity
     coords |= {name: _coordinate(name, value) for name, value in scene.values.items()}
+    if scene.scale:
+        coords["R"].attrs["long_name"] = f"unit of length: {scene.scale}"
     for name, value in scene.spreads.items():
         coords[f"{name}_spread"] = _coordinate(name, value, f"standard deviation of {name}, as given")
     for body, (dim, texts) in scene.names.items():

@@ -59,7 +59,9 @@ def create(file: File, part: xr.Dataset, whole: xr.Dataset, chunk: dict[str, int
             length = values.shape[-1]
             dims, kind, more = (*dims, f"string{length}"), "S1", {"_Encoding": "utf-8"}
             file.define({dims[-1]: length}, {})
-        elif name in part.data_vars and dims:
+        elif kind.kind == "b":  # xarray's own way to write what is true or false
+            kind, more = np.dtype(np.int8), {"dtype": "bool"}
+        if name in part.data_vars and dims and kind != "S1":
             options["chunksizes"] = [chunk.get(dim, sizes[dim]) for dim in dims]
         file.add(name, kind, dims, variable.attrs | more, options)
         if name in part.coords:
@@ -69,13 +71,13 @@ def create(file: File, part: xr.Dataset, whole: xr.Dataset, chunk: dict[str, int
 
 
 def stored(array: xr.DataArray) -> np.ndarray:
-    """The values as the file has them: texts as characters, along one more dimension.
+    """The values as the file has them: texts as characters, along one more dimension, true and false as 1 and 0.
 
     NetCDF's own strings would have no checksum. And HDF5 2.2 crashes the interpreter when a file that has them is
     opened a second time while it is open, as lazily opened results are.
     """
     if array.dtype.kind not in "UO":
-        return array.values
+        return array.values.astype(np.int8) if array.dtype.kind == "b" else array.values
     words = np.char.encode(array.values.astype(str), "utf-8")
     return words.astype(f"S{max(1, words.itemsize)}")[..., np.newaxis].view("S1")
 

@@ -7,6 +7,7 @@ from solver.laws import LAWS
 
 from ..data.si import SAME_PIECE
 from ..inputs.laws import smooth_laws
+from ..inputs.punch.shapes import in_metres
 from ..inputs.scene.layers import recall
 from ..inputs.vocabulary import BODIES, CONTROLS, SCENE, VOCABULARY, matters, names
 from .numbers import given_text, spread_of
@@ -28,7 +29,10 @@ def all_inputs() -> list[str]:
     """All inputs in order: radii, what the bodies are made of, the control, the layer, the asperities."""
     between = [name for name in names("material") if name not in (*_OF_BODIES, "base")]
     of_laws = [name for name, entry in VOCABULARY.items() if entry.role == "roughness" and name != "micro"]
-    return ["R1", "R2", "R", *_OF_BODIES, *CONTROLS, *between, *of_lower_layers(), "micro", *of_laws]
+    of_shapes = [name for name, entry in VOCABULARY.items() if entry.role == "shape"]
+    of_punch = ["R1", "R2", "R", *of_shapes]
+    lower = of_lower_layers()
+    return [*of_punch, *_OF_BODIES, *CONTROLS, *between, *lower, *names("adhesion"), "micro", *of_laws]
 
 
 def used_inputs(contacts: xr.Dataset) -> list[str]:
@@ -44,7 +48,8 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
     def values(name: str) -> np.ndarray:
         return contacts[name].values
 
-    hidden = {"R"} if "R1" in contacts else set()
+    hidden = {"R"} if "R1" in contacts or contacts.attrs.get("scale", "R") not in ("R", "1") else set()
+    hidden |= _of_punch_hidden(contacts)
     hidden |= {"n", "m", *(name for name in of_lower_layers() if name.endswith(".n"))} if "E2" in contacts else set()
     hidden |= {"m", "punch", "E_punch", "nu_punch", "Y_punch"} if is_rigid(contacts, "punch") else set()
     hidden |= {"n", "body", "E2", "nu2", "Y2"} if is_rigid(contacts, "base") else set()
@@ -62,6 +67,19 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
         and name not in hidden
         and (name not in VOCABULARY or name in certain or matters(name, values))
     ]
+
+
+def _of_punch_hidden(contacts: xr.Dataset) -> set[str]:
+    """Inputs of the shape and of adhesion that say nothing: defaults, and what is there for the solver alone."""
+    hidden = {"table_unit"} if "shape" in contacts and np.any(in_metres(contacts["shape"].values)) else set()
+    if "w_adhesion" in contacts:
+        hidden |= (
+            {name for name in names("adhesion") if name != "w_adhesion"}
+            if (contacts["w_adhesion"] == 0).all()
+            else set()
+        )
+        hidden |= {"branch"} if "a" in contacts.coords or (contacts["branch"] == "stable").all() else set()
+    return hidden
 
 
 def is_rigid(contacts: xr.Dataset, body: str) -> bool:

@@ -6,8 +6,12 @@ import xarray as xr
 from ..data.derived import QUANTITIES
 from ..data.si import ASSUMED
 from ..derivatives import spread_of_formula
+from ..inputs.punch.shapes import ANGLES
 from ..inputs.vocabulary import BODIES, CONTROLS
 from ..specimen.quantities import READABLE, readable
+
+#: Words that a text needs before it, to be understood among others.
+_WORDS = {"shape": "shape", "tip": "tip", "adhesion": "adhesion", "branch": "branch"}
 
 
 def given_text(case: xr.Dataset, name: str) -> str:
@@ -17,9 +21,11 @@ def given_text(case: xr.Dataset, name: str) -> str:
     value = case[name].values[()]
     assumed = " (assumed)" * (case[name].attrs.get("comment") == ASSUMED)
     if isinstance(value, (str, np.str_)):
-        return f"{name} of {value}" if name in BODIES else str(value).replace("_", " ") + assumed
+        word = str(value).upper() if name == "adhesion" and value != "maugis" else str(value)
+        said = f"{_WORDS[name]} {word}" if name in _WORDS else word.replace("_", " ")
+        return f"{name} of {value}" if name in BODIES else said + assumed
     text = f"{name} = {in_its_unit(case, name, float(value), spread_of(case, name))}"
-    text += " Ra/E1*^beta" * (name == "B") + assumed
+    text += " Ra/E1*^beta" * (name == "B") + "°" * (name in ANGLES) + assumed
     return text + " (fitted to Nbar and Ra)" * ("comment" in case[name].attrs and name in ("B", "beta"))
 
 
@@ -61,7 +67,7 @@ def peak_text(case: xr.Dataset, pressure: float) -> str:
 def _with_spread(case: xr.Dataset, name: str, value: float, spread: float, error: str) -> str:
     """A value with ±: of its spread, of its `error` and of `model_error`. error : "" of what was given."""
     if not np.isfinite(value):
-        return "unknown"
+        return "unknown" if np.isnan(value) else "infinite" if value > 0 else "minus infinite"
     if not np.isfinite(spread):
         return f"{in_its_unit(case, name, value)} ± unknown"
     kinds = [kind for kind in (error, "model_error") if error and kind in case and np.isfinite(case[kind])]

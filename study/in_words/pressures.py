@@ -26,6 +26,8 @@ class Largest(NamedTuple):
 def largest(case: xr.Dataset) -> Largest:
     """The largest pressures of one case, over the points of its profile."""
     p0, p_max = float(case["p0"]), float(case["p_max"])
+    if not np.isfinite(p0):  # of a sharp tip
+        return Largest(p0, p_max, None)
     p = case["p"].values if "p" in case else np.array([p0])
     place = int(np.argmax(p)) if np.isfinite(p).all() else 0
     if not p[place] > RING * p0:
@@ -43,6 +45,7 @@ def largest_of_all(contact: xr.Dataset) -> dict[str, xr.Variable]:
     nominal, real = v["p0"], v["p_max"]
     top = v["p"].max("x") if "p" in v else nominal
     ring = top > RING * nominal
+    nominal, real = nominal.where(np.isfinite(nominal)), real.where(np.isfinite(real))  # others: of sharp tips
     if ring.any():
         try:
             peak = derived.peak_pressure(contact).variable

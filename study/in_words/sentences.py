@@ -1,5 +1,6 @@
 """Sentences about contacts: how they were solved, by which model, what they rest on, and what is beyond the model."""
 
+import numpy as np
 import xarray as xr
 
 from solver import Status
@@ -9,9 +10,10 @@ from ..data.si import ASSUMED
 from ..inputs.vocabulary import BODIES, VOCABULARY
 from ..rules import rule
 from .influence import influence
+from .notes.punch import of_adhesion, of_shape, sticks, unit_of_length
+from .notes.unloading import falling
 from .pressures import largest_of_all
 from .strength import RUBBER, holds, which_yields
-from .unloading import falling
 
 _BASES = {
     "half_space": "a half-space",
@@ -48,7 +50,7 @@ def sentences(case: xr.Dataset, judged: list[str], alone: bool) -> list[str]:
     """
     word, used = decode(case["status"]).item(), decode(case["model_used"]).item()
     if word == "converged":
-        *first, last = (VOCABULARY[name].symbol for name in judged)
+        *first, last = (VOCABULARY[name].symbol for name in judged if np.isfinite(case[name]))
         within = f"{', '.join(first)} and {last} are within a relative {float(case['error']):.1g}"
         found = [f"Solved: {within} of the model's solution."]
         found += [f"Spreads: {text}" for text in influence(case, "p_max" if "p_max" in judged else "p0")]
@@ -63,14 +65,15 @@ def sentences(case: xr.Dataset, judged: list[str], alone: bool) -> list[str]:
         against = "the micro law itself errs" if exact else "against the exact layered contact it errs"
         errs = f"; {against} by about {100 * error:.2g} %" if error > 0 else ""
         found.append(f"Model: {model}{errs}.{WHOSE * (not used.startswith('smooth'))}")
+    found += of_shape(case) + of_adhesion(case)
     beyond = doubts(case)
     found += [f"Beware: {sentence}" for sentence in beyond]
     found += [NOT_VIOLATED] * (not beyond and word == "converged")
     if word == "converged":
         strength = holds(case) if alone else []
         found += [f"Strength: {' '.join(strength)}"] * bool(strength)
-        unknown = ", and whether the bodies stay elastic" * (not strength)
-        found.append(f"Not checked (docs/model.md, Limits): adhesion{unknown}.")
+        unchecked = ["adhesion"] * (not sticks(case)) + ["whether the bodies stay elastic"] * (not strength)
+        found += [f"Not checked (docs/model.md, Limits): {', and '.join(unchecked)}."] * bool(unchecked)
     return found + [f"Assumed: {sentence}" for sentence in assumed(case)]
 
 
@@ -78,7 +81,7 @@ def assumed(case: xr.Dataset) -> list[str]:
     """A sentence for each default that stands for an input which was not given, and may be far from it."""
     v = case.variables
     taken = {name for name in v if v[name].attrs.get("comment") == ASSUMED}
-    found = [SLIDES] * bool("bonding" in taken and v["base"] != "half_space")
+    found = unit_of_length(case) + [SLIDES] * bool("bonding" in taken and v["base"] != "half_space")
     for modulus, ratio, _ in BODIES.values():
         if ratio in taken and modulus in v and v[modulus].attrs.get("units") == "Pa" and v[modulus] < RUBBER:
             found.append(f"{ratio} = {v[ratio].item():g}. Of rubbers and gels, as soft as this, it is nearly 0.5.")

@@ -8,13 +8,14 @@ import numpy as np
 import xarray as xr
 
 from solver import Problem, solve
-from solver.parameters import STACKED
 from solver.yields import spots
 from solver.yields.contact import of_contacts
 
 from ..again import Again, of_all_cases, strengths
 from ..data.dataset import decode
 from ..inputs.definition import StudyError
+from ..inputs.punch.shapes import ROUND
+from ..inputs.punch.stresses import without_stresses
 from ..inputs.vocabulary import BODIES
 from ..specimen import materials
 from ..specimen.quantities import readable
@@ -32,7 +33,7 @@ _FAR = 0.01
 #: Nothing is said of contacts wider than this, in R.
 _WIDEST = 0.2
 _THROUGH = "The layer is thin against the pitch: single spots press on the body through it, which is left out."
-_STACK = "Not known: there are no stresses in stacks of layers yet."
+_SHAPE = "Not looked at under this shape: study.extremes computes the stresses."
 _FILM = "The layer is so thin (h < 0.002 a) that its stresses take long: study.extremes computes them"
 
 
@@ -67,8 +68,10 @@ def holds(case: xr.Dataset) -> list[str]:
     if not (hard or np.isfinite(list(known.values())).any()):
         return []
     problem = again.problem
-    if problem.base[0] in STACKED[1]:
-        return [_STACK]
+    if reason := without_stresses(problem.base, problem.micro, problem.shape, problem.w_adhesion):
+        return [f"Not known: {reason}."]
+    if problem.shape[0] not in ROUND:
+        return [_SHAPE]
     if problem.base[0] != "half_space" and problem.h[0] < _THINNEST * _radius(case, again):
         return [_FILM + "."]
     at_a = replace(problem, control="a", value=np.array([_radius(case, again)]))

@@ -8,6 +8,7 @@ from ..inputs.vocabulary import NOT_RUN, VOCABULARY
 from ..specimen.pictures import curve, with_picture
 from .fits import of_fit
 from .inputs import given, is_rigid
+from .notes.punch import OF_PULL_OFF
 from .numbers import given_text, peak_text, result_text, ring_text
 from .pressures import largest
 from .sentences import sentences
@@ -119,6 +120,7 @@ def _summary_of_case(case: xr.Dataset, dims=()) -> str:
     """The text of one case; inputs along `dims` are not repeated."""
     rough = case["micro"].values not in smooth_laws()
     names = [name for name in SHOWN if rough or name not in OF_ASPERITIES]
+    names += [name for name in OF_PULL_OFF if name in case]
     names += ["plastic_share"] * bool("plastic_share" in case and np.isfinite(case["plastic_share"]))
     rows = _rows(case, names)
     width = max(len(label) for label, _, _ in rows)

@@ -17,11 +17,14 @@ from .checks import (
 )
 from .grid import Grid, as_array, equal_values
 from .laws import fitted, law_names, wants_a_fit
+from .punch import shapes, sticking
 from .request import Input, Request
 from .sample import sampled, values_of_axis
 from .scene.layers import beyond, layers_in
 from .vocabulary import PARAMETERS, VOCABULARY
 
+#: Inputs that are names of objects -> a function of their values that makes the objects known.
+_WORDS = {"micro": law_names, "shape": shapes.words_of}
 MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x as one more
 
 
@@ -69,13 +72,13 @@ class Draft:
         gaps : None is allowed, and becomes NaN; distinct : values that are equal get a message
         """
         before = len(self.errors)
-        if name == "micro":
+        if name in _WORDS:
             try:
-                raw = law_names(raw)
+                raw = _WORDS[name](raw)
             except ValueError as error:
                 self.errors.append(f"{name}: {error}")
                 return np.empty(len(raw))
-        array = as_array(VOCABULARY[name].parameter, raw, name, self.errors, gaps)
+        array = as_array(sticking.row_of(name, self.request.sections), raw, name, self.errors, gaps)
         if distinct and len(self.errors) == before:
             self.errors += equal_values(name, array.tolist())
         return array
@@ -89,14 +92,16 @@ class Draft:
         self.errors += one_control(request.sections)
         arrays = {name: array for name, (dims, array) in values.items() if dims}
         self.errors += dimensions_that_differ(request, labels | arrays)
-        _, laws = values.get("micro", ((), ""))  # "": micro has been refused
         count = layers_in(request.sections)
         for name in [name for name in PARAMETERS if name not in request.sections]:
-            parameter = VOCABULARY[name].parameter  # those of a law that no case has stay away
+            parameter = VOCABULARY[name].parameter  # those of a law or a shape that no case has stay away
             selector, owners, *_ = parameter.needed_by
             if beyond(name, count) or name.rpartition(".")[2] in ("cn", "ct", "profile"):
                 continue
-            if parameter.default is not None and (selector != "micro" or np.isin(laws, owners).any()):
+            if shapes.left_out(name, request.sections) or sticking.left_out(name, request.sections):
+                continue
+            words = values.get(selector, ((), ""))[1]  # "": micro has been refused
+            if parameter.default is not None and (selector not in _WORDS or np.isin(words, owners).any()):
                 values[name] = (), np.array(parameter.default)
         names = {*request.sections, *["n"] * request.physical}  # n follows from moduli
         names |= {name for name in PARAMETERS if beyond(name, count) or request.physical and name.endswith(".n")}
@@ -138,6 +143,8 @@ class Draft:
         if not self.errors:
             self.errors += missing_in_cases(grid) + picard_for_nothing(grid) + heights_that_yield(grid)
             self.errors += [] if self.request.physical else mixed_units(grid)
+            self.errors += shapes.mistakes(grid, self.request.sections, self.request.physical)
+            self.errors += sticking.mistakes(grid, self.request.sections)
         self.errors += [] if self.errors else slips_of_laws(grid)
         return grid
 

@@ -10,6 +10,7 @@ key. Otherwise a case on disk could be found by the key of another.
 
 import hashlib
 import json
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -18,6 +19,7 @@ from solver import NUMERICS_VERSION
 from solver.laws import identity as law_identity
 from solver.numerics.profiles import identity as profile_identity
 from solver.parameters import uses
+from solver.shapes.table import identity as shape_identity
 
 from .grid import Grid, along
 from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY
@@ -101,8 +103,8 @@ def _digest_of_values(grid: Grid, name: str) -> tuple:
     if not dims and (array is None or array == VOCABULARY[name].parameter.default):  # quick: most parameters end here
         return ()
     values = along(grid, name)
-    if name.endswith(".profile"):  # of a table its numbers count
-        values = np.array([profile_identity(word) for word in values.ravel().tolist()]).reshape(values.shape)
+    if name == "shape" or name.endswith(".profile"):  # of a table its numbers count
+        values = np.array([_identity_of(name)(word) for word in values.ravel().tolist()]).reshape(values.shape)
     several = tuple(np.flatnonzero(np.array(values.shape) == 1))
     mask = np.broadcast_to(counts(grid, name).any(axis=several, keepdims=True), values.shape)
     return (values.shape, digest_of_array(mask), digest_of_array(values[mask])) if mask.any() else ()
@@ -144,10 +146,16 @@ def find(keys: np.ndarray, stored: np.ndarray, rank: np.ndarray) -> np.ndarray:
     return np.where((stored[row] == keys).all(axis=1), row, -1)
 
 
+def _identity_of(name: str) -> Callable[[str], str]:
+    """A function of a word of a parameter: a text that tells what it stands for from all else."""
+    of_name = {"micro": law_identity, "shape": shape_identity}
+    return profile_identity if name.endswith(".profile") else of_name.get(name, str)
+
+
 def _hashed(name: str, array: np.ndarray) -> np.ndarray:
     """(2, *shape) uint64: two hashes of each value of a parameter, which depend on its name."""
     if array.dtype.kind == "U":
-        word = law_identity if name == "micro" else profile_identity if name.endswith(".profile") else str
+        word = _identity_of(name)
         bits, left = np.zeros(array.shape, np.uint64), np.ones(array.shape, bool)
         while left.any():  # word by word: there are few words, and np.unique of a million takes seconds
             here = array == array.flat[left.argmax()]

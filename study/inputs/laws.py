@@ -13,8 +13,9 @@ from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import allowed
 
 from .grid import Grid, along
+from .punch import shapes
 from .scene.layers import declare
-from .vocabulary import BODIES, PARAMETERS, SCENE, VOCABULARY, Entry, names
+from .vocabulary import BODIES, OF_PARAMETERS, PARAMETERS, SCENE, VOCABULARY, Entry, names
 
 MOST_FITS = 1000
 """Most different values of Nbar Ra² in a study. A law is fitted to each, in 2 ms."""
@@ -31,7 +32,7 @@ laws.RESERVED.update(SCENE, BODIES)
 
 def update_vocabulary() -> None:
     """Make PARAMETERS and VOCABULARY fit the micro laws that are registered now."""
-    built_in = names("control", "material", "roughness", "numerics")
+    built_in = names(*OF_PARAMETERS)
     for name in set(PARAMETERS) - set(built_in):  # their laws may have been replaced
         VOCABULARY.pop(name, None)
     PARAMETERS[:] = built_in
@@ -41,6 +42,7 @@ def update_vocabulary() -> None:
             words = declared.long_name or f"parameter of the micro law {owners}"
             VOCABULARY[name] = Entry(name, "roughness", words, declared.symbol or name, declared.powers)
             PARAMETERS.append(name)
+    shapes.declare()
     declare()
 
 
@@ -75,10 +77,12 @@ def is_parameter(name: str) -> bool:
     return name in PARAMETERS
 
 
-def results_of(micro: np.ndarray) -> tuple[str, ...]:
-    """Names of the results of these laws; plastic_share only if the spots of some law yield."""
+def results_of(micro: np.ndarray, sticking: bool = False) -> tuple[str, ...]:
+    """Names of the results of these laws; plastic_share only if the spots of some law yield, those of pull-off only of
+    contacts that may be `sticking`."""
     yields = np.isin(micro, [name for name, law in laws.LAWS.items() if law.yielded]).any()
-    return tuple(name for name in names("result") if yields or name != "plastic_share")
+    of_laws = tuple(name for name in names("result") if yields or name != "plastic_share")
+    return of_laws + (names("pull_off") if sticking else ())
 
 
 def smooth_laws() -> list[str]:

@@ -9,6 +9,7 @@ from ..specimen.quantities import Quantity, has_unit
 from ..terminal import shown
 from .grid import LONGEST_AXIS, equal_values
 from .laws import is_parameter, law_names, update_vocabulary
+from .punch.shapes import ANGLES, in_degrees
 from .sample import LIMITS
 from .scene.layers import flattened, in_tables
 from .vocabulary import BODIES, NUMERICS, PARAMETERS, SCENE, no_parameter
@@ -202,7 +203,21 @@ class Request:
             if section in ("[model]", "[numerics]", "[[layers]]") and isinstance(entry.values[0], (list, dict)):
                 self.errors.append(f"{section} {name} has several values: these belong in [axes]")
                 entry.values = None
+            self._turn(entry)
             self.sections[name], self.inputs[name] = section, entry
+
+    def _turn(self, entry: Input) -> None:
+        """Make the numbers of an angle degrees."""
+        if entry.name not in ANGLES or entry.is_wrong:
+            return
+        try:
+            if entry.array is not None:
+                entry.array = in_degrees(entry.name, entry.array)
+            else:
+                entry.values = in_degrees(entry.name, entry.values)
+        except ValueError as error:
+            self.errors.append(str(error))
+            entry.array = entry.values = None
 
     def _decided(self) -> "Request":
         """The request itself, with its `sign`, and its cases before its axes."""

@@ -22,6 +22,8 @@ from ..terminal import shown
 __all__ = ["SCENE", "VOCABULARY", "names"]
 INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "nodes_used": "int16"}
 """Results that are whole numbers -> the type in which they are stored."""
+TRUTHS = {"stable": "int8"}
+"""Results that are true or false, of some studies alone -> the type in which blocks store them."""
 WITH_SPREADS = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD", "A0", "lam0")
 """Results that have spreads, as profiles do; the others say how well the case is solved."""
 BY_INPUT = "_by_input"
@@ -50,6 +52,7 @@ class Entry:
     powers: tuple[int, int] = (0, 0)
     equation: str = ""
     interval: str = ""
+    written: str = ""
 
     @property
     def parameter(self) -> Parameter:
@@ -60,7 +63,7 @@ class Entry:
     @cached_property
     def unit(self) -> str:
         """The SI unit of the physical quantity."""
-        return si_unit(self.powers)
+        return self.written or si_unit(self.powers)
 
     @cached_property
     def ratio(self) -> str:
@@ -119,7 +122,8 @@ def names(*roles: str) -> tuple[str, ...]:
 
     Parameters
     ----------
-    roles : "control", "material", "roughness", "numerics", "result", "derived", "coordinate"
+    roles : "control", "material", "shape", "adhesion", "roughness", "numerics", "result", "pull_off", "derived",
+        "coordinate"
 
     Returns
     -------
@@ -135,7 +139,9 @@ def names(*roles: str) -> tuple[str, ...]:
 
 CONTROLS = names("control")
 NUMERICS = names("numerics")
-PARAMETERS = list(names("control", "material", "roughness", "numerics"))
+OF_PARAMETERS = ("control", "material", "shape", "adhesion", "roughness", "numerics")
+"""Roles of parameters."""
+PARAMETERS = list(names(*OF_PARAMETERS))
 """Names of parameters; `study.inputs.laws.update_vocabulary` adds those of registered laws here and to VOCABULARY."""
 
 
@@ -187,7 +193,7 @@ def check(parameter: Parameter, value) -> str:
         table = value.removeprefix("Table:") if isinstance(value, str) and value.endswith(".csv") else ""
         hint = f'; a table of your own is "table:{table}"' * bool(table)
         return "" if isinstance(value, str) and value in parameter.choices else allowed(parameter) + hint
-    if not finite(value):
+    if not finite(value) and not (parameter.interval.endswith("inf]") and value == math.inf):
         return f"must be a finite number, {allowed(parameter).removeprefix('must be ')}"
     if parameter.whole and value != int(value):
         return "must be a whole number"

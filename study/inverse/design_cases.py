@@ -79,7 +79,10 @@ class Wanted:
         values, others = ({key: column[index] for key, column in table.items()} for table in self._inputs)
         unit = R = 1.0
         if values:
-            scene = Scene(values=values | {self.name: self.x_of(t)}, parameters=others)
+            whole = self.definition.scene
+            metres = np.broadcast_to(over(whole.metres, tuple(self.definition.grid.sizes)), self.definition.grid.shape)
+            scene = Scene(values=values | {self.name: self.x_of(t)}, parameters=others, scale=whole.scale)
+            scene.metres = metres.ravel()[index]
             make_dimensionless(scene)
             others, unit, R = scene.parameters, scene.unit, scene.R
         else:

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from solver.shapes import PARABOLOID
+
 from ..inputs.vocabulary import ROWS
 from .rule import have, rule
 
@@ -26,7 +28,7 @@ the strain D/h. If rather the body below gives way, the strain of the layer is a
 STRETCHED = 0.1
 """A layer bent to the sphere is under tension, which bears a part of the pressure. Linear elasticity leaves that out.
 This is the largest part of p(0) that it may bear. With a free edge at r = a it bears E1* h a²/(8 R³) if h < a (Föppl's
-equations; tests/data/test_validity_stretched.py)."""
+equations; tests/data/test_validity_stretched.py). Of another shape f(r) it is E1* h f'(a)³/(8 a)."""
 STEEP_SPOT = 0.5
 """Largest b(0)/Ra: the strain under an asperity, 0.2 b/Ra, is then 10 %, the sphere is 6 % deeper than the paraboloid,
 and p_max = 0.32 E1* is above the hardness of any metal."""
@@ -91,9 +93,11 @@ def spots_merging(v, times):
 def strain_not_small(v, times):
     """The strain is not small (a > {STEEP:g} R, or the layer gives way by more than {COMPRESSED:.0%}, or is stretched
     like a membrane): linear elasticity is roughly right at best."""
-    compressed = (v["D"] > times * COMPRESSED * v["h"]) & (v["p0"] > times * COMPRESSED * v["E1*"])
-    stretched = v["E1*"] * np.minimum(v["h"], v["a"]) * v["a"] ** 2 > 8 * times * STRETCHED * v["p0"]
-    return (v["a"] > times * STEEP) | v["layered"] & (compressed | stretched)
+    compressed = (v["D"] > times * COMPRESSED * v["h"]) & (v["pressure"] > times * COMPRESSED * v["E1*"])
+    tension = v["E1*"] * np.minimum(v["h"], v["a"]) * (v["a"] ** 2 if "shape" not in v else v["slope"] ** 3 / v["a"])
+    stretched = tension > 8 * times * STRETCHED * v["pressure"]
+    wide = (v["a"] > times * STEEP) & (v["shape"] == PARABOLOID if "shape" in v else True)
+    return wide | v["layered"] & (compressed | stretched)
 
 
 @rule(64, rf"spots steep, $b > {STEEP_SPOT:g}\,R_a$", "0.78")
@@ -102,7 +106,8 @@ def asperity_strain_not_small(v, times):
     yield before that, and pmax is larger than any real pressure."""
     E = np.where(v["layered"], v["E1*"], 1.0) / (1 + v["m"])  # of layer and punch in series
     # By (13) this is at most b/Ra of the central spot. It also serves laws whose b(0) is a mean, and those without Ra.
-    steep = np.pi / 2 * (v["p_max"] - v["p0"]) / E
+    with np.errstate(invalid="ignore"):  # of sharp tips both are infinite
+        steep = np.pi / 2 * (v["p_max"] - v["p0"]) / E
     return v["rough"] & ((v["b"] > times * STEEP_SPOT * v["Ra"]) | (steep > times * STEEP_SPOT))
 
 

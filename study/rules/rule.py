@@ -9,6 +9,7 @@ import xarray as xr
 
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS
+from solver.shapes import PARABOLOID, SHAPES
 
 from ..inputs.vocabulary import ROWS, VOCABULARY, attributes
 
@@ -88,7 +89,10 @@ def validity_of(variables: Mapping, times: float = 1.0) -> xr.Variable:
     status, v = variables["status"], numbers(variables)
     violated = (np.int32(mask) * RULES[name].condition(v, times) for mask, name in ASSUMPTIONS.items())
     flags = sum(violated, np.zeros(status.shape, np.int32))
-    return xr.Variable(status.dims, flags, attributes("validity") | validity_attributes())
+    about = attributes("validity") | validity_attributes()
+    if "w_adhesion" in variables and not {"z0", "sigma0"} & {*variables}:
+        about["comment"] = "not_jkr: not known, since neither z0 nor sigma0 is given"
+    return xr.Variable(status.dims, flags, about)
 
 
 def numbers(variables: Mapping) -> Mapping:
@@ -96,7 +100,8 @@ def numbers(variables: Mapping) -> Mapping:
     arrays, since DataArrays take as long as a contact.
 
     Beside the variables: layered, rough, thin (bool: a thin layer was used), E1* (reduced modulus of the layer), spots
-    (how many touch), b (radius of the central one).
+    (how many touch), b (radius of the central one), slope (f'(a) of the shape of the punch), pressure (p(0), and where
+    that is not finite the mean).
     """
     dims, used = variables["status"].dims, variables["model_used"].attrs
     arrays = {name: _along(dims, array) for name, array in variables.items() if set(array.dims) <= set(dims)}
@@ -105,8 +110,31 @@ def numbers(variables: Mapping) -> Mapping:
     v["thin"] = np.isin(
         v["model_used"], [value for value, word in models if word.endswith(("thin_layer", "thin_stack"))]
     )
+    v |= {"slope": slope(v), "pressure": _pressure(v)}
     v |= {"layered": v["base"] != "half_space", "rough": have("rough", v["micro"]), "E1*": layer_modulus(v["n"])}
     return v | {"spots": spots(v) * _touching(v), "b": spot_radius(v)}
+
+
+def slope(v):
+    """f'(a) of the shapes of the punches: a/R of paraboloids; NaN of a shape that is not registered."""
+    if "shape" not in v:
+        return v["a"]
+    found = np.where(v["shape"] == PARABOLOID, v["a"], np.nan) * np.ones(np.shape(v["shape"]))
+    for kind in SHAPES.values():
+        if np.any(v["shape"] == kind.name):
+            arrays = np.broadcast_arrays(*(v[name] for name in ("a", *kind.parameters)), found)
+            a, *numbers = (array.ravel() for array in arrays[:-1])
+            shape = kind.of(**dict(zip(kind.parameters, numbers, strict=True)), size=len(a))
+            with np.errstate(all="ignore"):  # of cases without numbers
+                at_edge = shape.slope(a[:, None])[:, 0].reshape(arrays[0].shape)
+            found = np.where(v["shape"] == kind.name, at_edge, found)
+    return found
+
+
+def _pressure(v):
+    """p(0), and where it is not finite, as under a sharp tip, the mean pressure."""
+    with np.errstate(all="ignore"):
+        return np.where(np.isfinite(v["p0"]), v["p0"], v["P"] / (np.pi * v["a"] ** 2)) if "shape" in v else v["p0"]
 
 
 def _along(dims: tuple, variable: xr.Variable):

@@ -39,7 +39,7 @@ def asperities_yield(v, times):
     index = np.flatnonzero(np.isfinite(limit))
     if not len(index):
         return np.False_
-    problem, solution = _again(v, index)
+    problem, solution = again(v, index)
     found = np.zeros(limit.shape, dtype=bool)
     found.flat[index] = spots.of_contacts(problem, solution)[0] > limit.flat[index]
     return found
@@ -48,7 +48,7 @@ def asperities_yield(v, times):
 def _stress(v, name, limit):
     """The largest stress of a body, where it is near the limit; elsewhere that of the coarse grid."""
     index, found = np.flatnonzero(np.isfinite(limit)), np.full(limit.shape, np.nan)
-    problem, solution = _again(v, index)
+    problem, solution = again(v, index)
     value = of_contacts(problem, solution, names=(name,), coarse=True)[name][0]
     near = np.flatnonzero((value < (1 + _MORE) * limit.flat[index]) & (value > (1 - _MISSED) * limit.flat[index]))
     if len(near):
@@ -57,12 +57,12 @@ def _stress(v, name, limit):
     return found
 
 
-def _again(v, index):
-    """The problem of some of the cases, given by their radii, and what it was solved with."""
+def again(v, index, x=(0.0, 1.0)):
+    """The problem of some of the cases, given by their radii, and what it was solved with; profiles at the radii x."""
     shape = v["status"].shape
     own = {name: v[name] for name in PARAMETERS if name in v and name not in (*NUMERICS, *CONTROLS)}
     own = {name: np.broadcast_to(values, shape).ravel()[index] for name, values in {"a": v["a"], **own}.items()}
     problem = Problem.of(**own)
-    solution, solved = solve(problem), v["status"].ravel()[index] == Status.CONVERGED
+    solution, solved = solve(problem, x), v["status"].ravel()[index] == Status.CONVERGED
     solution.status[~solved] = Status.INVALID_INPUT
     return problem, solution

@@ -19,6 +19,7 @@ READABLE = {
     "Pa": ("a pressure", (("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3), ("Pa", 1.0))),
     "N": ("a force", (("kN", 1e3), ("N", 1.0), ("mN", 1e-3), ("µN", 1e-6), ("nN", 1e-9))),
     "N/m": ("a stiffness", (("MN/m", 1e6), ("kN/m", 1e3), ("N/m", 1.0), ("mN/m", 1e-3))),
+    "J/m^2": ("a work per area", (("J/m²", 1.0), ("mJ/m²", 1e-3), ("µJ/m²", 1e-6))),
     "1/m^2": ("a number per area", (("1/µm²", 1e12), ("1/mm²", 1e6), ("1/m²", 1.0))),
     "m^2": ("an area", (("mm²", 1e-6), ("µm²", 1e-12), ("nm²", 1e-18))),
     "1": ("a pure number", (("", 1.0),)),

@@ -8,7 +8,7 @@ from ..data.si import dataset_of
 from ..files.atomic import replacing
 from ..files.examine import CHUNK, Condition
 from ..files.netcdf import File
-from ..files.results_file import create, finish, put
+from ..files.results_file import create, finish, put, stored
 from ..files.seal import seal
 from ..inputs.grid import box, cut_out, windows
 from .blocks import Inventory, Store, forget_other_exports, gather, note_export
@@ -47,7 +47,7 @@ def _write(file: File, store: Store, stock: Inventory, command: str) -> None:
             whole = dataset_of(definition, labelled(definition, {}, command))
             sums = create(file, part, whole, chunk)
         for name, array in part.data_vars.items():
-            file.write(name, array.values, place)
-            sums.add(name, array.values)
+            file.write(name, stored(array), place)
+            sums.add(name, stored(array))
         start += grid.size
     finish(file, sums)

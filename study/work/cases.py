@@ -6,17 +6,18 @@ less.
 
 import pickle
 import traceback
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from solver import NUMERICS_VERSION, Problem, Solution, laws, sensitivities, solve
 from solver.laws import Law
 from solver.laws.trial import going_on
+from solver.shapes.table import TABLES, Rows
 
 from ..inputs.definition import Definition
 from ..inputs.grid import columns
-from ..inputs.vocabulary import BY_INPUT, CONTROLS, INTEGERS
+from ..inputs.vocabulary import BY_INPUT, CONTROLS, INTEGERS, TRUTHS
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +31,7 @@ class Parcel:
     stresses : names of the largest stresses and their places that are wanted
     numerics : version of the solver's numerics that is wanted
     laws : micro laws of users, which the worker may not have registered
+    tables : word -> rows of the tables of shapes, whose files the worker may not have
     """
 
     first: int
@@ -42,6 +44,7 @@ class Parcel:
     stresses: tuple[str, ...]
     numerics: str
     laws: tuple[Law, ...] = ()
+    tables: dict[str, Rows] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -58,7 +61,9 @@ def parcel(definition: Definition, index: np.ndarray) -> Parcel:
     parameters = {name: array if definition.grid.values[name][0] else array[:1] for name, array in parameters.items()}
     wanted = definition.x, definition.results, definition.profiles, definition.inputs, definition.stresses
     of_users = tuple(laws_of_users(parameters["micro"]))
-    return Parcel(int(index[0]), int(index[-1]), parameters, *wanted, NUMERICS_VERSION, of_users)
+    words = np.unique(parameters.get("shape", ())).tolist()
+    tables = {word: TABLES[word] for word in words if word in TABLES}
+    return Parcel(int(index[0]), int(index[-1]), parameters, *wanted, NUMERICS_VERSION, of_users, tables)
 
 
 def laws_of_users(micro: np.ndarray) -> list[Law]:
@@ -85,6 +90,7 @@ def compute(task: Parcel) -> dict[str, np.ndarray]:
     """Solve a parcel: name -> (n, ...). Touches no file and no shared state: may run in any thread, on any machine."""
     for law in task.laws:
         laws.register(law)
+    TABLES.update(task.tables)
     with going_on():  # the functions of a law of one's own
         problem = Problem.of(**task.parameters)
         solution = solve(problem, task.x)
@@ -99,7 +105,7 @@ def arrays_of(solution: Solution, results: tuple[str, ...], profiles: tuple[str,
     names = (*CONTROLS, *results, *INTEGERS)
     arrays = {name: special[name] if name in special else getattr(solution, name) for name in names}
     arrays |= {name: getattr(solution, name) for name in profiles}
-    return {name: np.asarray(array, dtype=INTEGERS.get(name, np.float64)) for name, array in arrays.items()}
+    return {name: np.asarray(array, dtype=(INTEGERS | TRUTHS).get(name, np.float64)) for name, array in arrays.items()}
 
 
 def stresses_of(problem: Problem, solution: Solution) -> dict[str, np.ndarray]:

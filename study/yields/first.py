@@ -9,14 +9,16 @@ import xarray as xr
 from solver.yields.crossing import NUMBERS, Crossing
 from solver.yields.first import first_yield as crossing_of
 
-from ..again import Again, of_all_cases, refuse_stacks, strengths
+from ..again import Again, of_all_cases, refuse_without_stresses, strengths
 from ..fields import carried, friction, residual_stress, units_of
 from ..in_words import FarOutside
 from ..inputs.definition import StudyError
+from ..inputs.punch.shapes import ROUND
 from ..inputs.request import Request
 from ..inputs.vocabulary import CONTROLS
 from ..solving import solve
 from ..specimen.materials import Material
+from ..terminal import shown
 
 BODIES = {"layer": "_Y1", "body": "_Y2", "asperities": "_Ya", "punch": "_Y_punch"}
 """What may yield, in the order of the codes of `first_yield` -> the end of the names of its numbers."""
@@ -77,6 +79,7 @@ def first_yield(
     given = {name: value for name, value in given.items() if value is not None}
     refuse("first_yield", parameters, (*CONTROLS, "cases"), "it is what is looked for")
     contact, again = contacts("first_yield", parameters | given, "a", 1e-3)
+    refuse_shapes(again, "first_yield")
     stress, _ = units = units_of(again)
     own, problem = own_materials(parameters), again.problem
     known, spreads = (strengths(contact, again, own, spread) for spread in (False, True))
@@ -119,8 +122,18 @@ def contacts(who: str, parameters: dict, name: str, value: float) -> tuple[xr.Da
         except StudyError as error:
             raise StudyError(message.replace("solve: ", f"{who}: ", 1) for message in error.messages) from None
     again = Again.of(contact, who)
-    refuse_stacks(again, who)
+    refuse_without_stresses(again, who)
     return contact, again
+
+
+def refuse_shapes(again: Again, who: str) -> None:
+    """Raise StudyError for shapes under which stresses do not begin at 0 and grow with a/R, as under a ball."""
+    others = [word for word in np.unique(again.problem.shape).tolist() if word not in ROUND]
+    if others:
+        way = "study.extremes computes the stresses at a load"
+        raise StudyError(
+            [f"{who} looks for loads under paraboloids and spheres, not shape = {shown(others[0])}: {way}"]
+        )
 
 
 def own_materials(parameters: dict) -> dict[str, Material]:

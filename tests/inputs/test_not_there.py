@@ -21,21 +21,10 @@ NONE_HERE = {
         "Hv",
         "H_film",
     ],
-    "adhesion": [
-        "w",
-        "gamma",
-        "w_adhesion",
-        "work_of_adhesion",
-        "adhesion_energy",
-        "surface_energy",
-        "dW",
-        "W12",
-        "jkr",
-    ],
     "temperature": ["T", "temperature", "temperature_C", "T_body"],
     "motion": ["v", "viscosity", "sliding_speed", "wear_rate", "mass"],
     "time": ["creep", "tau", "relaxation_time"],
-    "other shapes": ["cone", "berkovich", "flat", "flat_radius", "half_angle", "punch_shape", "shape"],
+    "tilted and elliptic punches, and bodies that are not isotropic,": ["tilt", "ellipse"],
     "stresses": ["mises", "von_mises", "stress", "residual_stress"],
 }
 CALLED_HERE = {
@@ -48,6 +37,9 @@ CALLED_HERE = {
     "sigma": ["Rq", "Sq", "Sa", "Rz", "Sz", "Rt", "roughness", "rms_slope", "cutoff", "Ra_scan"],
     "Nbar": ["N", "eta", "n_asperities", "pitch"],
     "bonding": ["bonded", "frictionless", "no_slip"],
+    "w_adhesion": ["w", "gamma", "work_of_adhesion", "adhesion_energy", "surface_energy", "dW", "W12", "jkr", "W"],
+    "k_machine": ["k_m", "spring_constant", "cantilever"],
+    "shape": ["cone", "berkovich", "flat", "half angle", "punch_shape", "cylinder"],
     "micro": ["law", "macro", "model", "hertz"],
     "rtol": ["tol", "error"],
 }

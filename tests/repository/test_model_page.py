@@ -74,6 +74,8 @@ def test_the_masks_and_thresholds_are_those_of_the_code():
         "STEEP_SPOT",
         "PITCH_OVER_LAYER",
         "STEEP",
+        "SLOPE",
+        "ZONE",
     )
     assert [float(value) for value in thresholds] == [getattr(derived, name) for name in constants]
 

@@ -133,7 +133,10 @@ def test_the_table_of_real_systems_has_their_numbers_of_cases():
         assert read(ROOT / f"studies/systems/{name}.toml").grid.size == int(cases)
 
 
-RUN = ("README.md", *(f"docs/{name}.md" for name in ("accuracy", "python", "stacks", "fit", "afm")))
+RUN = (
+    "README.md",
+    *(f"docs/{name}.md" for name in ("accuracy", "python", "shapes", "adhesion", "stacks", "fit", "afm")),
+)
 
 
 @pytest.mark.parametrize("page", RUN)

@@ -10,6 +10,7 @@ from solver.parameters import ends
 
 from ...specimen.quantities import multiple, quantity, readable, unit_in
 from ...terminal import on_one_line
+from ..punch.sticking import row_of
 from ..request import Input
 from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY, allowed
 from .scales import with_unit
@@ -37,7 +38,7 @@ def beyond_bounds(scene: Scene, inputs: dict[str, Input]) -> list[str]:
 def _first_outside(scene: Scene, name: str) -> list[Place]:
     """The place of the first dimensionless value of a parameter that is outside its interval; [] if all are inside."""
     values = scene.parameters[name]
-    inside = within(VOCABULARY[name].parameter, np.asarray(values))
+    inside = within(row_of(name, scene.values), np.asarray(values))
     outside = [] if inside.all() else np.argwhere(~inside)[:1].tolist()  # argwhere takes as long as all else here
     return [dict(zip(getattr(values, "dims", ()), index, strict=True)) for index in outside]
 
@@ -53,7 +54,7 @@ def _message(scene: Scene, entry: Input, place: Place) -> str:
     """The message for the value of an input at a place."""
     name = entry.name
     value, row = scene.values[name], VOCABULARY[name]
-    parameter = row.parameter
+    parameter = row_of(name, scene.values)
     index = [place[dim] for dim in getattr(value, "dims", ())]
     label = f"{name}{index}" if index else name
     text, word, size = _written(entry, index, _at(value, place), ROWS[name].unit)

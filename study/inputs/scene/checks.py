@@ -6,8 +6,10 @@ import numpy as np
 import xarray as xr
 
 from solver.laws.own_table import PREFIX
+from solver.shapes import PARABOLOID
 
 from ..checks import equal_cases
+from ..punch.shapes import in_metres, radius_needed
 from ..request import Request
 from ..vocabulary import BODIES
 from .bodies import layered
@@ -23,7 +25,8 @@ def missing(request: Request, values: dict) -> list[str]:
     """
     names, messages = {*request.sections}, []
     pair = [name for name in ("R1", "R2") if name in names]
-    messages += [_RADIUS] if "R" not in names and not pair else []
+    round_ = radius_needed(values.get("shape", ((), PARABOLOID))[1])
+    messages += [_RADIUS] if round_ and "R" not in names and not pair else []
     if len(pair) == 1:
         other = "R2" if pair == ["R1"] else "R1"
         messages.append(f'{other} is missing: R1 and R2 go together; of a flat body {other} = "flat"')
@@ -72,8 +75,9 @@ def impossible(scene: Scene) -> list[str]:
 
 def moving_tables(scene: Scene) -> list[str]:
     """A message if a table of the user's, whose lengths are in R, would change with the spread of a radius."""
-    micro = np.ravel(np.array(scene.parameters.get("micro", ""), dtype=object)).tolist()
-    table = next((word for word in micro if str(word).startswith(PREFIX)), "")
+    words = [np.ravel(np.array(scene.parameters.get(name, ""), dtype=object)).tolist() for name in ("micro", "shape")]
+    tables = [str(word) for word in sum(words, []) if str(word).startswith(PREFIX)]
+    table = next((word for word in tables if not in_metres(word)), "")
     moved = sorted({"R", "R1", "R2"} & {*scene.spreads})
     if not (table and moved):
         return []

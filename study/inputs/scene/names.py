@@ -11,7 +11,7 @@ from ..vocabulary import ROWS
 #: The texts that say that a body is rigid, and so its modulus infinite; or flat, and so its radius.
 RIGID_TEXTS, _FLAT_TEXTS = ("rigid", "inf", "infinite"), ("flat", "inf", "infinite")
 #: Input that may be infinite -> the texts that say so.
-INFINITE = {"E2": RIGID_TEXTS, "E_punch": RIGID_TEXTS, "R1": _FLAT_TEXTS, "R2": _FLAT_TEXTS}
+INFINITE = {"E2": RIGID_TEXTS, "E_punch": RIGID_TEXTS, "R1": _FLAT_TEXTS, "R2": _FLAT_TEXTS, "k_machine": RIGID_TEXTS}
 
 
 def is_ratio(name: str) -> bool:

@@ -14,6 +14,7 @@ from ...specimen.quantities import READABLE, quantity
 from ...terminal import on_one_line
 from ..draft import Draft
 from ..grid import equal_values
+from ..punch.shapes import LENGTHS, MICROMETRE, in_metres
 from ..request import NEEDS_NAMES, Input, Request
 from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY
 from .bodies import assumed, with_materials
@@ -59,6 +60,7 @@ def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scen
     if errors:
         return scene
     names = {*request.sections, *inputs}
+    _measure(scene)
     scene.assumed = assumed(names, draft.values, scene.values)
     correlate(scene, request.correlations, errors)
     if not spreads:
@@ -69,6 +71,13 @@ def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scen
     for name, value in scene.parameters.items() if not errors else ():
         draft.put(name, getattr(value, "dims", ()), np.asarray(value))
     return scene
+
+
+def _measure(scene: Scene) -> None:
+    """Note what the unit of length is of shapes without a radius, and which tables of shapes have units."""
+    if "R" not in scene.values and "R1" not in scene.values:
+        scene.scale = next((name for name in LENGTHS if name in scene.values), MICROMETRE)
+    scene.metres = in_metres(scene.parameters.get("shape", ""))
 
 
 def _read(scene: Scene, draft: Draft, entry: Input) -> None:

@@ -15,6 +15,8 @@ from .scene import Scene
 
 #: Default of the Poisson ratio of a punch, that of the other bodies.
 _POISSON = VOCABULARY["nu1"].parameter.default
+#: The unit of length in m of a punch of which no length is given.
+_MICROMETRE = 1e-6
 
 
 def make_dimensionless(scene: Scene) -> None:
@@ -22,6 +24,8 @@ def make_dimensionless(scene: Scene) -> None:
     values = scene.values
     if "R1" in values:
         values["R"] = 1 / (1 / values["R1"] + 1 / values["R2"])
+    if scene.scale:
+        values["R"] = values.get(scene.scale, _MICROMETRE)
     scene.R, scene.unit, layer, body = values["R"], *moduli(values, scene.parameters)
     if "E1" in values:
         scene.parameters["n"] = layer / body
@@ -35,6 +39,8 @@ def make_dimensionless(scene: Scene) -> None:
     for name, value in values.items():
         if name not in SCENE:
             scene.parameters[name] = without_unit(value, VOCABULARY[name].powers, scene.unit, scene.R)
+    if np.any(scene.metres):
+        scene.parameters["table_unit"] = _where(scene.metres, 1 / scene.R, 1.0)
 
 
 def moduli(values: dict, parameters: dict) -> tuple:

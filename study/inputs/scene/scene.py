@@ -22,6 +22,9 @@ class Scene:
     assumed : Poisson ratios and the interface, where they matter and have their defaults since nobody gave them
     same_piece : whether bodies of one material are one piece of it
     correlations : pair of inputs with spreads -> their correlation, a number or a DataArray; 0 of all other pairs
+    scale : the input that is R, the unit of length, of shapes without a radius, or "1 um"; "": R, or R1 and R2, are
+        given
+    metres : bool, where the shape is a table with units of length in its header; False: nowhere
     """
 
     values: dict = field(default_factory=dict)
@@ -36,6 +39,8 @@ class Scene:
     parameters: dict = field(default_factory=dict)
     R: Any = 1.0
     unit: Any = 1.0
+    scale: str = ""
+    metres: Any = False
 
     def sizes(self, axes: list[str]) -> dict[str, int]:
         """Dimension while the cases are solved -> its length; first `case`, then the axes in their order."""
@@ -61,7 +66,9 @@ class Scene:
         changed = {table: {name: cut(v) for name, v in getattr(self, table).items()} for table in tables}
         labels = self.labels[window["case"]] if self.labels else []
         names = {body: (dim, texts[window[dim]] if dim else texts) for body, (dim, texts) in self.names.items()}
-        return replace(self, **changed, labels=labels, names=names, R=cut(self.R), unit=cut(self.unit))
+        return replace(
+            self, **changed, labels=labels, names=names, R=cut(self.R), unit=cut(self.unit), metres=cut(self.metres)
+        )
 
 
 def over(value: Any, dims: tuple[str, ...]) -> np.ndarray:

@@ -94,6 +94,9 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     unknowns = (*names, *priors)
     moved = tuple(name for name in scene.spreads if name not in unknowns and name not in CONTROLS)
     model = Model.of(definition, x, y, unknowns, moved)
+    if model.sticks and (x, y) != ("D", "P"):
+        way = 'of what sticks the load over the depth is fitted: x = "D", y = "P"'
+        raise StudyError([f"x = {shown(x)}, y = {shown(y)}: {way}"])
     absent = [name for name in unknowns if name not in scene.values and name not in scene.parameters]
     if absent:
         raise StudyError([f"free: {name} does not act in this contact" for name in absent])

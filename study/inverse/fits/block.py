@@ -12,6 +12,7 @@ from .curve import Curve
 from .intervals import covariance_of, profiles
 from .least_squares import SURE, Data, Fit, minimise
 from .model import HERTZ, is_ratio
+from .sticking import Direct
 from .tables import Table
 
 _ROUGHLY = (
@@ -36,7 +37,9 @@ class FitStatus(IntEnum):
     INVALID_INPUT = 6
 
 
-def fit_block(asked: Asked, table: Table, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None) -> dict[str, Any]:
+def fit_block(
+    asked: Asked, table: Table | Direct, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
+) -> dict[str, Any]:
     """Fit curves (B, n), NaN where there is no point. Every curve has more points than unknowns.
 
     sigma : (B, n) standard deviations of y; None: from the residuals

@@ -4,7 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .model import HERTZ
+from .model import HERTZ, is_ratio
+from .sticking import Direct, moved_by
 from .tables import STEP, WIDE, Places, Table
 
 _TILES = 4  # along ln u: from the largest depth down, more than _REACH
@@ -15,13 +16,13 @@ _REACH = np.log(800.0)  # below 1/800 of twice the range of x the curve goes on 
 class Curve:
     """B curves of n points. Their unknowns are the inputs of the model, then D0/wide, P0/high and tilt wide/high.
 
-    table : of the model
+    table : of the model; of one that sticks, what solves it
     x : (B, n), SI
     wide, high : (B,) the units of x and y of each curve
     shifts : which of "D0", "P0", "tilt" are unknown
     """
 
-    table: Table
+    table: Table | Direct
     x: np.ndarray
     wide: np.ndarray
     high: np.ndarray
@@ -65,6 +66,8 @@ class Curve:
         The third value has its derivatives by the inputs `moved` of the model, (moved, B, n), if `moved` is true.
         """
         model, values = self.table.model, self.values(p)
+        if isinstance(self.table, Direct):
+            return self._direct(self.table, p, values, moved)
         depth = self.x - (p[:, [self.names.index("D0")]] * self.wide[:, None] if "D0" in self.shifts else 0.0)
         inside = depth > 0
         depth = np.where(inside, depth, 1e-12 * self.wide[:, None])
@@ -89,6 +92,20 @@ class Curve:
             by[name] = F * self._log_slope(name, values, power, of_u, slope, by_axis, places)
         others = [F * places.read(rows[1 + i])[0] for i in range(len(model.moved))] if moved else []
         return F, by, np.array(others)
+
+    def _direct(self, direct: Direct, p: np.ndarray, values: dict, moved: bool) -> tuple[np.ndarray, dict, np.ndarray]:
+        """`contact` of what sticks: by differences of solved curves."""
+        model, high = direct.model, self.high[:, None]
+        depth = self.x - (p[:, [self.names.index("D0")]] * self.wide[:, None] if "D0" in self.shifts else 0.0)
+        P, slope = direct.contact(values, depth)
+
+        def by(name: str) -> np.ndarray:
+            value = values.get(name, model.value(name))
+            other, change = moved_by(value, is_ratio(name))
+            return (direct.contact(values | {name: other}, depth)[0] - P) / change / high
+
+        others = [by(name) for name in model.moved] if moved else []
+        return P / high, {"x": slope / high} | {name: by(name) for name in model.unknowns}, np.array(others)
 
     def _log_slope(self, name, values, power, of_u, slope, by_axis, places):
         """d ln F by the coordinate of an input."""

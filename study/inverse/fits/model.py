@@ -8,6 +8,7 @@ import numpy as np
 from solver import Problem, solve
 from solver.parameters import PARAMETERS as LIMITS
 from solver.parameters import ends
+from solver.shapes import PARABOLOID
 
 from ...inputs.definition import Definition, StudyError
 from ...inputs.scene.scales import make_dimensionless, with_unit
@@ -66,7 +67,13 @@ class Model:
     def is_similar(self) -> bool:
         """Whether h and R act through u alone: under a smooth paraboloid on the exact layer or a half-space."""
         numbers = self.scene.parameters
-        return numbers.get("micro") == "smooth" and numbers.get("base", "layered") in _SMOOTH
+        usual = numbers.get("shape", PARABOLOID) == PARABOLOID and not self.sticks
+        return usual and numbers.get("micro") == "smooth" and numbers.get("base", "layered") in _SMOOTH
+
+    @property
+    def sticks(self) -> bool:
+        """Whether a work of adhesion is among the inputs."""
+        return "w_adhesion" in self.scene.values
 
     @property
     def scales_only(self) -> bool:
@@ -132,10 +139,15 @@ class Model:
         thickness = values.get("h", self.scene.values.get("h", 1.0))
         return h * np.log(thickness) + R * np.log(values.get("R", self.scene.R)) + E * np.log(self._touched(values))
 
-    def solved(self, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:
-        """y (M,) at x (M,), both in SI, for values (M,) of inputs; NaN where a contact has no solution."""
+    def scene_of(self, values: dict[str, Any]) -> Scene:
+        """The scene with other values of inputs, and its numbers for the solver."""
         changed = replace(self.scene, values=self.scene.values | values, parameters=dict(self.scene.parameters))
         make_dimensionless(changed)
+        return changed
+
+    def solved(self, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:
+        """y (M,) at x (M,), both in SI, for values (M,) of inputs; NaN where a contact has no solution."""
+        changed = self.scene_of(values)
         numbers = {name: value for name, value in changed.parameters.items() if name in PARAMETERS}
         unit, R = changed.unit, changed.R
         control = with_unit(x, tuple(-power for power in VOCABULARY[self.x].powers), unit, R)

@@ -6,10 +6,11 @@ import numpy as np
 
 from .asked import Asked
 from .block import fit_block
+from .sticking import Direct
 from .tables import Table
 
 #: Call -> its table. Several, for calls in several threads; worker processes end after a while, and their tables.
-_tables: dict[str, Table] = {}
+_tables: dict[str, Table | Direct] = {}
 _MOST = 8
 
 
@@ -32,7 +33,8 @@ def fit_part(part: Part) -> dict[str, Any]:
     if table is None:
         for oldest in list(_tables)[: max(0, len(_tables) - _MOST + 1)]:
             forget(oldest)
-        table = _tables[part.call] = Table(part.question.model)
+        model = part.question.model
+        table = _tables[part.call] = Direct(model) if model.sticks else Table(model)
     with np.errstate(all="ignore"):
         return fit_block(part.question, table, part.x, part.y, part.sigma)
 

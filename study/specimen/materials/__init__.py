@@ -18,8 +18,9 @@ from solver.laws.elastic_plastic import TABOR
 
 from ..quantities import multiple
 from .entries import STRENGTHS, Material, of_sections, plainly, read, written
+from .works import Pair, pairs, work_of_adhesion
 
-__all__ = ["Material", "get", "names", "read", "table"]
+__all__ = ["Material", "Pair", "get", "names", "pairs", "read", "table", "work_of_adhesion"]
 
 
 def get(name: str, among: Mapping[str, Material] | None = None) -> Material:

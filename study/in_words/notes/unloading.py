@@ -9,9 +9,9 @@ from solver import Status, solve
 from solver.laws import LAWS
 from solver.scaling import dimensionless, law_of
 
-from ..again import Again
-from ..inputs.definition import StudyError
-from ..rules.rule import of_cases
+from ...again import Again
+from ...inputs.definition import StudyError
+from ...rules.rule import of_cases
 
 #: The load is lowered to this part; pressures that are larger there by less than _SAME of the largest are the same.
 _LESS, _SAME = 0.9, 1e-6

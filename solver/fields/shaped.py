@@ -1,0 +1,70 @@
+"""Pressures of smooth contacts of other shapes than the paraboloid, as the fields need them: on panels that shrink to
+where the shape has kinks, and to a sharp tip."""
+
+import numpy as np
+
+from ..body import BODIES
+from ..numerics.mesh import Mesh, mesh_of, on_panels
+from ..numerics.quadrature import radau_nodes
+from ..smooth_contact.contact import kinds_of, shape_in
+from ..smooth_contact.equation import respond
+from ..smooth_contact.pressure import pressure_changes, pressures
+from .pressure import Pressure
+
+#: Nodes of one panel under shapes that are smooth in r², and of each of several panels. With half of them the stresses
+#: of tests/fields/test_shaped.py differ by 1e-7 and 1e-6.
+_WHOLE, _EACH = 64, 16
+#: Panels shrink by this towards a kink or a tip, so often on each side: at a kink to 1e-8 a, at a tip to 1e-6 a, as
+#: r² is about 2 a² (1 - s) there. What is left of a pressure like ln r changes no eighth digit.
+_SHRINK, _TIMES, _TIP_TIMES = 0.4, 20, 30
+#: At a kink or a tip itself p may be infinite: it is taken at this part of the smallest panel beside it.
+_BESIDE = 0.1
+#: Radii at which the polynomials are compared with the pressure.
+_LOOKED_AT = np.sin(np.pi / 2 * (np.arange(40) + 0.37) / 40)
+
+
+def shaped_pressures(scaled, a):
+    """Yield indices of smooth cases with a shape, their :class:`~.pressure.Pressure` in units of E2*, and its error
+    (b,), over the largest pressure that is looked at."""
+    for mask, _ in kinds_of(scaled):
+        index = np.flatnonzero(mask)
+        part = scaled.take(index)
+        shape, body = shape_in(part), BODIES[str(part.base[0])](part)
+        response, even = respond(shape, body, a[index]), shape.even
+        several = np.flatnonzero(~even)
+        for rows in (np.flatnonzero(even), *several[:, None]):
+            if len(rows):
+                mesh = mesh_of(_WHOLE) if even[rows[0]] else _panels(shape.take(rows), a[index[rows]])
+                picked = type(response)(*(values[rows] for values in response))
+                yield index[rows], *_on(mesh, shape.take(rows), picked)
+
+
+def _on(mesh, shape, response):
+    zero = np.zeros(len(response.a))
+    pressure = Pressure(mesh, pressures(shape, response, zero, mesh.x))
+    p = pressures(shape, response, zero, _LOOKED_AT)
+    changes = np.abs(pressure_changes(response, zero, _LOOKED_AT)).max(axis=1)
+    off = np.abs(pressure.at(_LOOKED_AT) - p).max(axis=1)
+    load = 2 * np.pi * pressure.mean(np.ones(1))[:, 0] * response.a**2
+    return pressure, (off + changes) / np.abs(p).max(axis=1) + np.abs(load / response.P - 1)
+
+
+def _panels(shape, a):
+    """The :class:`~..numerics.mesh.Mesh` of one case, without its operator."""
+    kinks = shape.kinks()[0] / a[0]
+    singular = [1.0] * bool(shape.pointed[0]) + [float(s) for s in np.sqrt(1 - kinks[kinks < 1] ** 2)]
+    ends = sorted({0.0, 1.0, *singular})
+    breaks = set(ends)
+    for low, high in zip(ends[:-1], ends[1:], strict=True):
+        sides = (low in singular) + (high in singular)
+        gaps = (high - low) / max(sides, 1) * _SHRINK ** np.arange(1, _TIP_TIMES + 1)
+        breaks |= {low + gap for gap in gaps[:_TIMES]} if low in singular else set()
+        breaks |= {high - gap for gap in (gaps if high == 1 else gaps[:_TIMES])} if high in singular else set()
+        breaks |= {(low + high) / 2} if sides == 2 else set()
+    breaks = tuple(sorted(breaks))
+    s = on_panels(radau_nodes(_EACH), breaks)
+    s[-1] = 1.0
+    least = np.diff(breaks).min()
+    at = np.where(np.abs(s[:, None] - np.array([*singular, 9.0])).min(axis=1) < _BESIDE * least, s - _BESIDE * least, s)
+    none = np.zeros(0)
+    return Mesh(_EACH, breaks, s, np.sqrt((1 - at) * (1 + at)), none, none, none)

@@ -1,0 +1,52 @@
+"""The loop of load over depth that a bead on a gel makes: it jumps into contact, and off it elsewhere."""
+
+import numpy as np
+import xarray as xr
+
+from study.figures.registry import TWO_COLUMNS, Columns, figure, joined
+
+IN, OUT = "#2166ac", "#b2182b"  # colours of approach and retraction
+EDGE = 0.2  # of the depths, what is drawn beyond the loop
+
+
+def paths(case: xr.Dataset) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Depths and loads of approach and retraction on one cantilever, in m and N.
+
+    Without contact the load is 0. A jump has the slope -k of the cantilever, whose base stands still meanwhile.
+    """
+    D, P, k = case["D"].values, case["P"].values, float(case["k_machine"])
+    P_in, P_off, D_off = (float(case[name].isel(a=0)) for name in ("P_in", "P_off", "D_off"))
+    a_in, a_off = (float(case[name].isel(a=0)) for name in ("a_in", "a_off"))
+    far = EDGE * (D.max() - D_off)
+    after, before = case["a"].values > a_in, case["a"].values > a_off
+    back = np.array([D_off + P_off / k])  # where the punch comes to rest
+    start = min(D_off, float(back[0])) - far
+    approach = np.concatenate([[start, 0.0, -P_in / k], D[after]]), np.concatenate([[0.0, 0.0, P_in], P[after]])
+    leaving = np.concatenate([D[before][::-1], [D_off], back, [start]])
+    return {"approach": approach, "retraction": (leaving, np.concatenate([P[before][::-1], [P_off, 0.0, 0.0]]))}
+
+
+@figure("bead_on_gel", "bead_on_gel", size=(TWO_COLUMNS, 3.0), panels=(1, 2))
+def loop(panels, contacts: xr.Dataset) -> Columns:
+    """Load on a bead over its depth in a gel that sticks. Grey: all contacts, also those that no cantilever holds. The
+    bead jumps in where the surfaces meet (blue), and comes off where the cantilever cannot hold it any more (red): (a)
+    on a soft cantilever, (b) on a stiff one, which follows the curve farther. Dotted:
+    -1.5 π w R, the pull-off load on a half-space.
+
+    The area of a loop is the energy that it takes.
+    """
+    parts = []
+    held = -1.5 * np.pi * float(contacts["w_adhesion"] * contacts["R"])
+    for axes, letter, k in zip(panels, "ab", contacts["k_machine"].values.tolist(), strict=True):
+        case = contacts.sel(k_machine=k)
+        axes.plot(case["D"] * 1e6, case["P"] * 1e9, color="0.75", linewidth=3, linestyle="-", label="all contacts")
+        ways = paths(case)
+        for (name, (D, P)), colour in zip(ways.items(), (IN, OUT), strict=True):
+            axes.plot(D * 1e6, P * 1e9, color=colour, linewidth=1.1, linestyle="-", label=name)
+            where = np.full(len(D), ("approach", "retraction").index(name))
+            parts.append({"k (N/m)": np.full(len(D), k), "retraction": where, "D (m)": D, "P (N)": P})
+        axes.axhline(held * 1e9, color="k", linewidth=0.7, linestyle=(0, (1, 1.5)))
+        axes.set(title=f"({letter}) k = {k:g} N/m", xlabel="depth D, µm", ylabel="load P, nN")
+        axes.set(xlim=(-1.8, 1.2), ylim=(1.2 * float(contacts["P"].min()) * 1e9, 20))
+    panels[0].legend(fontsize=7, frameon=False, loc="upper left")
+    return joined(parts)

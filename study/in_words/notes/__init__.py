@@ -1,0 +1,1 @@
+"""Sentences about what a few contacts have alone: shapes, adhesion, asperities that yield."""

@@ -1,0 +1,110 @@
+"""The shape of the punch and what sticks, in words."""
+
+import numpy as np
+import xarray as xr
+
+from solver.shapes import PARABOLOID, SHAPES
+from solver.shapes.cone import KIND, PYRAMIDS
+
+from ...inputs.vocabulary import names
+from ...specimen.quantities import readable
+from ..numbers import in_its_unit
+
+#: Results of pull-off and pull-in that a summary lists, in this order.
+OF_PULL_OFF = tuple(name for name in names("pull_off") if name != "stable")
+#: Cones and what is taken for cones -> their half angle in degrees; None: it is an input.
+_CONES = {KIND.name: None} | {kind.name: float(kind.of(size=1).cot[0]) for kind in PYRAMIDS}
+#: Below this a correction is not worth a sentence: it is less than what the moduli of a material spread.
+_SMALL = 0.005
+
+
+def sticks(contacts: xr.Dataset) -> bool:
+    """Whether a work of adhesion is among the inputs."""
+    return "w_adhesion" in contacts.variables
+
+
+def shape_of(case: xr.Dataset) -> str:
+    """The shape of the punch of one contact; the paraboloid where none is given."""
+    return str(case["shape"].values) if "shape" in case.variables else PARABOLOID
+
+
+def of_shape(case: xr.Dataset) -> list[str]:
+    """Sentences about the shape of the punch; none of a paraboloid."""
+    shape = shape_of(case)
+    if shape == PARABOLOID:
+        return []
+    kind = SHAPES.get(shape)
+    said = [f"Shape: {kind.words if kind else shape}{_angle_of(shape)}."]
+    if np.isposinf(case["p0"]):
+        said.append("The tip is sharp: p(0) is infinite, and so any material gives way in the centre.")
+    elif np.isnan(case["p0"]) and np.isfinite(case["a"]) and case["status"] == 0:
+        said.append("The tip is sharp: p(0), pmax and λ(0) are not known, a, P and D are.")
+    if shape == "flat" and case["status"] == 0:
+        said.append("The pressure is infinite at the edge of a flat punch: a rounded one has shape = rounded_flat.")
+    return said + _inwards(case, shape)
+
+
+def _angle_of(shape: str) -> str:
+    cot = _CONES.get(shape)
+    return f" (half angle {np.degrees(np.arctan(1 / cot)):.4g}°)" if cot else ""
+
+
+def _inwards(case: xr.Dataset, shape: str) -> list[str]:
+    """What it makes that the surface under a cone is pulled inwards: Hay, Bolshakov and Pharr (1999)."""
+    nu = case.get("nu2" if case["base"] == "half_space" else "nu1")
+    if shape not in _CONES or nu is None:
+        return []
+    cot = _CONES[shape] or float(1 / np.tan(np.radians(case["half_angle"])))
+    c = cot * (1 - 2 * float(nu)) / (4 * (1 - float(nu)))
+    gamma = np.pi * (np.pi / 4 + 0.1548 * c) / (np.pi / 2 - 0.8312 * c) ** 2
+    if gamma - 1 < _SMALL:
+        return []
+    where = "" if case["base"] == "half_space" else " on a half-space of the layer's material"
+    return [
+        f"Note: a rigid cone pulls the surface inwards, which is left out here. At one depth the load is then about "
+        f"{gamma:.3g} times as large{where} (Hay, Bolshakov and Pharr 1999; docs/shapes.md)."
+    ]
+
+
+def of_adhesion(case: xr.Dataset) -> list[str]:
+    """Sentences about a contact that may stick: whether it is stable, when it comes off, to what it jumps."""
+    if not sticks(case):
+        return []
+    if not case["w_adhesion"] > 0:
+        return ["Adhesion: w_adhesion is 0, so that nothing sticks."]
+    if not np.isfinite(case["P_off"]):
+        return ["Adhesion: pull-off is not known."]
+    off = f"P = {_text(case, 'P_off')}, D = {_text(case, 'D_off')}, a = {_text(case, 'a_off')}"
+    held = _held(case)
+    said = [f"Adhesion: {held} it comes off at {off}."]
+    if case["status"] == 0:
+        state = "This contact is stable" if case["stable"] else "This contact is not stable: left alone it comes off"
+        said.insert(0, f"{state}.")
+    if np.isfinite(case["a_in"]) and case["a_in"] > 0:
+        said.append(f"Where the surfaces meet it jumps to a = {_text(case, 'a_in')} at P = {_text(case, 'P_in')}.")
+    if case["adhesion"] == "jkr" and not ({"z0", "sigma0"} & {*case.variables}):
+        said.append("Whether the attraction reaches too far for JKR is not known without its range z0.")
+    return said
+
+
+def _held(case: xr.Dataset) -> str:
+    """How the punch is held, as the beginning of a sentence."""
+    k = case["k_machine"] if "k_machine" in case.variables else None
+    if k is not None and np.isfinite(k) and k > 0:
+        return f"on a machine of {in_its_unit(case, 'k_machine', float(k))}"
+    stiff = bool(np.isinf(k)) if k is not None and not np.isnan(k) else "D" in case.coords
+    return "if its depth is controlled" if stiff else "if its load is controlled"
+
+
+def _text(case: xr.Dataset, name: str) -> str:
+    return in_its_unit(case, name, float(case[name]))
+
+
+def unit_of_length(case: xr.Dataset) -> list[str]:
+    """A sentence where a profile is in units of a length that nobody gave as such."""
+    scale = case.attrs.get("scale", "R")
+    in_R = shape_of(case) == "power" or shape_of(case).startswith("table:") and "table_unit" not in case.variables
+    if scale in ("R", "1") or not in_R or "R" not in case.variables:
+        return []
+    length = readable(float(case["R"]), "m")
+    return [f"R, the unit of length of the profile, is not given: {scale} is taken, {length}."]

@@ -1,0 +1,127 @@
+"""Shapes of the punch in calls and study files: their names, angles in degrees, tables, and what each of them needs."""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from solver import shapes
+from solver.shapes import table
+
+from ...specimen.quantities import has_unit, quantity
+from ...terminal import shown
+from ..grid import Grid, along
+from ..vocabulary import PARAMETERS, VOCABULARY, Entry, cases_with
+
+#: Angles of the punch: numbers of degrees.
+ANGLES = ("half_angle",)
+#: The shapes whose profile has the radius R in it. R is the unit of length of all others.
+ROUND = (shapes.PARABOLOID, "sphere")
+#: Inputs with a length of which the first that is given is the unit of length of a shape without a radius.
+LENGTHS = ("flat_radius", "tip_radius", "h")
+#: That unit where no such input is given.
+MICROMETRE = "1 um"
+
+
+def declare() -> None:
+    """Rows of the vocabulary for the parameters of shapes that are registered, those of tables too."""
+    for kind in shapes.SHAPES.values():
+        for name, row in kind.parameters.items():
+            if name not in VOCABULARY:
+                words = row.long_name or f"parameter of the shape {kind.name}"
+                VOCABULARY[name] = Entry(name, "shape", words, row.symbol or name, row.powers)
+            if name not in PARAMETERS:
+                PARAMETERS.append(name)
+
+
+def words_of(values: list) -> list:
+    """The values of `shape` in the solver's spelling: "cube_corner" of "Cube corner". Tables that are named are read.
+
+    Raises ValueError for a table that cannot be used.
+    """
+    words = [_plain(value) if isinstance(value, str) else value for value in values]
+    for word in {word for word in words if isinstance(word, str) and word.startswith(table.PREFIX)}:
+        table.TABLES.pop(word, None)  # the file may have changed
+        shapes.SHAPES.pop(word, None)
+        try:
+            shapes.named(word)
+        except ValueError as error:
+            raise ValueError(str(error).removeprefix("shape ")) from None
+    declare()
+    return words
+
+
+def _plain(word: str) -> str:
+    """A word in small letters with "_" for gaps; the path of a table as it is."""
+    return word if word.startswith(table.PREFIX) else word.strip().lower().replace(" ", "_").replace("-", "_")
+
+
+def in_degrees(name: str, values: Any) -> Any:
+    """The values of an angle as numbers of degrees: of "70.3 deg" 70.3, of "70.3 ± 0.5 deg" a Quantity.
+
+    values : a list, a range or a DataArray
+
+    Raises ValueError for a text or an array with another unit.
+    """
+    if isinstance(values, dict):
+        return {key: _degrees(name, value) if key in ("start", "stop") else value for key, value in values.items()}
+    if isinstance(values, list):
+        return [_degrees(name, value) for value in values]
+    unit = getattr(values, "attrs", {}).get("units", "1")
+    if unit in ("1", "", "dimensionless"):
+        return values
+    return values.copy(data=values.values * quantity(name, f"1 {unit}", "degree").value).drop_attrs(deep=False)
+
+
+def _degrees(name: str, value: Any) -> Any:
+    if not has_unit(value):
+        return value
+    if isinstance(value, str) and not any(sign.isalpha() or sign == "°" for sign in value):  # "70.3 ± 0.5"
+        value = f"{value} deg"
+    angle = quantity(name, value, "degree")
+    return angle if angle.spread else angle.value
+
+
+def left_out(name: str, sections: Any) -> bool:
+    """Whether a parameter of shapes stays out of a grid: no shape is given; `sections` has the names that are."""
+    return name in VOCABULARY and VOCABULARY[name].role == "shape" and "shape" not in sections
+
+
+def radius_needed(words: Any) -> bool:
+    """Whether some case has a shape with a radius."""
+    return bool(np.isin(words, ROUND).any())
+
+
+def in_metres(words: Any) -> Any:
+    """Whether a shape is a table with units of length in its header, of the form of `words`: a text or an array."""
+    there = [word for word, rows in table.TABLES.items() if rows.metres]
+    return words.isin(there) if hasattr(words, "isin") else np.isin(words, there) if np.ndim(words) else words in there
+
+
+def mistakes(grid: Grid, sections: Any, physical: bool) -> list[str]:
+    """Messages about shapes: numbers that no case has a use for, a radius under a flat punch, too wide a contact."""
+    messages, values = _without_use(grid, sections), partial(along, grid)
+    if "shape" not in grid.values:
+        return messages
+    words = values("shape")
+    if (words == "flat").any() and "a" in grid.values:
+        messages.append('a is given with shape = "flat": its contact radius is flat_radius; give P or D')
+    if "a" in grid.values and ((words == "sphere") & (values("a") >= 1)).any():
+        a = float(np.broadcast_to(values("a"), grid.shape)[np.broadcast_to(words == "sphere", grid.shape)].max())
+        messages.append(f'a = {a:g} R with shape = "sphere": the radius of the contact must be below that of the ball')
+    if np.any(in_metres(words)) and not physical:
+        example = 'R = "1 um", E2 = "1 MPa"'
+        messages.append(f"shape: the table has units in its header: give the other inputs with units too ({example})")
+    return messages
+
+
+def _without_use(grid: Grid, sections: Any) -> list[str]:
+    """Messages for numbers of shapes that are given though no case has a shape with them."""
+    messages = []
+    for name in sections:
+        if name in VOCABULARY and VOCABULARY[name].role == "shape" and name != "shape":
+            owners = VOCABULARY[name].parameter.needed_by[1]
+            users = " or ".join(shown(word) for word in owners)
+            if "shape" not in grid.values or not np.any(cases_with(name, partial(along, grid))):
+                messages.append(f"{name} is given, and no case has a shape with it: shape = {users}")
+    return messages

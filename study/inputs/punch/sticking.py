@@ -1,0 +1,91 @@
+"""Adhesion in calls and study files: which inputs go together, and what is refused."""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from solver.parameters import Parameter
+
+from ...specimen.quantities import readable
+from ...terminal import shown
+from ..grid import Grid, along
+from ..laws import smooth_laws
+from ..vocabulary import VOCABULARY, names
+
+OF_ADHESION = names("adhesion")
+#: Bounds of load and depth under adhesion.
+_PULLED = "[-1000, 1000]"
+#: The asperities pull with at most 1.5 π w Ra on each summit: their adhesion is taken for negligible where that makes
+#: less than this part of the mean pressure.
+_NEGLIGIBLE = 0.01
+
+
+def row_of(name: str, sections: Any) -> Parameter:
+    """The row of a parameter in a call that gives `sections`: under adhesion load and depth may be 0 and negative."""
+    row = VOCABULARY[name].parameter
+    return row._replace(interval=_PULLED) if name in ("P", "D") and "w_adhesion" in sections else row
+
+
+def left_out(name: str, sections: Any) -> bool:
+    """Whether a parameter of adhesion stays out of a grid: no work of adhesion is given."""
+    return name in OF_ADHESION and "w_adhesion" not in sections
+
+
+def adhesive(grid: Grid) -> np.ndarray:
+    """bool, along the dimensions of the grid: the cases that may stick."""
+    return along(grid, "w_adhesion") > 0
+
+
+def mistakes(grid: Grid, sections: Any) -> list[str]:
+    """Messages about inputs of adhesion that do not go together."""
+    if "w_adhesion" not in sections:
+        given = [name for name in OF_ADHESION if name in sections]
+        return [f"{name} is given without w_adhesion, the work of adhesion: nothing sticks" for name in given]
+    values, sticks = partial(along, grid), adhesive(grid)
+    messages = []
+    for name in ("P", "D"):
+        if name in grid.values and not sticks.any() and (values(name) <= 0).any():
+            messages.append(f"{name} must be > 0 where w_adhesion is 0")
+    maugis, dmt = sticks & (values("adhesion") == "maugis"), sticks & (values("adhesion") == "dmt")
+    given = {name: ~np.isnan(values(name)) for name in ("sigma0", "z0")}
+    both, none = (maugis & given["sigma0"] & given["z0"]).any(), (maugis & ~given["sigma0"] & ~given["z0"]).any()
+    if both or none:
+        number = "not both" if both else "one of them is missing"
+        messages.append(f'adhesion = "maugis" needs exactly one of sigma0 and z0 (sigma0 = w/(0.97 z0)): {number}')
+    extra = [name for name, there in given.items() if (dmt & there).any()]
+    messages += [f'{name} is given with adhesion = "dmt", which has no use for it' for name in extra]
+    if (dmt & (values("shape") != "paraboloid")).any():
+        messages.append(f'adhesion = "dmt" is for shape = "paraboloid", not {_first(values("shape"), "paraboloid")}')
+    if (sticks & (values("scheme") == "picard")).any():
+        messages.append('scheme = "picard" is for asperities, and adhesion for smooth punches: leave the scheme out')
+    return messages
+
+
+def _first(words: np.ndarray, but: str) -> str:
+    return shown(next(word for word in words.ravel().tolist() if word != but))
+
+
+def rough_and_sticking(grid: Grid, unit: Any) -> list[str]:
+    """The message for adhesion of a rough punch, with an estimate of what the asperities may pull.
+
+    unit : of pressures, in Pa, a number; None without units
+    """
+    rough = ~np.isin(along(grid, "micro"), smooth_laws())
+    if not (adhesive(grid) & rough).any():
+        return []
+    message = (
+        'w_adhesion > 0 needs micro = "smooth" written out: how asperities stick is not in the model. Give the '
+        "effective work of adhesion of the smooth shape, what is left of it by the roughness"
+    )
+    pull = 1.5 * np.pi * along(grid, "w_adhesion") * along(grid, "Ra") * along(grid, "Nbar")
+    pull = np.broadcast_to(pull, grid.shape)[np.broadcast_to(rough, grid.shape)]
+    largest = float(np.nanmax(pull, initial=0.0))
+    if largest > 0:
+        in_units = [f"{value:.3g} E2*" if unit is None else readable(value * unit, "Pa") for value in
+                    (largest, largest / _NEGLIGIBLE)]  # fmt: skip
+        message += (
+            f". These asperities pull with at most 1.5 pi w Ra Nbar = {in_units[0]}: where the mean pressure is above "
+            f"{in_units[1]} that is negligible, and w_adhesion may be left out"
+        )
+    return [message]

@@ -111,6 +111,9 @@ bench: $(READY) ## speed of the solver: bench.json
 speed: $(READY) ## speeds of what people run, on an idle machine: docs/speed.md
 	$(VENV)/bin/python tools/bench/benchmark.py --page docs/speed.md
 
+start: $(READY) ## what a command and a call take before they compute, in units of `import xarray`: the table of docs/speed.md
+	$(VENV)/bin/python tools/start/benchmark_start.py
+
 fit_coverage: $(READY) ## how right `rc.fit` is, and how fast, on 10,000 curves: the table of docs/fit.md
 	$(VENV)/bin/python tools/fit/coverage.py
 
@@ -121,8 +124,8 @@ lint: $(READY) ## ruff, and mypy for the public names
 clean: ## remove figures and tables that the program draws, and caches; results and .venv stay
 	@if [ -x $(VENV)/bin/python ]; then $(VENV)/bin/python tools/clean.py; fi
 
-# Wheels only: a compiler is needed for nothing, and used for the optional core of the solver. setuptools is one of the
-# pinned packages. A Python newer than the lock has no wheels of some pinned versions; there pip takes the newest ones.
+# Wheels only: a compiler is needed for nothing, and used for the optional core of the solver. Modules are compiled, as
+# pip does with a wheel, even where Python shall not write what it compiles. setuptools is one of the pinned packages. A Python newer than the lock has no wheels of some pinned versions; there pip takes the newest ones.
 $(READY): requirements.lock pyproject.toml $(wildcard setup.py solver/compiled/*.c solver/compiled/*.h)
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "roughcoat needs Python 3.11 or newer; name one: make setup PYTHON=python3.12"; exit 1; }
@@ -131,6 +134,7 @@ $(READY): requirements.lock pyproject.toml $(wildcard setup.py solver/compiled/*
 	  { echo "requirements.lock does not fit this Python: the newest versions are installed, not the pinned ones"; \
 	    $(VENV)/bin/python -m pip install --quiet --prefer-binary setuptools --editable '.[cluster,test,lint]'; }
 	$(VENV)/bin/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	$(VENV)/bin/python -m compileall -q roughcoat solver study studies
 	@touch $@
 
 # A study whose results are there and right computes nothing.

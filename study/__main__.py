@@ -148,10 +148,25 @@ def complete(commands: argparse.ArgumentParser) -> None:
 def perform(options, kept: str) -> int:
     """Run a command on each of its items, whatever is wrong with the others. Returns the largest exit code."""
     module, name = options.action
+    if wrong := wrong_core() if module not in ("reading", "exploring", "checking") else "":
+        say(wrong, sys.stderr)
+        return 2
     commands = import_module(f".commands.{module}", __package__)
     items = commands.items(options) if hasattr(commands, "items") else options.items
     ending.state.working = True  # before, during imports, a signal ends the process at once
     return max((_attempt(getattr(commands, name), options, item, kept) for item in items), default=0)
+
+
+def wrong_core() -> str:
+    """A message if the environment chooses a compiled core that there is not (docs/extending.md); else ""."""
+    if os.environ.get("ROUGHCOAT_CORE"):
+        from solver.compiled.library import core
+
+        try:
+            core()
+        except ValueError as error:
+            return str(error)
+    return ""
 
 
 def _attempt(act, options, item, kept: str) -> int:

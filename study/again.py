@@ -1,16 +1,19 @@
 """The contacts of a dataset as a problem that can be solved again, and the strengths of their bodies."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from solver import Problem
 from solver.laws import LAWS
 from solver.laws.elastic_plastic import TABOR
 from solver.shapes import PARABOLOID, SHAPES
 
+from .arrays import xarray_later as xr
+from .data.one_case import is_contact
 from .inputs.definition import StudyError
 from .inputs.laws import recall
 from .inputs.punch.shapes import MICROMETRE, in_metres
@@ -41,7 +44,7 @@ class Again(NamedTuple):
     shape: tuple[int, ...]
 
     @classmethod
-    def of(cls, contact: xr.Dataset, who: str) -> "Again":
+    def of(cls, contact: xr.Dataset, who: str) -> Again:
         """The problem of a dataset. Raises StudyError if it is no result, or has lost an input.
 
         who : the name of the public function, for messages
@@ -68,7 +71,7 @@ def refuse_without_stresses(again: Again, who: str) -> None:
 
 def _checked(contact: xr.Dataset, who: str) -> dict[str, Any]:
     """The inputs of the cases: numbers and texts, or DataArrays without coordinates. Raises StudyError."""
-    if not isinstance(contact, xr.Dataset) or "status" not in contact:
+    if not is_contact(contact) or "status" not in contact:
         raise StudyError([f"{who} takes a dataset of study.solve or of a results file, with its status"])
     recall(contact.attrs.get("micro_laws", ""))
     recall_layers(contact.coords)

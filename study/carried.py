@@ -1,10 +1,12 @@
 """Coordinates of DataArrays that are inputs, such as who measured a load, go into the results."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 
 import numpy as np
-import xarray as xr
 
+from .arrays import xarray_later as xr
 from .inputs.vocabulary import BODIES, ROWS
 from .specimen.foreign import plain
 

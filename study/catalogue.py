@@ -76,8 +76,19 @@ def renewed(kind: str, name: str, results="results", folder="figures") -> list[P
     """Write a figure or table, as `draw` and `tabulate` do, and put it into the record of the folder."""
     if (kind, name) == ("figure", CAPTIONS):
         return draw(name, results, folder)
+    made_of, paths = written(kind, name, results, folder)
+    return noted(kind, name, folder, made_of, paths)
+
+
+def written(kind: str, name: str, results: Folder, folder: Folder, bare: bool = False) -> tuple[str, list[Path]]:
+    """Write a figure or table; the digest of what its files follow from, and the files."""
     made_of = digest(kind, name, results)  # before: results that change meanwhile make it outdated
-    paths = (tabulate if kind == "table" else draw)(name, results, folder)
+    paths = tabulate(name, results, folder) if kind == "table" else draw(name, results, folder, bare)
+    return made_of, paths
+
+
+def noted(kind: str, name: str, folder: Folder, made_of: str, paths: list[Path]) -> list[Path]:
+    """Put what `written` gives into the record of the folder; returns the paths."""
     record.note(Path(folder), what(kind, name), made_of, paths)
     return paths
 

@@ -1,10 +1,11 @@
 """Sensitivities of results: d ln result/d ln input, over the dimensions of the results and `input`."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from solver import Problem, solve
 from solver import sensitivities as derivatives
@@ -12,6 +13,7 @@ from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import uses
 
 from .again import Again, of_all_cases
+from .arrays import xarray_later as xr
 from .inputs.definition import StudyError
 from .inputs.scene.changes import SCALES, changes
 from .inputs.scene.layers import moduli_of

@@ -6,18 +6,19 @@ import inspect
 import time
 import warnings
 from collections.abc import Sequence
-from typing import Unpack
+from typing import Any, TextIO, Unpack
 
 import numpy as np
-import xarray as xr
 
+from .arrays import xarray_later as xr
 from .carried import with_coordinates
-from .data.dataset import parts
-from .data.si import dataset_of
+from .data.dataset import Parts, parts
+from .data.one_case import OneCase
+from .data.si import dataset_in_units, in_units
 from .derivatives import sensitivities as derivatives_of
 from .in_words import FarOutside, doubts, falling, far_outside
 from .inputs.checks import unloading
-from .inputs.definition import POINTS, StudyError
+from .inputs.definition import POINTS, Definition, StudyError
 from .inputs.reading import from_call
 from .inputs.scene.hints import Parameters
 from .inputs.vocabulary import VOCABULARY
@@ -154,8 +155,8 @@ def solve(
     if far := far_outside(definition):
         warnings.warn("\n".join(far), FarOutside, stacklevel=2)
     if chunks is None:
-        arrays = solved(definition, workers, stream, begun)
-        found = dataset_of(definition, parts(definition, arrays, "study.solve").settings_apart())
+        made = _solved_parts(definition, workers, stream, begun)
+        found = dataset_in_units(definition, made)
         found = found.assign(derivatives_of(found).data_vars) if sensitivities else found
     else:
         from .lazy import lazily  # the arrays of dask take a while to import
@@ -165,10 +166,25 @@ def solve(
     for text in left_out:
         warnings.warn(text, stacklevel=2)
     if chunks is None:
-        beyond = doubts(found) if definition.scene else falling(found)
+        contacts = found if definition.grid.sizes else OneCase(made)
+        beyond = doubts(contacts) if definition.scene else falling(contacts)
         if beyond:
             warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)
     return found
+
+
+def solve_one(*, same_piece: bool = False, **parameters: Any) -> OneCase:
+    """One contact, as of :func:`solve`, without a dataset, and without warnings of what its summary says."""
+    begun = time.monotonic()
+    definition = from_call(parameters, [], same_piece, {"title": "", "output": {"x": POINTS, "profiles": True}})
+    if far := far_outside(definition):
+        warnings.warn("\n".join(far), FarOutside, stacklevel=2)
+    return OneCase(_solved_parts(definition, None, screen_of(None), begun))
+
+
+def _solved_parts(definition: Definition, workers: int | None, stream: TextIO | None, begun: float) -> Parts:
+    arrays = solved(definition, workers, stream, begun)
+    return in_units(definition, parts(definition, arrays, "study.solve").settings_apart())
 
 
 def signature() -> inspect.Signature:

@@ -18,9 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebval, chebvander
-from scipy.sparse import csc_array
-from scipy.special import erfc, spherical_jn
 
+from ..numerics import special
 from ..numerics.pieces import against, pieces
 from ..numerics.quadrature import gauss_legendre, radau_nodes
 
@@ -46,7 +45,7 @@ _SERIES = np.linalg.inv(chebvander(2 * _NODES - 1, _TAU - 1))
 
 def step(kappa):
     """χ(κ): 1 below κ = 1/4, 0 above κ = 1, to 1e-6."""
-    return erfc(_STEP * (np.log2(np.maximum(kappa, 1e-9)) + 1)) / 2
+    return special.erfc(_STEP * (np.log2(np.maximum(kappa, 1e-9)) + 1)) / 2
 
 
 @lru_cache(maxsize=1)
@@ -64,7 +63,7 @@ def waves():
     tau = (start[:, None] + (stop - start)[:, None] * _NODES).ravel()
     degree = np.arange(_KAPPA)
     legendre = np.linalg.inv(np.polynomial.legendre.legvander(2 * t - 1, _KAPPA - 1))
-    bessel = spherical_jn(degree[:, None, None], tau[:, None] * width / 2)
+    bessel = special.spherical_jn(degree[:, None, None], tau[:, None] * width / 2)
     wave = np.real(np.exp(1j * tau[:, None] * (low + width / 2)) * (1j**degree)[:, None, None])
     matrix = np.einsum("lto,lg->tog", width * bessel * wave, legendre).reshape(len(tau), -1)
     return kappa, tau, matrix / (np.pi * kappa)
@@ -121,6 +120,8 @@ class Convolution(NamedTuple):
     def whole(self):
         """The same as a :class:`Whole`."""
         m, panels, order = self.shape
+        from scipy.sparse import csc_array  # here, for it takes a while and few contacts are on films
+
         count, first = len(waves()[1]), np.repeat(np.arange(len(self.ends) - 1) * _TAU, np.diff(self.ends))
         back = np.argsort(self.place)
         first, basis = first[back], (chebvander(self.local, _TAU - 1) @ _SERIES)[back]

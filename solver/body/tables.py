@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
-from scipy.special import j0, j1
 
+from ..numerics import special
 from ..numerics.kept import Kept
 from ..numerics.quadrature import gauss_legendre, radau_nodes
 from . import film
@@ -103,7 +103,7 @@ def table(mesh, sampler, octave, stiffness, many):
 def _waves(mesh, octave, stiffness):
     """J and φ of a :class:`OctaveTable`, the same for many cases and for few."""
     k, _ = quadrature(octave, stiffness)
-    return np.hstack([less_edge(k, mesh.s), j0(k)[:, None]]), transform(mesh, k)
+    return np.hstack([less_edge(k, mesh.s), special.j0(k)[:, None]]), transform(mesh, k)
 
 
 @_kept
@@ -156,7 +156,7 @@ def _moments(low, high, count, k_bytes):
     angle, weight = _angles(low, high, k.max(), count)
     sin, cos = np.sin(angle), np.cos(angle)
     local = np.clip(2 * (sin - low) / (high - low) - 1, -1, 1)
-    return j0(k[:, None] * cos) @ ((weight * sin * cos)[:, None] * legvander(local, count - 1))
+    return special.j0(k[:, None] * cos) @ ((weight * sin * cos)[:, None] * legvander(local, count - 1))
 
 
 def _angles(low, high, k, order):
@@ -176,13 +176,13 @@ def _angles(low, high, k, order):
 
 def less_edge(k, s):
     """J0(k sqrt(1 - s²)) - J0(k), (G, m) for k (G,) and s (m,). Next to the edge it is a Taylor series at k."""
-    edge, near = j0(k), s < _NEAR
+    edge, near = special.j0(k), s < _NEAR
     if not near.any():
-        return j0(k[:, None] * np.sqrt((1 - s) * (1 + s))) - edge[:, None]
+        return special.j0(k[:, None] * np.sqrt((1 - s) * (1 + s))) - edge[:, None]
     values, far, s = np.empty((len(k), len(s))), s[~near], s[near]
-    values[:, ~near] = j0(k[:, None] * np.sqrt((1 - far) * (1 + far))) - edge[:, None]
+    values[:, ~near] = special.j0(k[:, None] * np.sqrt((1 - far) * (1 + far))) - edge[:, None]
     # coefficients of t^-1, t^0, t^1, ... in J0(k + t), from Bessel's equation (k + t) y'' + y' + (k + t) y = 0
-    terms = [0 * k, edge, -j1(k)]
+    terms = [0 * k, edge, -special.j1(k)]
     for m in range(_TERMS - 1):
         terms.append(-((m + 1) ** 2 * terms[-1] / k + terms[-2] + terms[-3] / k) / ((m + 1) * (m + 2)))
     t = -k[:, None] * (s * s / (1 + np.sqrt((1 - s) * (1 + s))))

@@ -43,9 +43,9 @@ static int64_t at_stage(Group *c, Run *run, int64_t rung, int stage, void (*work
     if (count) by_kinds(c, run, count, stage != AT_GUESS, work);
     return count;
 }
-static void on_rung(Group *c, Run *run, int64_t r) {
-    const Batch *b = c->b;
-    const Mesh *m = c->mesh = b->mesh(b->ladder[r]);
+static void on_rung(Group *c, const Batch *b, Run *run, int64_t r) {
+    int64_t i = 0; while (i < b->size && run->states[i].rung != r) i++;
+    const Mesh *m = c->mesh = i < b->size ? b->mesh(b->ladder[r]) : 0;        /* it takes long to make */
     if (!m) return;
     memset(c->tables, 0, sizeof(c->tables));
     c->on.n = m->n, c->on.s = m->s, c->on.w = m->w, c->on.half_space = m->K;
@@ -70,7 +70,7 @@ static int solve(const Batch *b, int64_t most) {
     double *y = (double *)(run.sorted + size);
     for (int64_t i = 0; i < size; i++) states[i] = (State){.y = y + i * MOST_NODES, .stage = AT_GUESS};
     at_stage(c, &run, 0, AT_GUESS, begin);
-    for (int64_t r = 0; r + 1 < b->rungs; r++) on_rung(c, &run, r);
+    for (int64_t r = 0; r + 1 < b->rungs; r++) on_rung(c, b, &run, r);
     free(block);
     return 1;
 }

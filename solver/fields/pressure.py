@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import legder, legvander
-from scipy.special import j0, ndtr
 
 from ..body.tables import transform
+from ..numerics import special
 from ..numerics.mesh import Mesh
 from ..numerics.quadrature import gauss_legendre, lagrange, radau_nodes
 
@@ -82,9 +82,9 @@ def _waves(mesh, k_bytes):
         return transform(mesh, k)
     s, weight = _edge_rule(mesh, k[-1], deep)
     x, middle = np.sqrt((1 - s) * (1 + s)), 1 - _WINDOW / (2 * k[0]) - (deep - _WINDOW / k[0])
-    window = ndtr((x - middle) * (k[0] / _WIDE))
+    window = special.ndtr((x - middle) * (k[0] / _WIDE))
     weights = mesh.basis(s) * (weight * s * window)[:, None]
-    return np.concatenate([j0(part[:, None] * x) @ weights for part in np.array_split(k, len(k) // 1000 + 1)])
+    return np.concatenate([special.j0(part[:, None] * x) @ weights for part in np.array_split(k, len(k) // 1000 + 1)])
 
 
 _kept_waves = lru_cache(maxsize=64)(_waves)

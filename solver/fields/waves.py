@@ -8,8 +8,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import j0, j1
 
+from ..numerics import special
 from ..numerics.quadrature import gauss_legendre
 from .transfer import THIN, Bodies, Kind, wave_state
 
@@ -128,7 +128,7 @@ def bessel(k, r, most):
     """J_m (K, R) of k r, m from 0 to `most`, 2 or 3; right to 1e-15 absolutely."""
     x = k[:, None] * r
     away = np.where(x > 0, x, 1.0)
-    J = [j0(x), j1(x)]
+    J = [special.j0(x), special.j1(x)]
     J.append(2 * J[1] / away - J[0] * (x > 0))
     return (
         J if most == 2 else [*J, np.where(x < _SMALL, _series_of_third(np.minimum(x, _SMALL)), 4 * J[2] / away - J[1])]

@@ -14,8 +14,8 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import erf
 
+from ..numerics import special
 from ..numerics.quadrature import gauss_legendre
 from ..parameters import Parameter
 from . import disc_cell, spread
@@ -100,7 +100,7 @@ class Histogram(NamedTuple):
 
 
 def _normal(x, cut):
-    return np.exp(-((cut - x) ** 2) / 2) / (np.sqrt(2 * np.pi) * erf(cut / np.sqrt(2)))
+    return np.exp(-((cut - x) ** 2) / 2) / (np.sqrt(2 * np.pi) * special.erf(cut / np.sqrt(2)))
 
 
 def _uniform(x, cut):

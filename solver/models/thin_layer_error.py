@@ -68,7 +68,8 @@ def _shift_and_size(n, nu1, nu2, bonded):
     n, nu1, nu2, bonded = (v.ravel() for v in arrays)
     with np.errstate(divide="ignore"):  # n = 0
         both, tabulated = np.empty((2, len(n))), (bonded == 0) & (np.abs(np.log(n)) < _RANGE)
-    both[:, tabulated] = _without_friction()(np.log(n[tabulated]))  # its integrand is positive
+    if tabulated.any():
+        both[:, tabulated] = _without_friction()(np.log(n[tabulated]))  # its integrand is positive
     rest = np.flatnonzero(~tabulated)
     if len(rest):  # a batch has few materials: each is integrated once
         materials, places = np.unique([v[rest] for v in (n, nu1, nu2, bonded)], axis=1, return_inverse=True)

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
-from scipy.special import ellipkm1
 
+from . import special
 from .pieces import against, pieces
 from .quadrature import gauss_legendre, lagrange, radau_nodes
 
@@ -120,4 +120,4 @@ def _kernel(s, gap, sign):
     """s' K(x_</x_>)/x_> at s' = s + sign·gap, x_< and x_> the smaller and the larger of x and x'; all broadcast."""
     point = s + sign * gap
     outer2 = (1 - s) * (1 + s) if sign > 0 else ((1 - s) + gap) * (1 + point)  # the larger x²
-    return point * ellipkm1(np.minimum(gap * (s + point) / outer2, 1.0)) / np.sqrt(outer2)
+    return point * special.ellipkm1(np.minimum(gap * (s + point) / outer2, 1.0)) / np.sqrt(outer2)

@@ -7,7 +7,8 @@ from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
-from scipy.special import roots_jacobi
+
+from .special import radau_points
 
 #: Number of subpanels towards a singularity, each a quarter as long as the one before. Beyond them one is left, on
 #: which the variable is x = t^_POWER: in t the integrand is smooth.
@@ -29,8 +30,7 @@ def gauss_legendre(n):
 def radau_nodes(n):
     """Gauss-Radau nodes (n,) on [0, 1], ascending, the last one exactly 1. Their rule has the weight function 1 and is
     exact to degree 2n - 2."""
-    inner, _ = roots_jacobi(n - 1, 1.0, 0.0)
-    return _frozen(np.append((inner + 1) / 2, 1.0))
+    return _frozen(np.append((radau_points(n) + 1) / 2, 1.0))
 
 
 @lru_cache(maxsize=256)

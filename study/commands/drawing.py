@@ -1,5 +1,6 @@
 """The commands that draw and tabulate results. Each takes one name and returns an exit code."""
 
+import atexit
 import logging
 import sys
 from functools import partial
@@ -18,19 +19,23 @@ from ..inputs.definition import StudyError
 from ..inputs.grid import twins
 from ..inputs.places import known_studies, study_file
 from ..terminal import answer, on_one_line, say
+from ..work.second import Second
 from .computing import completed
 from .rows import results_of, write_rows
 
 log = logging.getLogger(__name__)
 KINDS = {"plot": "figure", "table": "table"}
 """Command -> kind of what it writes."""
+MANY = 8
+"""From so many figures on a second process draws some of them: it takes as long to start as two to draw."""
 
 
 def items(options) -> list[str]:
     """The names of figures, tables or studies that were given; "all" stands for those that need no long study."""
     if options.command == "tradeoff":
         return ["tradeoff"]
-    return catalogue.usual(KINDS[options.command]) if options.items == ["all"] else options.items
+    options.names = catalogue.usual(KINDS[options.command]) if options.items == ["all"] else options.items
+    return options.names
 
 
 def plot(options, name: str) -> int:
@@ -94,21 +99,56 @@ def tradeoff(options, name: str) -> int:
 def _write(options, name: str) -> int:
     kind = KINDS[options.command]
     bare = kind == "figure" and options.bare
-    make = catalogue.tabulate if kind == "table" else catalogue.draw
+    make = catalogue.tabulate if kind == "table" else partial(catalogue.draw, bare=bare)
     if options.run:
-        make, studies = partial(catalogue.renewed, kind), catalogue.needed(kind, name)
-        code = max((_ready(options, study, study_beside(kind, name)) for study in studies), default=0)
+        make = make if bare else partial(catalogue.renewed, kind)
+        code = _prepared(options, kind, name)
         if code or not (bare or catalogue.outdated(kind, name, options.results, options.folder)):
             return code
-    make = partial(catalogue.draw, bare=True) if bare else make
+    second = _second(options, kind, bare)
     try:
-        answer(*make(name, options.results, options.folder))
+        made = second.result_of(name) if second else None
+        if made is None:
+            answer(*make(name, options.results, options.folder))
+        else:
+            answer(*(catalogue.noted(kind, name, options.folder, *made) if options.run and not bare else made[1]))
     except (StudyError, OSError):
         raise
     except Exception as error:  # of the function of the figure or table; the others are made
         log.info("%s", name, exc_info=True)
         raise StudyError([f"{name}: its function fails: {_said(error)}"], code=1) from error
     return 0
+
+
+def _prepared(options, kind: str, name: str) -> int:
+    """Compute what is missing of the studies that a figure or table needs. Returns the exit code."""
+    studies = catalogue.needed(kind, name)
+    return max((_ready(options, study, study_beside(kind, name)) for study in studies), default=0)
+
+
+def _second(options, kind: str, bare: bool) -> Second | None:
+    """The second process of a command that draws many figures; None of a few, for it takes a while to start.
+
+    It gets those that can be drawn: if studies are run, they are run before the first figure is drawn.
+    """
+    if kind == "figure" and len(options.names) >= MANY and not hasattr(options, "second"):
+        names = [name for name in dict.fromkeys(options.names) if _waits(options, kind, name, bare)]
+        tasks = {name: (kind, name, options.results, options.folder, bare) for name in names}
+        options.second = Second(catalogue.written, tasks)
+        atexit.register(options.second.end)
+    return getattr(options, "second", None)
+
+
+def _waits(options, kind: str, name: str, bare: bool) -> bool:
+    """Whether a figure is to be drawn, and can be, as far as that is seen before."""
+    if name == catalogue.CAPTIONS:
+        return False
+    try:
+        if options.run and _prepared(options, kind, name):
+            return False
+        return bare or not options.run or catalogue.outdated(kind, name, options.results, options.folder)
+    except StudyError:  # it is said when its turn comes
+        return False
 
 
 def _ready(options, study: str, beside: Path | None) -> int:

@@ -1,5 +1,7 @@
 """The command `point`: one contact in the terminal, in words or as JSON."""
 
+from __future__ import annotations
+
 import io
 import json
 import math
@@ -11,10 +13,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
+from ..arrays import xarray_later as xr
 from ..data.dataset import decode
 from ..data.derived import QUANTITIES
+from ..data.one_case import as_dataset
 from ..derivatives import spread_of_formula
 from ..in_words import SHOWN, FarOutside, doubts, summary
 from ..in_words.columns import columns
@@ -22,7 +25,7 @@ from ..in_words.inputs import all_inputs
 from ..in_words.sentences import assumed
 from ..inputs.definition import StudyError
 from ..inputs.scene.names import INFINITE
-from ..solving import solve
+from ..solving import solve, solve_one
 from ..terminal import answer, say
 from .arguments import SWITCH, assignment
 
@@ -41,16 +44,20 @@ def point(options, texts: list[str]) -> int:
     parameters, picture = parameters_of(texts), options.stresses
     if picture and not picture.lower().endswith(_PICTURES):
         raise StudyError([f"--stresses {picture}: must end with one of {', '.join(_PICTURES)}"])
-    if picture and any(isinstance(value, list) for value in parameters.values()):
+    several = any(isinstance(value, list) for value in parameters.values())
+    if picture and several:
         raise StudyError([f"--stresses {picture}: the picture is of one contact, and there is a list of values"])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the summary says it; but that may take long
         warnings.simplefilter("always", FarOutside)
         warnings.showwarning = lambda text, *_: say(f"beware: {text}", sys.stderr)
         try:
-            contact = solve(**parameters)  # with the profile p, which may be largest in a ring
+            # with the profile p, which may be largest in a ring
+            contact = (solve if several else solve_one)(**parameters)
         except StudyError as error:
             raise StudyError(message.removeprefix("solve: ") for message in error.messages) from None
+    if options.json or picture:
+        contact = as_dataset(contact)
     text = _as_json(contact) if options.json else columns(contact) if contact["status"].dims else summary(contact)
     code = answer(text) or int((contact["status"] != 0).any())
     if contact["status"].dims and not options.json:  # a table has no sentences

@@ -1,13 +1,16 @@
 """Results as datasets: flat arrays -> labelled Dataset with CF-1.11 attributes; numbers of flags as names."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from solver import Model, Status
 from solver.status import NO_SOLUTION
 
+from ..arrays import xarray_later as xr
+from ..arrays.labelled import Labelled, as_xarray
 from ..inputs.definition import Definition
 from ..inputs.grid import along, unflatten
 from ..inputs.identity import law_versions
@@ -57,8 +60,8 @@ class Parts(NamedTuple):
     by_input : result -> its derivatives by the inputs of the definition, (*grid.shape, k) and (*grid.shape, k, m)
     """
 
-    variables: dict[str, xr.Variable]
-    coords: dict[str, xr.Variable]
+    variables: dict[str, Labelled]
+    coords: dict[str, Labelled]
     attributes: dict
     by_input: dict[str, np.ndarray] = {}
 
@@ -68,11 +71,15 @@ class Parts(NamedTuple):
         `study.solve` has these as attributes. `xr.concat` stops comparing coordinates at the first that the second
         dataset lacks.
         """
-        last = {name: variable for name, variable in self.coords.items() if name in NUMERICS}
-        coords = {name: variable for name, variable in self.coords.items() if name not in NUMERICS} | last
-        return without_fill_values(xr.Dataset(self.variables, coords, self.attributes))
+        variables, coords = (
+            {name: as_xarray(variable, name) for name, variable in table.items()}
+            for table in (self.variables, self.coords)
+        )
+        last = {name: variable for name, variable in coords.items() if name in NUMERICS}
+        coords = {name: variable for name, variable in coords.items() if name not in NUMERICS} | last
+        return without_fill_values(xr.Dataset(variables, coords, self.attributes))
 
-    def settings_apart(self) -> "Parts":
+    def settings_apart(self) -> Parts:
         """The parts with numerical settings that all cases share as attributes, not as coordinates.
 
         Dropping variables of a dataset would copy all others.
@@ -95,14 +102,14 @@ def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -
     return made
 
 
-def _strengths(definition: Definition) -> dict[str, xr.Variable]:
+def _strengths(definition: Definition) -> dict[str, Labelled]:
     """Yield strengths of the materials that are named, over the unit of moduli; NaN of those that have none."""
     scene, strengths = definition.scene, {}
     for body, name in (("layer", "Y1"), ("body", "Y2")):
         if body in scene.names:
             dim, texts = scene.names[body]
             values = np.array([strength_of(text) for text in texts])
-            strengths[name] = xr.Variable(dim, values) if dim else xr.Variable((), values[0])
+            strengths[name] = Labelled(dim, values) if dim else Labelled((), values[0])
             strengths[name] = strengths[name] / bare_variable(scene.unit)
     return strengths
 
@@ -115,12 +122,12 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     attributes_of = {name: attributes(name, rigid) for name in (*PARAMETERS, *names("coordinate")) if name in values}
     for name in ("B", "beta") if grid.fitted else ():
         attributes_of[name]["comment"] = COMMENT
-    coordinates = {name: xr.Variable(*pair, attributes_of.get(name, {})) for name, pair in values.items()}
-    coordinates["x"] = xr.Variable(("x",), definition.x, attributes("x"))
+    coordinates = {name: Labelled(*pair, attributes_of.get(name, {})) for name, pair in values.items()}
+    coordinates["x"] = Labelled(("x",), definition.x, attributes("x"))
     dims = tuple(grid.sizes)
     flats = {name: flat.astype(bool) if name in TRUTHS else flat for name, flat in arrays.items()}
     variables = {
-        name: xr.Variable(dims + ("x",) * (flat.ndim - 1), unflatten(grid, flat), attributes(name, rigid))
+        name: Labelled(dims + ("x",) * (flat.ndim - 1), unflatten(grid, flat), attributes(name, rigid))
         for name, flat in flats.items()
         if name not in grid.values and not name.endswith(BY_INPUT)
     }
@@ -188,6 +195,11 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
     >>> study.decode(found.model_used).values.tolist()
     ['smooth_half_space', 'smooth_half_space']
     """
+    return xr.DataArray(flag_words(flags), flags.coords, flags.dims, flags.name)
+
+
+def flag_words(flags: xr.DataArray | Labelled) -> np.ndarray:
+    """The names of flags, as of :func:`decode`, of their shape."""
     flags_of = {"status": status_attributes, "model_used": model_attributes, "validity": validity_attributes}
     attributes = flags.attrs
     if "flag_meanings" not in attributes:  # arithmetic of xarray loses attributes
@@ -206,4 +218,4 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
     meanings = np.array(texts, dtype=str).reshape(flags.shape)
     if "flag_masks" in attributes and flags.dtype.kind == "f":  # else NaN would be read as the mask 0: a good case
         meanings = np.where(np.isfinite(flags.values), meanings, status_words()[NOT_RUN])
-    return xr.DataArray(meanings, flags.coords, flags.dims, flags.name)
+    return meanings

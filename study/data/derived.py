@@ -3,17 +3,19 @@
 Every function takes an opened dataset. The attributes of what it returns come from the vocabulary.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from functools import wraps
 from inspect import cleandoc
 
 import numpy as np
-import xarray as xr
 
 from solver import Model
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS, identity, name_in
 
+from ..arrays import xarray_later as xr
 from ..inputs.scene.scales import without_unit
 from ..inputs.vocabulary import ROWS, VOCABULARY, attributes
 from ..rules import rule
@@ -176,8 +178,7 @@ def depth_of_the_body(dataset: xr.Dataset) -> xr.DataArray:
     D is the approach of distant points of both bodies. The punch, a half-space of E3* = E1*/m, gives way in the centre
     by (2/E3*) ∫ p dr, and by the part m/(1 + m) of the asperities' A[p(0)]. The coated body gives way by the rest. A
     rigid punch does not give way. The integral is that of a cubic spline through the profile p, in arcsin(r/a). NaN
-    where that spline misses the load by more than LOAD_MISSED: the profile has too few points. Needs the profile p at
-    5 points or more, and what `peak_pressure` needs.
+    where that spline misses the load by more than LOAD_MISSED. Needs what `peak_pressure` needs, and p at 5 points.
     """
     m = dataset.get("m", xr.DataArray(0.0))
     if (m == 0).all():
@@ -185,11 +186,11 @@ def depth_of_the_body(dataset: xr.Dataset) -> xr.DataArray:
     p = _profile(dataset, "D_body")
     if dataset.sizes["x"] < LEAST_POINTS:
         raise ValueError(f"D_body needs the profile p at {LEAST_POINTS} points or more, x = 33 say")
-    unit, _ = _scales(dataset, "D_body")
     along, over_area = (xr.DataArray(weights, dims="x") for weights in _weights(dataset["x"].values))
     integral, load = (p * along).sum("x", skipna=False), 2 * np.pi * dataset["a"] ** 2 * (p * over_area).sum("x")
     share = m / (1 + m) * dataset["A0"].where(_rough_model(dataset["model_used"]), 0.0)
-    depth = dataset["D"] - 2 * m / (_surface_modulus(dataset) * unit) * dataset["a"] * integral - share
+    modulus = _surface_modulus(dataset) * _scales(dataset, "D_body")[0]
+    depth = dataset["D"] - 2 * m / modulus * dataset["a"] * integral - share
     return depth.where((m == 0) | (abs(load / dataset["P"] - 1) <= LOAD_MISSED))
 
 

@@ -1,15 +1,17 @@
 """Results in SI units, with their spreads, of contacts whose inputs have units."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
+from ..arrays import xarray_later as xr
+from ..arrays.labelled import Labelled
 from ..inputs.definition import Definition
 from ..inputs.scene.scene import Scene, bare_variable
 from ..inputs.vocabulary import ROWS, VOCABULARY
 from .dataset import Parts
-from .index import searchable
 from .spreads import spreads_of
 from .units import PHYSICAL_SCALE, physical_attributes, with_unit
 
@@ -19,11 +21,25 @@ SAME_PIECE = "same_piece: bodies of one material are one piece of it"
 
 def dataset_of(definition: Definition, parts: Parts) -> xr.Dataset:
     """The dataset of a study: in SI units if the study has units, else dimensionless."""
-    return results(definition, parts) if definition.scene else parts.dataset()
+    return dataset_in_units(definition, in_units(definition, parts))
 
 
-def results(definition: Definition, parts: Parts) -> xr.Dataset:
-    """The dataset in SI units, from dimensionless parts: inputs in SI units, results with their spreads."""
+def dataset_in_units(definition: Definition, parts: Parts) -> xr.Dataset:
+    """The dataset of parts that `in_units` has made."""
+    if not definition.scene or not definition.grid.sizes:  # there is nothing to search along
+        return parts.dataset()
+    from .index import searchable
+
+    return searchable(parts.dataset())
+
+
+def in_units(definition: Definition, parts: Parts) -> Parts:
+    """The parts, dimensionless before, in the units of the study."""
+    return results(definition, parts) if definition.scene else parts
+
+
+def results(definition: Definition, parts: Parts) -> Parts:
+    """The parts in SI units, from dimensionless ones: inputs in SI units, results with their spreads."""
     scene, results, coords = definition.scene, {}, {}
     spreads = spreads_of(definition, parts) if parts.by_input else {}
     for name, variable in (parts.variables | parts.coords).items():
@@ -32,7 +48,7 @@ def results(definition: Definition, parts: Parts) -> xr.Dataset:
         has_powers = name in VOCABULARY and VOCABULARY[name].powers != (0, 0)
         quantity = _in_si(name, variable, scene.unit, scene.R) if has_powers else variable
         if name in spreads:
-            spread = _in_si(name, xr.Variable(quantity.dims, spreads[name]), scene.unit, scene.R)
+            spread = _in_si(name, Labelled(quantity.dims, spreads[name]), scene.unit, scene.R)
             long_name = f"standard deviation of {name}, from the spreads of the inputs"
             spread.attrs = {"long_name": long_name} | _units(VOCABULARY[name].unit)
             results[f"{name}_spread"] = spread
@@ -45,29 +61,30 @@ def results(definition: Definition, parts: Parts) -> xr.Dataset:
     for body, (dim, texts) in scene.names.items():
         values = texts if dim else texts[0]
         comment = {"comment": SAME_PIECE} if scene.same_piece and scene.spreads else {}
-        coords[body] = xr.Variable(dim or (), values, {"long_name": f"material of the {body}"} | comment)
+        coords[body] = Labelled(dim or (), values, {"long_name": f"material of the {body}"} | comment)
     for name, cases in scene.cases_of.items():
         if name in coords:
-            coords[name] = coords[name].where(cases.variable, "" if name == "layer" else np.nan)
+            none = "" if name == "layer" else np.nan
+            coords[name] = Labelled.of(coords[name].to_xarray().where(cases.variable, none))
     if scene.labels:
-        coords["label"] = xr.Variable("case", scene.labels)
+        coords["label"] = Labelled("case", scene.labels)
     for name in scene.assumed:
         coords[name].attrs["comment"] = ASSUMED
     pairs = [f"{first} and {second}: {v:g}" for (first, second), v in scene.correlations.items() if np.ndim(v) == 0]
     correlations = {"correlations": "; ".join(pairs)} if pairs else {}
     attributes = parts.attributes | correlations | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
-    return searchable(Parts(_renamed(scene, results), _renamed(scene, coords), attributes).dataset())
+    return Parts(_renamed(scene, results), _renamed(scene, coords), attributes)
 
 
-def _renamed(scene: Scene, variables: dict[str, xr.Variable]) -> dict[str, xr.Variable]:
+def _renamed(scene: Scene, variables: dict[str, Labelled]) -> dict[str, Labelled]:
     """The variables over the dimensions that the results have."""
     if not scene.dims:
         return variables
     dims = {name: [scene.dims.get(dim, dim) for dim in variable.dims] for name, variable in variables.items()}
-    return {name: xr.Variable(dims[name], v.data, v.attrs, v.encoding) for name, v in variables.items()}
+    return {name: Labelled(dims[name], v.data, v.attrs, v.encoding) for name, v in variables.items()}
 
 
-def _coordinate(name: str, value: Any, long_name: str = "") -> xr.Variable:
+def _coordinate(name: str, value: Any, long_name: str = "") -> Labelled:
     """SI values of the input `name`, or their spreads, with the unit."""
     return bare_variable(value, {"long_name": long_name or ROWS[name].long_name} | _units(ROWS[name].unit))
 
@@ -77,13 +94,14 @@ def _units(unit: str) -> dict[str, str]:
     return {} if unit == "1" else {"units": unit}
 
 
-def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
+def _in_si(name: str, variable: Labelled, unit: Any, R: Any) -> Labelled:
     """A dimensionless variable in the SI unit of its name, its dimensions first."""
     powers, dims = VOCABULARY[name].powers, variable.dims
-    if isinstance(unit, xr.DataArray) or isinstance(R, xr.DataArray):
-        array = with_unit(variable, powers, bare_variable(unit), bare_variable(R)).transpose(*dims, ...)
+    if xr.is_array(unit) or xr.is_array(R):
+        array = with_unit(*(variable.to_xarray(), powers), *(bare_variable(one).to_xarray() for one in (unit, R)))
+        array = array.transpose(*dims, ...)
         dims, data = array.dims, array.data
     else:  # the usual case: arithmetic of labelled arrays would take as long as a contact
         data = with_unit(variable.data, powers, unit, R)
     data = data.astype(variable.dtype, copy=False)
-    return xr.Variable(dims, data, physical_attributes(name, variable.attrs), variable.encoding)
+    return Labelled(dims, data, physical_attributes(name, variable.attrs), variable.encoding)

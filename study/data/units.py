@@ -1,10 +1,12 @@
 """Physical and dimensionless quantities: lengths in R, pressures in E2*, loads in E2* R², asperity densities in R⁻²."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
+from ..arrays import xarray_later as xr
 from ..inputs.scene.scales import reduced, with_unit
 from ..inputs.vocabulary import PARAMETERS, VOCABULARY, no_parameter
 from ..specimen.foreign import plain
@@ -73,7 +75,7 @@ def _si(name: str, value: Any, unit: str) -> Any:
     """
     is_numbers = type(value) is np.ndarray and value.dtype.kind in "iuf"
     value = value if is_numbers else plain(value)
-    if isinstance(value, xr.DataArray):
+    if xr.is_array(value):
         size = quantity(name, f"1 {value.attrs['units']}", unit).value if "units" in value.attrs else 1.0
         return value.drop_attrs(deep=False) * size
     if isinstance(value, (list, tuple)):
@@ -168,7 +170,7 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
     >>> readable(contact).a.attrs["units"]
     'µm'
     """
-    if not isinstance(dataset, xr.Dataset):
+    if not xr.is_dataset(dataset):
         raise ValueError("readable takes the dataset, not an array of it: study.readable(contact).a")
     if "fit_status" in dataset:
         raise ValueError("readable takes contacts: a dataset of study.fit stays in SI, study.summary says it readably")
@@ -220,6 +222,6 @@ def from_physical(*, R: Any, E2_star: Any, **parameters: Any) -> dict:
             number = _si(name, value, VOCABULARY[name].unit)
             if np.asarray(number).dtype.kind not in "iuf":
                 quantity(name, value, VOCABULARY[name].unit)  # raises: it is no number, nor several
-            array: Any = number if isinstance(number, xr.DataArray) or np.isscalar(number) else np.asarray(number)
+            array: Any = number if xr.is_array(number) or np.isscalar(number) else np.asarray(number)
             converted[name] = array / factor(name, **scales)
     return converted

@@ -1,16 +1,37 @@
-"""What a figure can show of a dataset, which may be that of another program."""
+"""What a figure can show of a dataset, which may be that of another program; results that several figures show."""
 
+import os
 from math import prod
 from numbers import Real
+from pathlib import Path
 
 import xarray as xr
 
+from ..files.results_file import open_results
 from ..inputs.definition import StudyError
 
 MOST_POINTS = 20_000_000  # numbers of a quantity, whose curves matplotlib draws in some seconds: more is a mistake
 #: Kinds of types of numpy whose values are neither real numbers nor texts.
 _NOT_DRAWN = {"M": "dates", "m": "spans of time", "c": "complex numbers", "S": "bytes", "V": "compound values"}
+#: Bytes in memory of results that are kept while a program draws. Some twenty studies have figures.
+SMALL = 20_000_000
+_kept: dict[Path, tuple[tuple, xr.Dataset]] = {}
 _IN_LABELS = ("units", "long_name", "scale")  # attributes
+
+
+def opened(path: Path) -> xr.Dataset:
+    """The results in a file. Those that are small are kept for the next figure that needs them, until the file is
+    another one."""
+    path = Path(os.path.abspath(path))
+    place = path.stat()
+    stamp = place.st_mtime_ns, place.st_size, place.st_ino
+    if path not in _kept or _kept[path][0] != stamp:
+        _kept.pop(path, None)
+        dataset = open_results(path)
+        if dataset.nbytes > SMALL:
+            return dataset
+        _kept[path] = stamp, dataset
+    return _kept[path][1].copy()
 
 
 def drawable(dataset: xr.Dataset, names: tuple[str, ...]) -> xr.Dataset:

@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..files.results_file import open_results
 from ..inputs.definition import StudyError
 from ..inputs.places import BOOK
 from ..terminal import program
 from . import beside
+from .drawable import opened
 
 ONE_COLUMN, TWO_COLUMNS = 3.35, 6.9  # inches, widths of a journal page
 COMMANDS = ("tradeoff",)  # measurements that have a command
@@ -230,7 +230,7 @@ def open_studies(name: str, studies: tuple[str, ...], results) -> list[xr.Datase
                for path in paths.values() if not path.exists()]  # fmt: skip
     if missing:
         raise StudyError(missing)
-    return [open_results(path) for path in paths.values()]
+    return [opened(path) for path in paths.values()]
 
 
 def _way_out(study: str) -> str:

@@ -1,8 +1,10 @@
 """Several contacts as a table for a terminal: a line for each, with units and ±."""
 
-import numpy as np
-import xarray as xr
+from __future__ import annotations
 
+import numpy as np
+
+from ..arrays import xarray_later as xr
 from ..data.dataset import decode
 from ..inputs.laws import smooth_laws
 from .numbers import given_text, result_text

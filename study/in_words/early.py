@@ -1,11 +1,13 @@
 """What can be said of contacts before they are solved: that they are far outside the model's validity."""
 
+from __future__ import annotations
+
 import numpy as np
-import xarray as xr
 
 from solver import Problem
 from solver.estimate import estimate
 
+from ..arrays.labelled import Labelled
 from ..data.dataset import model_attributes
 from ..inputs.definition import Definition
 from ..inputs.grid import along, columns
@@ -51,6 +53,6 @@ def _exceeded(parameters: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     size = len(parameters["micro"])
     unknown = {"status": np.zeros(size), "model_used": np.full(size, np.nan), "model_error": np.full(size, np.nan)}
     arrays = parameters | unknown | estimate(Problem.of(**parameters))
-    variables = {name: xr.Variable("case", array) for name, array in arrays.items()}
+    variables = {name: Labelled("case", array) for name, array in arrays.items()}
     variables["model_used"].attrs = model_attributes()
     return broken(validity_of(variables, FAR))

@@ -1,8 +1,10 @@
 """Fits of measured curves in words: the fitted inputs with their intervals, and what a curve could not tell."""
 
-import numpy as np
-import xarray as xr
+from __future__ import annotations
 
+import numpy as np
+
+from ..arrays import xarray_later as xr
 from ..data.dataset import decode
 from ..inputs.vocabulary import ROWS
 from ..rules.rule import RULES

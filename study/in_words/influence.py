@@ -1,8 +1,10 @@
 """A sentence about what the ± of the largest pressure is made of, and how it depends on the thickness of the layer."""
 
-import numpy as np
-import xarray as xr
+from __future__ import annotations
 
+import numpy as np
+
+from ..arrays import xarray_later as xr
 from ..derivatives import correlated, relative_spreads, sensitivities
 from ..inputs.definition import StudyError
 from ..inputs.vocabulary import VOCABULARY

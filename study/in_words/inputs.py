@@ -1,10 +1,12 @@
 """Which inputs of contacts a text or a figure states, in which order, and in which words."""
 
+from __future__ import annotations
+
 import numpy as np
-import xarray as xr
 
 from solver.laws import LAWS
 
+from ..arrays import xarray_later as xr
 from ..data.si import SAME_PIECE
 from ..inputs.laws import smooth_laws
 from ..inputs.punch.shapes import in_metres

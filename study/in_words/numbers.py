@@ -1,8 +1,10 @@
 """Inputs and results as text: a number with its unit and ±."""
 
-import numpy as np
-import xarray as xr
+from __future__ import annotations
 
+import numpy as np
+
+from ..arrays import xarray_later as xr
 from ..data.derived import QUANTITIES
 from ..data.si import ASSUMED
 from ..derivatives import spread_of_formula

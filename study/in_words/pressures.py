@@ -1,11 +1,15 @@
 """The largest pressures of a contact, in the centre or in a ring."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
+from ..arrays import xarray_later as xr
+from ..arrays.labelled import as_xarray
 from ..data import derived
+from ..data.one_case import OneCase, as_dataset
 
 #: A ring is one whose pressure exceeds p(0) by this. What is less changes no two digits.
 RING = 1.01
@@ -23,7 +27,7 @@ class Largest(NamedTuple):
     place: int | None
 
 
-def largest(case: xr.Dataset) -> Largest:
+def largest(case: xr.Dataset | OneCase) -> Largest:
     """The largest pressures of one case, over the points of its profile."""
     p0, p_max = float(case["p0"]), float(case["p_max"])
     if not np.isfinite(p0):  # of a sharp tip
@@ -33,13 +37,13 @@ def largest(case: xr.Dataset) -> Largest:
     if not p[place] > RING * p0:
         return Largest(p0, p_max, None)
     try:
-        real = float(derived.peak_pressure(case))
+        real = float(derived.peak_pressure(as_dataset(case)))
     except ValueError:  # the moduli are not known, as of a mean
         real = np.nan
     return Largest(float(p[place]), real, place)
 
 
-def largest_of_all(contact: xr.Dataset) -> dict[str, xr.Variable]:
+def largest_of_all(contact: xr.Dataset | OneCase) -> dict[str, xr.Variable]:
     """p_ring, p_peak: the largest nominal and real pressures of each case that are known, in the centre or a ring."""
     v = contact.variables
     nominal, real = v["p0"], v["p_max"]
@@ -47,6 +51,8 @@ def largest_of_all(contact: xr.Dataset) -> dict[str, xr.Variable]:
     ring = top > RING * nominal
     nominal, real = nominal.where(np.isfinite(nominal)), real.where(np.isfinite(real))  # others: of sharp tips
     if ring.any():
+        contact = as_dataset(contact)
+        nominal, real, top, ring = (as_xarray(variable) for variable in (nominal, real, top, ring))
         try:
             peak = derived.peak_pressure(contact).variable
         except ValueError:  # the moduli are not known, as of a mean

@@ -1,11 +1,13 @@
 """Sentences about contacts: how they were solved, by which model, what they rest on, and what is beyond the model."""
 
+from __future__ import annotations
+
 import numpy as np
-import xarray as xr
 
 from solver import Status
 
-from ..data.dataset import decode
+from ..arrays import xarray_later as xr
+from ..data.dataset import flag_words
 from ..data.si import ASSUMED
 from ..inputs.vocabulary import BODIES, VOCABULARY
 from ..rules import rule
@@ -48,7 +50,7 @@ def sentences(case: xr.Dataset, judged: list[str], alone: bool) -> list[str]:
     judged : the quantities shown of which `error` is the largest error; p_max is among them where there are asperities
     alone : whether it is no case of many; then it is said whether it holds
     """
-    word, used = decode(case["status"]).item(), decode(case["model_used"]).item()
+    word, used = (flag_words(case[name]).item() for name in ("status", "model_used"))
     if word == "converged":
         *first, last = (VOCABULARY[name].symbol for name in judged if np.isfinite(case[name]))
         within = f"{', '.join(first)} and {last} are within a relative {float(case['error']):.1g}"

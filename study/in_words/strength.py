@@ -1,18 +1,20 @@
 """Whether a contact holds, in words: what is nearest to its limit, by what factor, and at which load it is there."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from solver import Problem, solve
 from solver.yields import spots
 from solver.yields.contact import of_contacts
 
 from ..again import Again, of_all_cases, strengths
-from ..data.dataset import decode
+from ..arrays import xarray_later as xr
+from ..data.dataset import flag_words
 from ..inputs.definition import StudyError
 from ..inputs.punch.shapes import ROUND
 from ..inputs.punch.stresses import without_stresses
@@ -82,7 +84,7 @@ def holds(case: xr.Dataset) -> list[str]:
     compared.sort(key=lambda one: -one[1] / one[0].strength)
     far = not compared or not hard and compared[0][1] < _FAR * compared[0][0].strength
     said = [] if far else _nearest(again, at_a, solution, compared)
-    if "pitch_not_small_against_h" in decode(case["validity"]).item().split() and not is_rigid(case, "base"):
+    if "pitch_not_small_against_h" in flag_words(case["validity"]).item().split() and not is_rigid(case, "base"):
         said = [*said, _THROUGH] if said else []
     lacking = [(limit, stress) for limit, stress, *_ in found if np.isnan(limit.strength) and limit.needs]
     return [*said, *_needed(again, lacking)] if lacking and hard else said

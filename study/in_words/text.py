@@ -1,8 +1,11 @@
 """A contact in words: each quantity with its unit and how sure it is, how it was solved, and what it rests on."""
 
-import numpy as np
-import xarray as xr
+from __future__ import annotations
 
+import numpy as np
+
+from ..arrays import xarray_later as xr
+from ..data.one_case import as_dataset, is_contact
 from ..inputs.laws import smooth_laws
 from ..inputs.vocabulary import NOT_RUN, VOCABULARY
 from ..specimen.pictures import curve, with_picture
@@ -29,7 +32,7 @@ class Summary(str):
     picture = ""
 
     @classmethod
-    def of(cls, text: str, case: xr.Dataset) -> "Summary":
+    def of(cls, text: str, case: xr.Dataset) -> Summary:
         """The text on one contact, with its picture, if it has a profile."""
         made = cls(text)
         if "p" in case and "x" in case.coords:
@@ -72,7 +75,7 @@ def summary(contact: xr.Dataset) -> Summary:
     >>> summary(study.solve(P=1e-5, micro="smooth", base="half_space")).splitlines()[0]
     'Given: a rigid punch'
     """
-    if not isinstance(contact, xr.Dataset):
+    if not is_contact(contact):
         raise ValueError(f"summary takes what study.solve, fit or design gives, not {type(contact).__name__}")
     if "fit_status" in contact:
         return Summary(of_fit(contact))
@@ -85,9 +88,10 @@ def summary(contact: xr.Dataset) -> Summary:
     if bare:
         raise ValueError(f"{bare[0]} has lost its attributes, which say what its numbers mean: keep them (keep_attrs)")
     dims = [str(dim) for dim in contact["status"].dims]
-    contact = contact.reset_index([dim for dim in dims if hasattr(contact.indexes.get(dim), "levels")])
     if not dims:
+        contact = as_dataset(contact) if "p_spread" in contact else contact  # the derivatives are those of a dataset
         return Summary.of(_summary_of_case(contact), contact)
+    contact = contact.reset_index([dim for dim in dims if hasattr(contact.indexes.get(dim), "levels")])
     cases = contact.stack({"one": dims}, create_index=False)
     texts = []
     for i in range(min(cases.sizes["one"], MOST_CASES)):

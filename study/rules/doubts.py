@@ -1,12 +1,14 @@
 """What is doubted of contacts beside the assumptions of the model. Each condition gives its sentences, often none."""
 
-import numpy as np
-import xarray as xr
+from __future__ import annotations
 
+import numpy as np
+
+from ..arrays import xarray_later as xr
+from ..arrays.labelled import as_xarray
 from ..inputs.laws import smooth_laws
 from ..inputs.vocabulary import BODIES, ROWS
 from ..specimen.quantities import readable
-from ..specimen.roughness import looks_like_iso_ra
 from .rule import in_si, of_cases, rule
 
 #: What bodies have, in SI units: beyond it a unit was mistaken, mPa for MPa or Mm for mm. The softest gels have some
@@ -28,6 +30,8 @@ YIELD, STIFF = 0.03, 1e10
 @rule()
 def ra_as_of_iso(v):
     if {"Ra", "Nbar", "micro"} <= {*v} and not np.isin(v["micro"].values, smooth_laws()).all():
+        from ..specimen.roughness import looks_like_iso_ra  # here: it loads what measures scans
+
         Ra, Nbar = (v["Ra"] + 0 * v["Nbar"]).values, (v["Nbar"] + 0 * v["Ra"]).values
         yield from filter(None, [looks_like_iso_ra(Ra, Nbar, si="units" in v["Ra"].attrs)])
 
@@ -49,10 +53,13 @@ def metals_yield(v):
     What lies under a layer has the largest nominal pressure where the contact is wide against that, and less elsewhere.
     """
     moduli = {body: v[BODIES[body][0]] for body in _PRESSED if in_si(v, BODIES[body][0])}
-    moduli = {body: E.where((E >= STIFF) & np.isfinite(E)) for body, E in moduli.items()}
-    least = min((np.fmin.reduce(E.values, axis=None, initial=np.inf) for E in moduli.values()), default=np.inf)
+    stiff = [E.values[(E.values >= STIFF) & np.isfinite(E.values)] for E in moduli.values()]
+    least = min((E.min(initial=np.inf) for E in stiff), default=np.inf)
     if not ("p_peak" in v and (v["p_peak"] > YIELD * least).any()):
         return []
+    v = {name: as_xarray(variable) for name, variable in v.items()}
+    moduli = {body: as_xarray(E) for body, E in moduli.items()}
+    moduli = {body: E.where((E >= STIFF) & np.isfinite(E)) for body, E in moduli.items()}
     bare = v["base"] == "half_space"
     under = v["p_peak"].where(bare, v["p_ring"].where(v["a"] > v["h"]) if "h" in v else np.nan)
     pressures = {"punch": v["p_peak"], "layer": v["p_peak"].where(~bare), "body": under}

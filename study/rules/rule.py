@@ -1,16 +1,19 @@
 """The table of rules, the flags `validity` of those with a mask, and what is said of contacts that violate some."""
 
+from __future__ import annotations
+
 from collections import defaultdict
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS
 from solver.shapes import PARABOLOID, SHAPES
 
+from ..arrays import xarray_later as xr
+from ..arrays.labelled import Labelled, along
 from ..inputs.vocabulary import ROWS, VOCABULARY, attributes
 
 
@@ -78,10 +81,10 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     """
     if has_units(dataset):
         raise ValueError("validity follows from results without units; those with units hold it: dataset.validity")
-    return xr.DataArray(validity_of(dataset.variables), dataset["status"].coords, name="validity")
+    return xr.DataArray(validity_of(dataset.variables).to_xarray(), dataset["status"].coords, name="validity")
 
 
-def validity_of(variables: Mapping, times: float = 1.0) -> xr.Variable:
+def validity_of(variables: Mapping, times: float = 1.0) -> Labelled:
     """`validity` of the variables of a dataset, dimensionless; with R1 and R2, in R, where both radii are known.
 
     times : how many times beyond its limit an assumption counts as violated
@@ -92,7 +95,7 @@ def validity_of(variables: Mapping, times: float = 1.0) -> xr.Variable:
     about = attributes("validity") | validity_attributes()
     if "w_adhesion" in variables and not {"z0", "sigma0"} & {*variables}:
         about["comment"] = "not_jkr: not known, since neither z0 nor sigma0 is given"
-    return xr.Variable(status.dims, flags, about)
+    return Labelled(status.dims, flags, about)
 
 
 def numbers(variables: Mapping) -> Mapping:
@@ -104,7 +107,7 @@ def numbers(variables: Mapping) -> Mapping:
     that is not finite the mean).
     """
     dims, used = variables["status"].dims, variables["model_used"].attrs
-    arrays = {name: _along(dims, array) for name, array in variables.items() if set(array.dims) <= set(dims)}
+    arrays = {name: along(dims, array) for name, array in variables.items() if set(array.dims) <= set(dims)}
     v = defaultdict(lambda: np.nan, {"m": 0.0} | arrays)
     models = zip(used["flag_values"], used["flag_meanings"].split(), strict=True)
     v["thin"] = np.isin(
@@ -137,14 +140,6 @@ def _pressure(v):
         return np.where(np.isfinite(v["p0"]), v["p0"], v["P"] / (np.pi * v["a"] ** 2)) if "shape" in v else v["p0"]
 
 
-def _along(dims: tuple, variable: xr.Variable):
-    """The numbers of a variable over some of the dimensions `dims`, of length 1 along the others."""
-    if variable.dims == dims:
-        return variable.data
-    own = variable if variable.ndim < 2 else variable.transpose(*(dim for dim in dims if dim in variable.dims))
-    return own.data[tuple(slice(None) if dim in own.dims else None for dim in dims)]
-
-
 def have(feature: str, micro):
     """Whether the law of each case has a feature, such as "rough". A law that is not registered is taken to have it."""
     return sum(micro == name for name, law in LAWS.items() if not getattr(law, feature)) == 0
@@ -173,7 +168,7 @@ def validity_attributes() -> dict:
     return {"flag_masks": masks, "flag_meanings": " ".join(ASSUMPTIONS.values())}
 
 
-def broken(validity: xr.DataArray | xr.Variable) -> dict[str, np.ndarray]:
+def broken(validity: xr.DataArray | xr.Variable | Labelled) -> dict[str, np.ndarray]:
     """Name of each assumption -> where it is violated, of the shape of the flags; in the order of the masks."""
     attributes = validity.attrs
     masks = zip(np.atleast_1d(attributes["flag_masks"]).tolist(), attributes["flag_meanings"].split(), strict=True)

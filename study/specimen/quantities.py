@@ -1,6 +1,7 @@
 """Numbers with units: "5 mm", "200 ± 10 GPa" or quantities of pint become SI numbers, and SI numbers readable text.
 
-pint reads the units. It is imported when the first text or quantity comes, for that takes half a second.
+pint reads the units but those of READABLE. It is imported when the first other unit comes, for that takes half a
+second.
 """
 
 import math
@@ -207,6 +208,9 @@ def _near(text: str, unit: str) -> str:
 @lru_cache(maxsize=256)
 def _size(word: str, unit: str) -> Decimal | None:
     """The size of a unit such as "um" or "1/mm^2" in the SI `unit`; None if it cannot be told."""
+    written = {name.replace("²", "^2"): size for name, size in READABLE.get(unit, ("", ()))[1]}
+    if unit != "1" and (size := written.get(word.replace("u", "µ"))):
+        return Decimal(repr(size))
     registry = _registry()
     try:
         magnitude = registry.Quantity(word).to(unit).magnitude

@@ -23,7 +23,6 @@ from queue import SimpleQueue
 from typing import Any, TextIO
 
 import numpy as np
-from dask.system import cpu_count as available_workers  # it knows the limit of a container
 
 from ..data.dataset import failed_cases
 from ..inputs.definition import Definition
@@ -46,6 +45,13 @@ START = 1.0
 MANY = 8  # blocks of a run from which on processes compute all of them
 #: Results of each process that may wait until the calling thread takes them: it has a block of its own to solve.
 AHEAD = 4
+
+
+def available_workers() -> int:
+    """How many processors there are, by dask, which knows the limit of a container and takes a while to import."""
+    from dask.system import cpu_count
+
+    return cpu_count()
 
 
 class _Pool:

@@ -202,3 +202,22 @@ def test_failed_blocks_are_told_in_their_order():
         "s: block 12 failed: late",
         "s: 2 blocks failed; the others are kept, the same command tries again",
     ]
+
+
+@pytest.mark.parametrize(
+    "call", ["point P=1e-5 micro=smooth base=half_space", "run good", "table fig02", "status good"]
+)
+def test_a_core_that_there_is_not_is_said_before_anything(call, monkeypatch, capsys):
+    monkeypatch.setenv("ROUGHCOAT_CORE", "fast")
+    assert main(call.split()) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and said.err.count("\n") == 1
+    assert said.err.startswith("ROUGHCOAT_CORE = fast: must be one of numpy")
+    assert tree() == []
+
+
+def test_what_computes_nothing_needs_no_core(monkeypatch):
+    monkeypatch.setenv("ROUGHCOAT_CORE", "fast")
+    assert main(["docs"]) == 0
+    monkeypatch.setenv("ROUGHCOAT_CORE", "numpy")
+    assert main(["point", "P=1e-5", "micro=smooth", "base=half_space"]) == 0

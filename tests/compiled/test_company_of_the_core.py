@@ -6,6 +6,7 @@ from both_paths import by, contacts, of_the_sources  # noqa: F401
 
 from solver.compiled import newton
 from solver.compiled.library import available
+from solver.compiled.tables import mesh_for
 
 VARIANTS = available()
 pytestmark = pytest.mark.skipif(not VARIANTS, reason="no compiled core was built here")
@@ -44,3 +45,11 @@ def test_the_same_bits_in_blocks_of_a_large_batch(monkeypatch):
     monkeypatch.setattr(newton, "_CHUNK", 17)
     assert by("", problem).P.tobytes() == whole.P.tobytes()
     assert by("", problem).p.tobytes() == whole.p.tobytes()
+
+
+def test_meshes_are_made_for_cases_alone(monkeypatch):
+    """The first contact of a program would wait for all of the ladder."""
+    asked = []
+    monkeypatch.setattr(newton, "mesh_for", lambda n, s: asked.append(n) or mesh_for(n, s))
+    coarse = by(VARIANTS[0], contacts(5, 11, base="layered", h=0.1, n=0.5, micro="disc_cell", rtol=1e-3))
+    assert coarse.nodes.max() < 22 and len(asked) >= 2 and max(asked) == coarse.nodes.max()

@@ -28,9 +28,9 @@ ROOMS = {
         *("flat", "schemes", "smooth_contact", "models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (
-        *("terminal", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives", "fields", "in_words"),
-        *("files", "store", "work", "carried", "lazy", "solving", "inverse", "yields", "figures", "api", "catalogue"),
-        *("explorer", "commands", "__main__"),
+        *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives", "fields"),
+        *("in_words", "files", "store", "work", "carried", "lazy", "solving", "inverse", "yields", "figures", "api"),
+        *("catalogue", "explorer", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.
@@ -87,6 +87,7 @@ def test_study_imports_what_is_declared(path):
     """And extras in one file each: SurfaceTopography, which reads scans, openpyxl, argcomplete, which serves shells."""
     allowed = {"numpy", "scipy", "xarray", "netCDF4", "dask", "matplotlib", "pint", "solver", "study"}
     allowed |= {"SurfaceTopography"} if path.name == "scan_files.py" else set()
+    allowed |= {"pandas"} if path.name == "labelled.py" else set()  # of which xarray makes its indexes
     allowed |= {"rows.py": {"openpyxl"}, "__main__.py": {"argcomplete"}}.get(path.name, set())
     allowed |= {"roughcoat"} if path.name in ("cluster.py", "lazy.py") else set()  # so that a worker takes our packages
     allowed |= {"roughcoat", "lmfit"} if path.name == "nanite_layer.py" else set()  # nanite loads it, and has lmfit
@@ -205,7 +206,7 @@ def test_rooms_are_there_after_import_of_the_package_alone():
     alone(
         "import study; assert not {'numpy', 'xarray', 'study.inputs', 'study.data'} & set(sys.modules);"
         f"assert study.vocabulary.VOCABULARY; {NOT_HEAVY};"
-        "assert study.derived.peak_pressure and study.units.factor; assert 'xarray' in sys.modules"
+        f"assert study.derived.peak_pressure and study.units.factor; {NOT_HEAVY}"
     )
 
 

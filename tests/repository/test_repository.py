@@ -16,7 +16,8 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
 TARGETS = ("help", "docs", "setup", "figures", "table1", "paper_numbers", "validity", "map", "extremes", "tradeoff",
            "picard_domain", "literature", "yield_maps", "validate", "test", "explorer-test", "check", "kernels",
-           "lowest", "mutants", "fresh_mutants", "fuzz", "bench", "speed", "fit_coverage", "lint", "clean")  # fmt: skip
+           "lowest", "mutants", "fresh_mutants", "fuzz", "bench", "speed", "start", "fit_coverage", "lint",
+           "clean")  # fmt: skip
 
 
 def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess:

@@ -185,3 +185,12 @@ def test_numbers_with_a_plain_unit_are_what_pint_says(unit):
             assert quantity("h", f"{number} {word}", unit).value == float(whole)
     for text, value in (("5 GPa + 3 GPa", 8e9), ("6 kPa/2", 3e3)):
         assert quantity("E1", text, "Pa").value == value
+
+
+def test_our_units_have_the_size_of_pint():
+    """Units in which we write numbers are read without it, also with u and ^2."""
+    written = [(name, unit) for unit, (_, multiples) in READABLE.items() for name, _ in multiples if unit != "1"]
+    written += [(name.replace("µ", "u").replace("²", "^2"), unit) for name, unit in written]
+    for name, unit in written:
+        size = quantities._size(name.replace("²", "^2"), unit)
+        assert size == Decimal(quantities._registry().Quantity(name).to(unit).magnitude), name

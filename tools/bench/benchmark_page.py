@@ -2,7 +2,10 @@
 
 import os
 import platform
+import subprocess
+import sys
 from datetime import UTC, datetime
+from pathlib import Path
 
 from benchmark_path import predicted, saved
 from benchmark_peers import rough_peers
@@ -25,6 +28,14 @@ the time of the flops that form the matrices of the layer and eliminate all matr
 matrices; the rest is the law, the kernel of the layer, profiles and errors, and memory.
 
 {workloads}
+
+## Before anything is computed
+
+Processor time of a new Python, its imports and one contact, by turns with `python -c "import xarray"` (`make start`).
+A contact in the terminal is printed without xarray; scipy.special is imported for tables of layers and for stresses,
+pint for units that roughcoat does not write itself.
+
+{start}
 
 ## Few cases
 
@@ -86,6 +97,7 @@ def measured_page() -> str:
         load=load,
         nodes=16,
         run=upright(beside_the_solver(run)),
+        start=starts(),
         workloads=table(workloads()),
         latency=table(latency()),
         cores_used=table(second_core()),
@@ -93,6 +105,12 @@ def measured_page() -> str:
         predicted=table(predicted()),
         peers="\n\n".join(table(rows) for rows in by_columns(rough_peers())),
     )
+
+
+def starts() -> str:
+    """The table of `make start`."""
+    script = Path(__file__).parents[1] / "start" / "benchmark_start.py"
+    return subprocess.run([sys.executable, str(script)], check=True, capture_output=True, text=True).stdout.strip()
 
 
 def by_columns(rows: list[dict]) -> list[list[dict]]:

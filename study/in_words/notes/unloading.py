@@ -1,15 +1,17 @@
 """Places of a contact where the pressure falls while the load rises: there a law of yielding does not hold."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 import numpy as np
-import xarray as xr
 
 from solver import Status, solve
 from solver.laws import LAWS
 from solver.scaling import dimensionless, law_of
 
 from ...again import Again
+from ...arrays import xarray_later as xr
 from ...inputs.definition import StudyError
 from ...rules.rule import of_cases
 

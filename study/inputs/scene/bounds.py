@@ -1,13 +1,15 @@
 """Messages for inputs with units that are outside the bounds of the solver. They quote the input: "P = -10 N: ..."."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from solver.parameters import allowed as within
 from solver.parameters import ends
 
+from ...arrays import xarray_later as xr
 from ...specimen.quantities import multiple, quantity, readable, unit_in
 from ...terminal import on_one_line
 from ..punch.sticking import row_of
@@ -45,7 +47,7 @@ def _first_outside(scene: Scene, name: str) -> list[Place]:
 
 def _at(value: Any, place: Place) -> Any:
     """The number of an array at a place, the first one along dimensions that the place does not have."""
-    if not isinstance(value, xr.DataArray):
+    if not xr.is_array(value):
         return value
     return value.isel({dim: place.get(dim, 0) for dim in value.dims}).item()
 

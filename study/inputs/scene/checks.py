@@ -1,13 +1,15 @@
 """Mistakes in a physical scene as a whole, though each of its inputs is right."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from solver.laws.own_table import PREFIX
 from solver.shapes import PARABOLOID
 
+from ...arrays import xarray_later as xr
 from ..checks import equal_cases
 from ..punch.shapes import in_metres, radius_needed
 from ..request import Request
@@ -50,7 +52,7 @@ def missing(request: Request, values: dict) -> list[str]:
 def same_cases(scene: Scene) -> list[str]:
     """A message for two of [[cases]] that are the same, in whatever units they are given."""
     arrays = [v for table in (scene.values, scene.spreads, scene.parameters) for v in table.values()]
-    columns = [v.values.tolist() for v in arrays if isinstance(v, xr.DataArray) and v.dims == ("case",)]
+    columns = [v.values.tolist() for v in arrays if xr.is_array(v) and v.dims == ("case",)]
     columns += [texts for dim, texts in scene.names.values() if dim == "case"]
     return equal_cases(list(zip(*columns, strict=True)))
 

@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from typing import Any, Literal, TypedDict
 
 import numpy as np
-import xarray as xr
 
 from solver.laws import Law
 
 from ...specimen.materials import Material
 
-Many = Sequence | np.ndarray | xr.DataArray
-"""Several values: of a dimension called like the parameter, or over the dimensions of the DataArray."""
+Many = Sequence | np.ndarray | Any
+"""Several values: of a dimension called like the parameter, or over the dimensions of a DataArray."""
 Value = float | str | Many | Any
 """A number, a text with a unit ("5 mm", "200 ± 10 GPa"), a quantity of pint, or several of these."""
 

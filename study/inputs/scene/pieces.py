@@ -1,11 +1,13 @@
 """Correlations of the spreads of inputs: of bodies that are one piece of material, and by the user."""
 
+from __future__ import annotations
+
 from itertools import combinations
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
+from ...arrays import xarray_later as xr
 from ...terminal import shown
 from ..vocabulary import BODIES, finite
 from .scene import Scene, over

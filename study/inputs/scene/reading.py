@@ -4,12 +4,14 @@ The scene has the radius R of the punch (or R1 and R2 of two bodies), Young's mo
 below and E_punch of the punch, with Poisson ratios nu1, nu2 and nu_punch.
 """
 
+from __future__ import annotations
+
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
+from ...arrays import xarray_later as xr
 from ...specimen.quantities import READABLE, quantity
 from ...terminal import on_one_line
 from ..draft import Draft

@@ -4,11 +4,13 @@ The solver works in units R = 1 and E2* = E2/(1 - nu2²) = 1; on a rigid base, w
 case is computed by itself, so that it has the same dimensionless numbers, and the same key, in any grid.
 """
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
+from ...arrays import xarray_later as xr
 from ..vocabulary import SCENE, VOCABULARY
 from .layers import moduli_of
 from .scene import Scene

@@ -1,10 +1,14 @@
 """A physical scene: its inputs in SI units, and what the solver gets."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-import xarray as xr
+
+from ...arrays import xarray_later as xr
+from ...arrays.labelled import Labelled
 
 
 @dataclass
@@ -45,20 +49,20 @@ class Scene:
     def sizes(self, axes: list[str]) -> dict[str, int]:
         """Dimension while the cases are solved -> its length; first `case`, then the axes in their order."""
         dim_of = {name: dim for dim, name in self.dims.items()}
-        arrays = [v for v in (*self.values.values(), *self.parameters.values()) if isinstance(v, xr.DataArray)]
+        arrays = [v for v in (*self.values.values(), *self.parameters.values()) if xr.is_array(v)]
         sizes = {dim: size for array in arrays for dim, size in array.sizes.items()}
         order = ("case", *(dim_of.get(axis, axis) for axis in axes))
         return {dim: sizes[dim] for dim in order if dim in sizes}
 
-    def radii(self) -> dict[str, xr.Variable]:
+    def radii(self) -> dict[str, Labelled]:
         """R1 and R2 of two bodies in R, over the dimensions while the cases are solved; {} for a single R."""
         return {name: bare_variable(self.values[name] / self.R) for name in ("R1", "R2") if name in self.values}
 
-    def within(self, window: dict[str, slice]) -> "Scene":
+    def within(self, window: dict[str, slice]) -> Scene:
         """The scene of the cases in a window, a slice for each dimension while the cases are solved."""
 
         def cut(value: Any) -> Any:
-            if not isinstance(value, xr.DataArray):
+            if not xr.is_array(value):
                 return value
             return value.isel({dim: part for dim, part in window.items() if dim in value.dims})
 
@@ -73,13 +77,13 @@ class Scene:
 
 def over(value: Any, dims: tuple[str, ...]) -> np.ndarray:
     """A number, a text or the values of a DataArray, with all dimensions `dims`; of length 1 along those it lacks."""
-    if not isinstance(value, xr.DataArray):
+    if not xr.is_array(value):
         return np.array(value).reshape((1,) * len(dims))
     sizes, ordered = value.sizes, value.transpose(*(dim for dim in dims if dim in value.dims))
     return ordered.values.reshape([sizes.get(dim, 1) for dim in dims])
 
 
-def bare_variable(value: Any, attributes: dict | None = None) -> xr.Variable:
+def bare_variable(value: Any, attributes: dict | None = None) -> Labelled:
     """A number, or the values of a DataArray, without coordinates."""
-    dims, data = (value.dims, value.data) if isinstance(value, xr.DataArray) else ((), value)
-    return xr.Variable(dims, data, attributes)
+    dims, data = (value.dims, value.data) if xr.is_array(value) else ((), value)
+    return Labelled(dims, data, attributes)

@@ -233,6 +233,9 @@ def core_takes(definition: Definition) -> bool:
         return False
     names = ("micro", "base", "scheme", "model_check")
     words = {name: {*along(definition.grid, name).ravel().tolist()} for name in names}
+    for name, usual in (("shape", "paraboloid"), ("w_adhesion", 0.0)):
+        if name in definition.grid.values and (definition.grid.values[name][1] != usual).any():
+            return False
     if ("smooth" in words["micro"] and "half_space" in words["base"]) or "first_order" in words["model_check"]:
         return False  # a closed form, or an error that takes longer than the contact: by numpy
     return words["micro"] <= {*TAKEN} and words["base"] <= {*BASES} and words["scheme"] == {"newton"}

@@ -18,8 +18,10 @@ from .inputs.reading import read
 from .inputs.vocabulary import NOT_RUN
 from .store.blocks import Store, count_statuses, inventory
 from .store.clean import clean
+from .store.parts import condition, is_large
 from .work.cost import Estimate
-from .work.plan import Report, belongs, check_countable, look, of_what
+from .work.large import dry_run_large, open_large, run_large, state_of
+from .work.plan import Report, anything_there, belongs, look, of_what
 from .work.run import dry_run, partial_dataset, run
 
 if TYPE_CHECKING:
@@ -49,6 +51,11 @@ class Study:
         return Store(self.definition, self._folder)
 
     @property
+    def _is_in_parts(self) -> bool:
+        """Whether the results are a folder of parts; a file that a former version has made of them counts too."""
+        return is_large(self.definition) and not belongs(self.definition, look(self._store, 0))
+
+    @property
     def _folder(self) -> Path:
         """Folder of the results, short while the program is where it was when the study was loaded."""
         return self.results if self.home in (None, _working_folder()) else self.home / self.results
@@ -73,7 +80,8 @@ class Study:
         --------
         `rc.load("studies/mine.toml").run(workers=4)`: docs/studies.md.
         """
-        return run(self.definition, self._folder, command=command_line(), **options)
+        computing = run_large if self._is_in_parts else run
+        return computing(self.definition, self._folder, command=command_line(), **options)
 
     def dry_run(self, workers: int | None = None, yes: bool = False, force: bool = False) -> Estimate:
         """What `run` would cost, how many cases it would find computed, and with which error it would end, if any.
@@ -82,17 +90,15 @@ class Study:
 
         Parameters
         ----------
-        workers, yes, force : as of `run`
+        workers, force : as of `run`
+        yes : changes nothing; it is there for programs that give it
 
         Returns
         -------
         Estimate : cases, seconds, bytes in memory and on disk
-
-        Raises
-        ------
-        StudyError : a very large study of which something is on disk, unless `yes`: looking takes memory
         """
-        return dry_run(self.definition, self._folder, workers=workers, yes=yes, force=force)
+        estimating = dry_run_large if self._is_in_parts else dry_run
+        return estimating(self.definition, self._folder, workers=workers, force=force)
 
     def status(self, yes: bool = False) -> dict:
         """What has been computed.
@@ -105,22 +111,22 @@ class Study:
 
         Parameters
         ----------
-        yes : count however many cases there are
+        yes : changes nothing; it is there for programs that give it
 
         Returns
         -------
         dict : "state", "cases", "counts" (status -> number of cases), "path" of the results, "reason"
-
-        Raises
-        ------
-        StudyError : a very large study that is neither new nor done, unless `yes`: counting takes memory
         """
         with suppress(FileNotFoundError):  # somebody removed the results meanwhile: look again
-            return self._status(yes)
-        return self._status(yes)
+            return self._status()
+        return self._status()
 
-    def _status(self, yes: bool) -> dict:
+    def _status(self) -> dict:
         store = self._store
+        if self._is_in_parts:
+            state, counts = state_of(store)
+            cases = self.definition.grid.size
+            return {"state": state, "cases": cases, "counts": counts, "path": store.parts, "reason": ""}
         found = look(store, LAZY)
         state = "outdated" if found.good else {"missing": "new"}.get(found.kind, found.kind)
         state = "done" if belongs(self.definition, found) else state
@@ -129,7 +135,7 @@ class Study:
             counts = count_statuses(statuses(store.path))
         elif state not in ("new", "outdated"):
             pass
-        elif not check_countable(store, yes):
+        elif not anything_there(store):
             counts = {NOT_RUN: self.definition.grid.size}
         else:
             known = inventory(store)
@@ -145,7 +151,7 @@ class Study:
         -------
         Condition : its `kind` is "sound" where nothing is wrong, else `reason` says what is: `study.files.examine`
         """
-        return look(self._store)
+        return condition(self._store) if self._is_in_parts else look(self._store)
 
     def clean(self) -> list[str]:
         """Remove blocks that hold no case of the study as it is. Never touches results.
@@ -174,6 +180,8 @@ class Study:
         ------
         StudyError : there are none, none of this definition, or they are damaged
         """
+        if self._is_in_parts:
+            return open_large(self._store)
         path, found = self._store.path, look(self._store, LAZY)
         if belongs(self.definition, found):
             return opened(found)

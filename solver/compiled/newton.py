@@ -23,7 +23,9 @@ from .library import OF_MESH, OF_TABLE, Batch, core, pointer
 from .tables import mesh_for, table_for
 
 #: The laws and controls of the core, in the order of batch.h.
-_LAWS, _CONTROLS = ("disc_cell", "power_law", "smooth"), ("P", "a", "D")
+TAKEN, _CONTROLS = ("disc_cell", "power_law", "smooth"), ("P", "a", "D")
+#: The bases of the core: it solves nearly all cases of these and the laws above.
+BASES = ("half_space", "thin_layer", "layered")
 _SCALARS = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "residual", "error", "profile_error")
 #: Most cases of one call of the core. Its memory is 14 MB, and groups of like cases are full.
 _CHUNK = 16_384
@@ -52,7 +54,7 @@ def _taken(cases, nodes):
     """(B,) bool: the cases of which the core knows law, body and punch, and whose mesh is free."""
     law, body = cases.law.law, cases.body
     taken = (nodes == 0) | np.isin(nodes, _MESHES)
-    if law not in [LAWS[name] for name in _LAWS] or cases.punch is not PARABOLOID or cases.edge is not FREE:
+    if law not in [LAWS[name] for name in TAKEN] or cases.punch is not PARABOLOID or cases.edge is not FREE:
         return np.zeros_like(taken)
     if law.name == "power_law":
         taken = taken & (cases.law.own[0][:, 0] >= STEEP)
@@ -75,7 +77,7 @@ def _solved(function, cases, rtol, nodes, x):
     rows["fixed"] = np.ascontiguousarray(nodes, dtype=np.int64)
     given = _Given(solved_at.tobytes())
     shared = {"stride": size, "points": len(place), "rungs": len(ladder), "control": _CONTROLS.index(cases.control)}
-    shared |= {"law": _LAWS.index(cases.law.law.name), "layered": isinstance(cases.body, Hankel), "steps": LIMIT}
+    shared |= {"law": TAKEN.index(cases.law.law.name), "layered": isinstance(cases.body, Hankel), "steps": LIMIT}
     shared |= {"octaves": OCTAVES[1] - OCTAVES[0] + 1, "first_octave": OCTAVES[0], "columns": points}
     shared |= {"ladder": pointer(ladder), "shrink": pointer(shrink), "place": pointer(place)}
     shared |= {"mesh": OF_MESH(given.address_of(mesh_for)), "table": OF_TABLE(given.address_of(table_for))}

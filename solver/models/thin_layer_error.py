@@ -72,9 +72,22 @@ def _shift_and_size(n, nu1, nu2, bonded):
         both[:, tabulated] = _without_friction()(np.log(n[tabulated]))  # its integrand is positive
     rest = np.flatnonzero(~tabulated)
     if len(rest):  # a batch has few materials: each is integrated once
-        materials, places = np.unique([v[rest] for v in (n, nu1, nu2, bonded)], axis=1, return_inverse=True)
-        both[:, rest] = _integrated(*materials)[:, places.ravel()]
+        materials, places = _different(np.array([v[rest] for v in (n, nu1, nu2, bonded)]))
+        both[:, rest] = _integrated(*materials)[:, places]
     return both.reshape(2, *arrays[0].shape)
+
+
+def _different(columns):
+    """The different ones of the columns (k, B), in ascending order, and the place (B,) of each among them.
+
+    As `numpy.unique(axis=1)`, in a twentieth of the time, which was a sixth of that of thin cases (B = 8,000).
+    """
+    order = np.lexsort(columns[::-1])
+    ordered = columns[:, order]
+    first = np.append(True, (ordered[:, 1:] != ordered[:, :-1]).any(axis=0))
+    places = np.empty(len(order), dtype=int)
+    places[order] = np.cumsum(first) - 1
+    return ordered[:, first], places
 
 
 @lru_cache(maxsize=1)

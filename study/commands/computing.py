@@ -97,7 +97,8 @@ def completed(study: Study, **options) -> int:
         say("\n".join(failure_lines(report, name)), sys.stderr)
         return 1
     answer(report_line(report, name))
-    if study.definition.scene and report.complete and report.computed:  # what study.solve would warn of
+    in_parts = report.path.is_dir()  # these are too large to be read again: `validity` tells
+    if study.definition.scene and report.complete and report.computed and not in_parts:  # as study.solve warns
         said = doubtful_lines(study.definition)  # by `run`, before it computed
         for line in (f"{name}: beware: {text}" for text in doubts(study.open())):
             if line not in said:

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from ..files.results_file import results_of
 from ..inputs.definition import StudyError
 from ..inputs.places import BOOK
 from ..terminal import program
@@ -225,7 +226,7 @@ def study_beside(kind: str, name: str) -> Path | None:
 
 def open_studies(name: str, studies: tuple[str, ...], results) -> list[xr.Dataset]:
     """The datasets of the studies that a figure or table needs. Raises StudyError if one has no results yet."""
-    paths = {study: Path(results) / f"{study}.nc" for study in studies}
+    paths = {study: results_of(Path(results), study) for study in studies}
     missing = [f"{path}: does not exist, {name} needs it; {_way_out(path.stem)}"
                for path in paths.values() if not path.exists()]  # fmt: skip
     if missing:

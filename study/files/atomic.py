@@ -13,6 +13,8 @@ from pathlib import Path
 def replacing(path: Path, folder: Path | None = None, place: Callable | None = None) -> Iterator[Path]:
     """A temporary path to write to. When the `with` block ends well, the file is flushed to disk and becomes `path`.
 
+    If the block has left no file there, `path` stays as it is.
+
     folder : where the temporary file is; by default, or if it is a link, which may lead to another file system,
         beside `path`. Its name is random, since the process id may be the same on two machines that share a folder
     place : is called with the temporary path and `path`, and gives the file its name; by default `os.replace`
@@ -23,6 +25,8 @@ def replacing(path: Path, folder: Path | None = None, place: Callable | None = N
     temporary = (folder or path.parent) / f".{path.name}.{secrets.token_hex(4)}.tmp"
     try:
         yield temporary
+        if not temporary.exists():
+            return
         with open(temporary, "rb+") as file:
             os.fsync(file.fileno())  # a rename may reach the disk before the data do
         (place or os.replace)(temporary, path)

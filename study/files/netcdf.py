@@ -140,6 +140,18 @@ def read_lazily(path: Path) -> xr.Dataset:
         return xr.open_dataset(path, engine="netcdf4", chunks={}, lock=Access(path))
 
 
+def read_together(paths: list, folder: Path, dims: list[str]) -> xr.Dataset:
+    """Files that are parts of one dataset, lazily, as `read_lazily`.
+
+    paths : nested lists, a level for each of the dimensions `dims`, along which the parts follow each other
+    """
+    options = {"combine": "nested", "data_vars": "minimal", "coords": "minimal", "compat": "override"}
+    with access(folder):
+        return xr.open_mfdataset(
+            paths, concat_dim=dims, join="override", engine="netcdf4", chunks={}, lock=Access(folder), **options
+        )
+
+
 def read_of_others(path: Path) -> xr.Dataset:
     """A large file of another program: numbers are read when they are asked for, under the lock.
 

@@ -3,6 +3,7 @@
 import hashlib
 import os
 from functools import partial
+from math import prod
 from pathlib import Path
 
 import numpy as np
@@ -18,12 +19,14 @@ from ..terminal import on_one_line
 from .access import Unusable
 from .atomic import replacing
 from .examine import ATTRIBUTE, FORMER, Condition, Sums, examine, stamp
-from .netcdf import File, check_regular, read, read_lazily, read_of_others
+from .netcdf import File, check_regular, read, read_lazily, read_of_others, read_together
 from .seal import seal
 
 #: Bytes of all variables in memory; a larger file is opened lazily. Files are packed by up to a hundred times, so their
 #: own size says little. Reading and verifying so much takes a second or two.
 LAZY = 200_000_000
+DIVIDED = "parts"
+"""Attribute of a part of large results: how many parts there are along each dimension that is cut, "h 5, n 2"."""
 
 
 def encoding(array: xr.DataArray) -> dict:
@@ -136,7 +139,7 @@ def open_results(path: str | os.PathLike) -> xr.Dataset:
 
     Parameters
     ----------
-    path : of the file, such as "results/mine.nc"
+    path : of the file, such as "results/mine.nc", or of the folder of parts, "results/mine"
 
     Returns
     -------
@@ -148,6 +151,8 @@ def open_results(path: str | os.PathLike) -> xr.Dataset:
     StudyError : it is damaged, or cannot be read; also an OSError
     """
     path = Path(os.path.expanduser(path))
+    if path.is_dir() and any(path.glob("*.nc")):
+        return open_parts(path)
     condition = examine(path, most=LAZY)
     if condition.kind != "foreign":
         return opened(condition)
@@ -166,6 +171,26 @@ def opened(condition: Condition) -> xr.Dataset:
     numbers are read when they are asked for, in any thread, and netCDF verifies each chunk (StudyError, an OSError)."""
     condition.raise_if_bad()
     return _for_users(read_lazily(condition.path) if condition.unpacked > LAZY else read(condition.path))
+
+
+def results_of(folder: Path, study: str) -> Path:
+    """The results file of a study, or the folder of the parts of a large one."""
+    file, parts = folder / f"{study}.nc", folder / study
+    return parts if parts.is_dir() and not file.exists() else file
+
+
+def open_parts(folder: Path) -> xr.Dataset:
+    """The dataset of all parts in a folder, lazily. Raises Unusable if they are not the parts of one study."""
+    paths = sorted(folder.glob("*.nc"))
+    with File(paths[0]) as file:
+        words = [word.split(" ") for word in str(file.attributes.get(DIVIDED, "")).split(", ") if word]
+    counts = {dim: int(count) for dim, count in words}
+    if len({path.name.rpartition("-")[2] for path in paths}) > 1 or len(paths) != prod(counts.values()):
+        raise Unusable(folder, "foreign", f"has {len(paths)} files, not all {prod(counts.values())} parts of one study")
+    nested = np.array([os.fspath(path) for path in paths], dtype=object).reshape(tuple(counts.values())).tolist()
+    dataset = read_together(nested, folder, list(counts)) if counts else read_lazily(paths[0])
+    dataset.attrs.pop(DIVIDED, None)
+    return _for_users(dataset)
 
 
 def _for_users(dataset: xr.Dataset) -> xr.Dataset:

@@ -65,6 +65,11 @@ class Store:
         """Path of the results file."""
         return self.results / f"{self.definition.name}.nc"
 
+    @property
+    def parts(self) -> Path:
+        """Folder of the results of a large study."""
+        return self.results / self.definition.name
+
     def record(self, digest: str) -> Path:
         """Path of the record of a results file: a block without columns, with the keys of the cases in the file.
 

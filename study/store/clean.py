@@ -4,6 +4,7 @@ from ..files.lock import held
 from ..inputs.definition import StudyError
 from ..terminal import counted
 from .blocks import Store, inventory, remove_litter
+from .parts import is_large
 
 
 def clean(store: Store) -> list[str]:
@@ -11,6 +12,9 @@ def clean(store: Store) -> list[str]:
 
     Raises StudyError while a run of the study is going on.
     """
+    if is_large(store.definition):
+        kept = f"it is so large that no block is looked for in {store.folder}"
+        return [f"{store.parts}: the study is kept in parts, which stay; {kept}"]
     if not store.folder.exists():
         return [f"{store.folder}: is not there, nothing to remove"]
     with held(store.lock, wait=False) as alone:

@@ -6,6 +6,7 @@ less.
 
 import pickle
 import traceback
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -55,9 +56,9 @@ class Failure:
     trace: str
 
 
-def parcel(definition: Definition, index: np.ndarray) -> Parcel:
+def parcel(definition: Definition, index: Sequence) -> Parcel:
     """The parcel of the cases numbered `index` (n,), n > 0."""
-    parameters = columns(definition.grid, index)
+    parameters = columns(definition.grid, np.asarray(index))
     parameters = {name: array if definition.grid.values[name][0] else array[:1] for name, array in parameters.items()}
     wanted = definition.x, definition.results, definition.profiles, definition.inputs, definition.stresses
     of_users = tuple(laws_of_users(parameters["micro"]))
@@ -136,11 +137,11 @@ def guarded(task: Parcel) -> dict[str, np.ndarray] | Failure:
         return Failure(message, traceback.format_exc())
 
 
-def blocks_of(missing: np.ndarray, size: int, part: tuple[int, int] = (1, 1)) -> list[np.ndarray]:
+def blocks_of(missing: Sequence, size: int, part: tuple[int, int] = (1, 1)) -> list[Sequence]:
     """The missing cases cut into blocks of at most `size`: the numbers of the cases of each.
 
     part : (i, n), only the i-th of n parts. The numbers of the cases decide to which part they belong, not what is
         missing, so that parts that start at different times share no case
     """
-    mine = missing[missing // size % part[1] == part[0] - 1]
+    mine = missing[missing // size % part[1] == part[0] - 1] if part[1] > 1 else missing
     return [mine[start : start + size] for start in range(0, len(mine), size)]

@@ -9,9 +9,10 @@ from solver.numerics.ladder import LADDER, STACK
 
 from ..data.dataset import not_run
 from ..inputs.definition import Definition, StudyError
+from ..store.parts import PART, is_large
 from ..store.writer import AT_ONCE
 from .cases import compute, parcel
-from .engine import AHEAD, MANY, available_workers, processes_for
+from .engine import AHEAD, MANY, available_workers, core_takes, others_beside
 from .progress import duration
 
 SAMPLE = 256  # cases whose time is measured
@@ -58,15 +59,19 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     size = definition.numbers * np.dtype(definition.dtype).itemsize
     block = size / cases * min(definition.block, cases)
     here = blocks < MANY or count == 1  # whether the calling thread computes too
-    processes = processes_for(count, blocks, here)
-    memory = PROCESS + WORKER * processes + PER_CASE * cases + 3 * min(size, AT_ONCE)
+    large, threads = is_large(definition), core_takes(definition)
+    processes = 0 if threads else others_beside(count, blocks, here)
+    memory = PROCESS + WORKER * processes + PER_CASE * cases * (not large) + 3 * min(size, AT_ONCE)
     memory += (AHEAD + WORKING) * count * block
     base, judged = (definition.grid.values[name][1] for name in ("base", "model_check"))
     # whether some case may need the operator of the exact layer: as its base, or for the error of the thin layer
     exact = np.isin(base, ("layered", "auto")).any() or (base == "thin_layer").any() and (judged == "first_order").any()
     nodes = max(LADDER[-1], int(definition.grid.values["nodes"][1].max()))
     matrices = nodes**2 * min(definition.block, cases), nodes * (3 * STACK if exact else STACK)
-    memory += count * (SOLVING + 8 * MATRICES * min(matrices)) + (processes + here) * TABLES * exact
+    memory += count * (SOLVING + 8 * MATRICES * min(matrices)) + (processes + (here or threads)) * TABLES * exact
+    if large:
+        disk = HEAD * (size // PART + 1) + ROOM * size * missing / cases
+        return Estimate(cases, present, seconds, memory, size, disk)
     # the blocks of the missing cases, and the record of the cases in the results file
     stored = KEY * cases + missing * (KEY + sum(array.nbytes for array in not_run(definition, 1).values()))
     return Estimate(cases, present, seconds, memory, size, HEAD + ROOM * size + stored if missing else 0.0)

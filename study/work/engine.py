@@ -1,7 +1,8 @@
-"""The engine: blocks of cases are solved by the calling thread and processes beside it, or by the workers of a cluster.
+"""The engine: blocks of cases are solved by the calling thread and others beside it, or by the workers of a cluster.
 
 `study.solve` and the `run` of a study are served alike, and `study.fit`, whose blocks are curves. A block has the same
-numbers wherever it is computed, so one worker and many give the same bits. The processes are those of
+numbers wherever it is computed, so one worker and many give the same bits. What the compiled core takes is solved in
+threads, which it lets run side by side (docs/threads.md). All else is solved in the processes of
 `study.work.processes`. They import this package and not the program that calls, so a script needs no
 `if __name__ == "__main__"`. They stay for a while, for the next call.
 """
@@ -14,7 +15,7 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import closing
 from functools import partial
@@ -24,14 +25,17 @@ from typing import Any, TextIO
 
 import numpy as np
 
+from solver.compiled.library import core
+from solver.compiled.newton import BASES, TAKEN
+
 from ..data.dataset import failed_cases
 from ..inputs.definition import Definition
-from ..inputs.grid import USUAL, usual_block
+from ..inputs.grid import USUAL, along, usual_block
 from ..terminal import counted
 from . import cases
 from .cases import Failure, can_travel, guarded, parcel
 from .cluster import computed_there
-from .processes import Processes
+from .processes import Processes, Threads
 from .progress import Progress
 
 log = logging.getLogger(__name__)
@@ -88,7 +92,7 @@ atexit.register(_pool.end)
 
 def computed(
     definition: Definition,
-    blocks: list[np.ndarray],
+    blocks: Sequence,
     workers: int | None = None,
     scheduler: str | None = None,
     storing: bool = False,
@@ -109,7 +113,8 @@ def computed(
         return
     allowed = 1 if len(blocks) == 1 else _processors_allowed(definition, workers)
     here = not (storing and len(blocks) >= MANY and allowed > 1)
-    yield from _here_and_apart(guarded, partial(parcel, definition), blocks, allowed, here)
+    pool = Threads() if core_takes(definition) else _pool
+    yield from _here_and_apart(pool, guarded, partial(parcel, definition), blocks, allowed, here)
 
 
 def computed_tasks(
@@ -121,29 +126,31 @@ def computed_tasks(
     a function raises in the calling thread is raised.
     """
     allowed = _processors_allowed(None, workers) if can_leave and len(tasks) > 1 else 1
-    yield from _here_and_apart(function, lambda task: task, tasks, allowed, here=True)
+    yield from _here_and_apart(_pool, function, lambda task: task, tasks, allowed, here=True)
 
 
 def _here_and_apart(
-    function: Callable, packed: Callable, blocks: list, allowed: int, here: bool
+    pool: "_Pool | Threads", function: Callable, packed: Callable, blocks: Sequence, allowed: int, here: bool
 ) -> Iterator[tuple[int, Any]]:
     """(number, function(packed(block))) for each block, by at most `allowed` processors."""
-    most = processes_for(allowed, len(blocks), here)
+    most = others_beside(allowed, len(blocks), here)
     if not most or not _in_use.acquire(blocking=False):  # another thread is using the processes
         for number, block in enumerate(blocks):
             yield number, function(packed(block))
         return
     try:
-        yield from _shared(function, packed, blocks, most, here)
+        yield from _shared(pool, function, packed, blocks, most, here)
     except BaseException:
-        _pool.end()
+        pool.end()
         raise
     finally:
         _in_use.release()
 
 
-def _shared(function: Callable, packed: Callable, blocks: list, most: int, here: bool) -> Iterator[tuple[int, Any]]:
-    """`_here_and_apart` in at most `most` processes and, if `here`, in this thread too.
+def _shared(
+    pool: "_Pool | Threads", function: Callable, packed: Callable, blocks: Sequence, most: int, here: bool
+) -> Iterator[tuple[int, Any]]:
+    """`_here_and_apart` in at most `most` others of a pool and, if `here`, in this thread too.
 
     With `here` processes are started only if much work is left.
     """
@@ -159,8 +166,8 @@ def _shared(function: Callable, packed: Callable, blocks: list, most: int, here:
             ended.put((number, result))
 
     begun, feeders = time.perf_counter(), 0
-    if ready := _pool.reuse(most) if here else most:
-        feeders = len(_pool.feed(feeder, ready))
+    if ready := pool.reuse(most) if here else most:
+        feeders = len(pool.feed(feeder, ready))
     try:
         for _ in blocks:
             block = _next(waiting) if here and ended.empty() else None
@@ -172,7 +179,7 @@ def _shared(function: Callable, packed: Callable, blocks: list, most: int, here:
                 result = number, function(packed(content))
                 if not feeders:
                     seconds = (time.perf_counter() - begun) / (len(blocks) - len(waiting)) * len(waiting)
-                    feeders = len(_pool.feed(feeder, min(most, int(seconds / START))))
+                    feeders = len(pool.feed(feeder, min(most, int(seconds / START))))
             yield result
     finally:
         waiting.clear()
@@ -221,9 +228,23 @@ def blocks_of_grid(definition: Definition) -> list[np.ndarray]:
     return np.array_split(np.arange(size), max(1, round(size / (SLOW_BLOCK if slow else BLOCK))))
 
 
-def processes_for(workers: int, blocks: int, here: bool) -> int:
-    """How many processes compute so many blocks; `here`: beside the calling thread."""
+def others_beside(workers: int, blocks: int, here: bool) -> int:
+    """How many threads or processes compute so many blocks; `here`: beside the calling thread."""
     return max(0, min(workers, blocks) - here)
+
+
+def core_takes(definition: Definition) -> bool:
+    """Whether the compiled core solves nearly all cases of a study, and nothing else takes long for them."""
+    if core() is None or definition.inputs or definition.stresses:
+        return False
+    names = ("micro", "base", "scheme", "model_check")
+    words = {name: {*along(definition.grid, name).ravel().tolist()} for name in names}
+    for name, usual in (("shape", "paraboloid"), ("w_adhesion", 0.0)):
+        if name in definition.grid.values and (definition.grid.values[name][1] != usual).any():
+            return False
+    if ("smooth" in words["micro"] and "half_space" in words["base"]) or "first_order" in words["model_check"]:
+        return False  # a closed form, or an error that takes longer than the contact: by numpy
+    return words["micro"] <= {*TAKEN} and words["base"] <= {*BASES} and words["scheme"] == {"newton"}
 
 
 def _processors_allowed(definition: Definition | None, workers: int | None) -> int:

@@ -19,9 +19,9 @@ from ..inputs.definition import LARGE, Definition, StudyError
 from ..inputs.identity import law_versions
 from ..inputs.reading import same_tables
 from ..inputs.vocabulary import NOT_RUN, suggest
-from ..store.blocks import Inventory, Store, count_statuses, lost_cases
+from ..store.blocks import Store, lost_cases
 from ..terminal import on_one_line, program, shown
-from .cost import PER_CASE, describe, estimate
+from .cost import describe, estimate
 from .screen import screen_of
 
 
@@ -109,8 +109,9 @@ class Order:
             return False
         return not (self.retry and np.isin(statuses(self.store.path), self.retry).any())
 
-    def report(self, stock: Inventory | None = None, **what) -> Report:
-        counts = count_statuses(stock.status) if stock else {}
+    def report(self, counts: dict[int, int] | None = None, **what) -> Report:
+        """A report; without `counts`, that there was nothing to do."""
+        counts = counts or {}
         report = Report(self.store.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN))
         return replace(report, **what)
 
@@ -187,16 +188,9 @@ def check_writable(path: Path) -> None:
         raise StudyError([wrong]) from None
 
 
-def check_countable(store: Store, yes: bool) -> bool:
-    """Whether there may be cases on disk. Raises StudyError when counting them would take very much memory."""
-    definition = store.definition
-    if not store.path.exists() and not any(store.folder.glob("*.block")):
-        return False
-    if definition.numbers > LARGE and not yes:
-        needed = f"{PER_CASE * definition.grid.size / 1e9:.2g} GB of memory"
-        counting = f"{definition.grid.size} cases: to find which of them are computed takes up to {needed}"
-        raise StudyError([f"{definition.name}: {counting}; --yes does it"])
-    return True
+def anything_there(store: Store) -> bool:
+    """Whether there may be cases on disk."""
+    return store.path.exists() or any(store.folder.glob("*.block"))
 
 
 def check_size(order: Order) -> None:

@@ -12,6 +12,7 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -79,6 +80,24 @@ class Processes:
             pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
             self._all.append(subprocess.Popen(command, env=environment, process_group=0, **pipes))
             return self._all[-1]
+
+
+class Threads:
+    """In place of processes, for one call: threads that solve blocks themselves."""
+
+    def reuse(self, most: int) -> int:
+        """So many can begin at once: a thread needs no start."""
+        return most
+
+    def feed(self, feeder: Callable, count: int) -> list[Future]:
+        """Start feeder(call) in `count` threads; call(function, task) computes there."""
+        threads = ThreadPoolExecutor(count)
+        futures = [threads.submit(feeder, lambda function, task: function(task)) for _ in range(count)]
+        threads.shutdown(wait=False)  # each ends after its last block
+        return futures
+
+    def end(self) -> None:
+        """Nothing: what waits is taken from the feeders, and the blocks in work are solved to their end."""
 
 
 def serve() -> None:

@@ -1,6 +1,7 @@
 """Run a study: missing cases -> workers -> blocks on disk -> results file, an export of the blocks."""
 
 import logging
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
@@ -13,13 +14,13 @@ from ..files.atomic import target
 from ..files.examine import Condition, stamp
 from ..files.lock import held
 from ..inputs.definition import Definition, StudyError
-from ..store.blocks import Inventory, Store, add, gather, inventory, remove_litter
-from ..store.writer import export
+from ..store.blocks import Inventory, Store, add, count_statuses, gather, inventory, remove_litter
+from ..store.writer import exporting
 from ..terminal import say
 from .cases import Failure, blocks_of
 from .cost import Estimate, estimate
 from .engine import computed
-from .plan import Order, Report, check_countable, check_replaceable, check_size, check_writable, look
+from .plan import Order, Report, anything_there, check_replaceable, check_size, check_writable, look
 from .progress import Progress
 from .screen import screen_of
 
@@ -54,15 +55,30 @@ def run(definition: Definition, results="results", **options) -> Report:
 
 
 def _compute(order: Order, condition: Condition) -> Report:
-    """Compute what is missing, and write the results unless other runs compute other parts."""
-    if not order.shared:
-        remove_litter(order.store)
-    stock = inventory(order.store, order.retry)
-    missing = len(stock.missing)
-    failures = compute_blocks(order, stock)
-    if not order.shared and not len(stock.missing):
-        export(order.store, stock, order.command, condition)
-    return order.report(stock, computed=missing - len(stock.missing), failures=failures)
+    """Compute what is missing, and write the results meanwhile, unless other runs compute other parts."""
+    store = order.store
+    if order.shared:
+        return _compute_missing(order, inventory(store, order.retry), lambda: None)
+    remove_litter(store)
+    stock = inventory(store, order.retry)
+    with exporting(store, stock, order.command, condition) as export:
+        report = _compute_missing(order, stock, export.advance)
+        export.advance()
+    return report
+
+
+def _compute_missing(order: Order, stock: Inventory, stored: Callable) -> Report:
+    """Compute the missing cases of this run's part; `stored` is called after each block."""
+    missing = stock.missing
+    blocks = blocks_of(missing, order.definition.block, order.part)
+
+    def keep(number: int, arrays: dict) -> None:
+        add(order.store, stock, blocks[number], arrays)
+        stored()
+
+    failures = compute_blocks(order, blocks, len(stock.keys) - len(missing), keep)
+    computed = len(missing) - len(stock.missing)
+    return order.report(count_statuses(stock.status), computed=computed, failures=failures)
 
 
 def _export_if_last(order: Order, report: Report) -> Report:
@@ -76,34 +92,38 @@ def _export_if_last(order: Order, report: Report) -> Report:
         check_replaceable(order, condition)
         remove_litter(order.store)
         stock = inventory(order.store)
-        if not len(stock.missing):
-            export(order.store, stock, order.command, condition)
-        return order.report(stock, computed=report.computed, failures=report.failures)
+        with exporting(order.store, stock, order.command, condition) as export:
+            export.advance()
+        counts = count_statuses(stock.status)
+        return order.report(counts, computed=report.computed, failures=report.failures)
 
 
 def say_waiting(order: Order) -> None:
     say(f"{order.definition.name}: waiting for another run of this study to end", order.stream)
 
 
-def compute_blocks(order: Order, stock: Inventory) -> dict[int, str]:
-    """Compute and store the missing cases; returns the failures.
+def compute_blocks(
+    order: Order, blocks: Sequence, present: int, keep: Callable, drop: Callable = lambda number: None
+) -> dict[int, str]:
+    """Compute blocks and keep them; returns the failures. A block that raises does not stop the others.
 
-    A block that raises does not stop the others.
+    blocks : the numbers of the cases of each; present : cases of the study that were there before
+    keep : keep(number of a block, its columns) stores it; drop(number) hears of one that has failed
     """
-    blocks, failures = blocks_of(stock.missing, order.definition.block, order.part), {}
+    failures = {}
     if not blocks:
         return failures
-    size = order.definition.grid.size
     stream, passing = order.stream or screen_of(order.progress), order.stream is None
-    shown = Progress(order.definition.name, size, stream, size - len(stock.missing), passing=passing)
+    shown = Progress(order.definition.name, order.definition.grid.size, stream, present, passing=passing)
     results = computed(order.definition, blocks, order.workers, order.scheduler, storing=True)
     with shown as progress, closing(results):
         for number, result in results:
             if isinstance(result, Failure):
                 failures[number] = result.message
                 log.debug("block %d: %s", number, result.trace)
+                drop(number)
             else:
-                add(order.store, stock, blocks[number], result)
+                keep(number, result)
                 failed = failed_cases(result["status"])
                 progress.update(len(result["status"]), len(failed))
                 if order.fail_fast and len(failed):
@@ -114,13 +134,13 @@ def compute_blocks(order: Order, stock: Inventory) -> dict[int, str]:
     return failures
 
 
-def dry_run(definition: Definition, results="results", *, workers=None, yes=False, force=False) -> Estimate:
+def dry_run(definition: Definition, results="results", *, workers=None, force=False) -> Estimate:
     """As `study.api.Study.dry_run`."""
     order = Order(definition, Path(results), force=force)
     condition = look(order.store)
     if order.done(condition):
         return estimate(definition, workers, definition.grid.size)
-    if not check_countable(order.store, yes):
+    if not anything_there(order.store):
         return estimate(definition, workers)
     cost = estimate(definition, workers, definition.grid.size - len(inventory(order.store).missing))
     try:

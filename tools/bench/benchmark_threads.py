@@ -1,6 +1,7 @@
 """What one BLAS thread is worth: processor and wall time of calls on the exact layer, alone and beside busy processes.
 
     python tools/bench/benchmark_threads.py
+    python tools/bench/benchmark_threads.py core
 
 Each row is a process of its own, whose BLAS is told by OPENBLAS_NUM_THREADS to have so many threads. "free" takes the
 limit of the solver away (solver/threads.py), "limited" is the solver as it is. A number above that of the processors
@@ -11,7 +12,9 @@ import json
 import os
 import subprocess
 import sys
+import threading
 import time
+from collections import deque
 from contextlib import contextmanager
 from itertools import product
 
@@ -104,6 +107,62 @@ def blas_threads(grids=tuple(GRIDS), numbers=(2, 4, 8)) -> list[dict]:
     return rows
 
 
+def core_threads() -> list[dict]:
+    """A row for each base: what two threads of one process are worth on the compiled core.
+
+    Of each thread is measured how long it computed, waited for a processor, and was blocked, by others that hold
+    Python's lock. So the bound of the gain on idle processors, 2 computed/(computed + blocked), can be measured on a
+    busy machine too, where it comes out too low. Linux only.
+    """
+    import tomllib
+
+    import numpy as np
+    from benchmark_study import STUDY
+
+    from study.inputs.reading import from_tables
+    from study.work.cases import compute, parcel
+
+    rows = []
+    for base in ("thin_layer", "layered"):
+        text = STUDY.replace("thin_layer", base)
+        definition = from_tables(tomllib.loads(text), base, text, base)
+        drawn = np.random.default_rng(0).permutation(definition.grid.size)[:96_000]
+        blocks = [parcel(definition, index) for index in np.array_split(drawn, 12)]
+        compute(blocks[0])
+        times = np.array(_thread_times(compute, blocks)).sum(axis=0)
+        computed, waited, wall = times / 1e9
+        blocked = wall - computed - waited
+        row = {"base": base, "computed_s": computed, "waited_s": waited, "blocked_s": blocked}
+        rows.append(row | {"bound_of_gain": 2 * computed / (computed + blocked)})
+    return rows
+
+
+def _thread_times(compute, blocks: list) -> list[tuple[int, int, int]]:
+    """Of two threads that share the blocks: ns in which each computed, waited for a processor, and was there."""
+    waiting, times = deque(blocks), []
+
+    def spent() -> list[int]:
+        path = f"/proc/self/task/{threading.get_native_id()}/schedstat"
+        with open(path, encoding="ascii") as file:
+            return [*map(int, file.read().split()[:2]), time.perf_counter_ns()]
+
+    def work() -> None:
+        before = spent()
+        while True:
+            try:
+                compute(waiting.popleft())
+            except IndexError:
+                break
+        times.append(tuple(now - then for now, then in zip(spent(), before, strict=True)))
+
+    threads = [threading.Thread(target=work) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return times
+
+
 def table(rows: list[dict]) -> str:
     """The rows in Markdown."""
     cells = [[f"{value:.2f}" if isinstance(value, float) else str(value) for value in row.values()] for row in rows]
@@ -114,5 +173,7 @@ def table(rows: list[dict]) -> str:
 if __name__ == "__main__":
     if sys.argv[1:2] == [CHILD]:
         child(sys.argv[2], sys.argv[3] == "1")
+    elif sys.argv[1:2] == ["core"]:
+        print(table(core_threads()))
     else:
         print(table(blas_threads()))

@@ -1,11 +1,11 @@
 """The shape of the punch and what sticks, in words."""
 
 import numpy as np
-import xarray as xr
 
 from solver.shapes import PARABOLOID, SHAPES
 from solver.shapes.cone import KIND, PYRAMIDS
 
+from ...arrays import xarray_later as xr
 from ...inputs.vocabulary import names
 from ...specimen.quantities import readable
 from ..numbers import in_its_unit

@@ -13,6 +13,7 @@ from children import PATIENCE
 
 import study
 from solver import laws
+from solver.compiled.library import core
 from study.inputs.definition import StudyError
 from study.inputs.reading import from_call
 from study.work import engine
@@ -82,6 +83,20 @@ def test_what_is_computed_apart_is_put_in_its_place(threads):
     assert not threads.asked
     assert_same_bits(engine.solved(definition(**SMOOTH), 2), expected)
     assert threads.asked == [1]
+
+
+@pytest.mark.skipif(not core(), reason="no compiled core here")
+def test_what_the_core_takes_is_solved_by_threads(threads, monkeypatch):
+    """With the same bits, and no process is asked; stresses, spreads and other schemes take numpy."""
+    rough = {"Nbar": 250000.0, "Ra": 0.004, "n": 0.5, "h": 0.02}
+    who, real = set(), engine.guarded
+    monkeypatch.setattr(engine, "guarded", lambda task: who.add(threading.current_thread()) or real(task))
+    assert_same_bits(engine.solved(definition(60, **rough), 2), engine.solved(definition(60, **rough), 1))
+    assert len(who) == 2 and not threads.asked
+    assert not engine.core_takes(definition(scheme="picard", **rough)) and not engine.core_takes(definition(**SMOOTH))
+    assert not engine.core_takes(replace(definition(**rough), inputs=("h",)))
+    monkeypatch.setenv("ROUGHCOAT_CORE", "numpy")
+    assert not engine.core_takes(definition(**rough))
 
 
 def fails(*_):
@@ -220,7 +235,7 @@ def test_a_script_needs_no_guard(tmp_path):
     """It runs once, in whatever folder; its processes compute, and none of them holds it up at its end."""
     path = tmp_path / "script.py"
     path.write_text(SCRIPT)
-    _, environment = python_command("")
+    environment = python_command("")[1] | {"ROUGHCOAT_CORE": "numpy"}  # what the core takes is left to threads
     ended = subprocess.run(
         [sys.executable, path], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=PATIENCE
     )

@@ -83,8 +83,9 @@ def renewed(kind: str, name: str, results="results", folder="figures") -> list[P
 def written(kind: str, name: str, results: Folder, folder: Folder, bare: bool = False) -> tuple[str, list[Path]]:
     """Write a figure or table; the digest of what its files follow from, and the files."""
     made_of = digest(kind, name, results)  # before: results that change meanwhile make it outdated
-    paths = tabulate(name, results, folder) if kind == "table" else draw(name, results, folder, bare)
-    return made_of, paths
+    if bare:
+        return made_of, draw(name, results, folder, bare=True)
+    return made_of, (tabulate if kind == "table" else draw)(name, results, folder)
 
 
 def noted(kind: str, name: str, folder: Folder, made_of: str, paths: list[Path]) -> list[Path]:

@@ -99,7 +99,8 @@ def tradeoff(options, name: str) -> int:
 def _write(options, name: str) -> int:
     kind = KINDS[options.command]
     bare = kind == "figure" and options.bare
-    make = catalogue.tabulate if kind == "table" else partial(catalogue.draw, bare=bare)
+    make = catalogue.tabulate if kind == "table" else catalogue.draw
+    make = partial(make, bare=True) if bare else make
     if options.run:
         make = make if bare else partial(catalogue.renewed, kind)
         code = _prepared(options, kind, name)

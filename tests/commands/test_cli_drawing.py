@@ -201,6 +201,7 @@ def test_run_computes_the_studies_that_are_needed_once_and_skips_what_is_up_to_d
 def test_all_means_what_no_long_study_is_needed_for(monkeypatch):
     drawn = []
     for name in ("draw", "tabulate"):
+        monkeypatch.setattr("study.commands.drawing.MANY", 1000)  # a second process would draw some of them
         monkeypatch.setattr(catalogue, name, lambda *given: drawn.append(given[0]) or [])
     assert main(["plot", "all"]) == 0
     paper = [f"fig{number:02}" for number in range(1, 11)]

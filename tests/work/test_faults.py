@@ -62,7 +62,7 @@ def test_killed_at_ten_random_moments(opened, undisturbed, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "at", ["work.run.export", "store.writer.create", "store.writer.put", "store.writer.forget_other_exports"]
+    "at", ["store.writer.finish", "store.writer.create", "store.writer.put", "store.writer.forget_other_exports"]
 )
 def test_killed_while_the_results_are_written(opened, undisturbed, tmp_path, at):
     process = child(tmp_path / "line.toml", tmp_path / "log", at=at, workers=2)

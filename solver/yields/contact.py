@@ -37,7 +37,7 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
         for rows, pressure, _ in pressures(scaled, ended, a):
             nu = None if punch is None else punch[index[rows]]
             for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]], nu):
-                tips = np.isposinf(ended.p0[rows[some]]) & (touched(loaded) < 0.5)
+                tips = np.isposinf(ended.p0[rows[some]]) & (_touched(loaded) < 0.5)
                 for name, values in (coarsely if coarse else extremes)(loaded, names).items():
                     values[0] *= problem.E2[index[rows[some]]]
                     if name in _OF_TIPS[loaded.bare]:
@@ -46,7 +46,7 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
     return made
 
 
-def touched(loaded):
+def _touched(loaded):
     """Poisson ratio (B,) of the body that the punch touches."""
     return loaded.layers.nu2 if loaded.bare else loaded.layers.nu1
 

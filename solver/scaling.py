@@ -10,6 +10,7 @@ from .contact.equation import Cases
 from .kernels.two_layers import TwoLayers, layer_modulus, thin_layer_coefficients
 from .laws import LAWS, try_out
 from .parameters import CONTROL, PARAMETERS, allowed
+from .shapes import shaped
 from .solution import PULLS
 from .status import Status
 
@@ -109,4 +110,4 @@ def restore(solution, problem):
         array, factor = getattr(solution, name), problem.R**of_R * problem.E2**of_E2
         arrays[name] = array * factor.reshape(-1, *[1] * (array.ndim - 1))
     solution = replace(solution, **arrays)
-    return solution.refused(solution.not_finite(problem.shaped() | pulls), Status.DIVERGED)
+    return solution.refused(solution.not_finite(shaped(problem) | pulls), Status.DIVERGED)

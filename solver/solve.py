@@ -13,6 +13,7 @@ from .models.plastic_share import has_yield, plastic_share
 from .models.range_of_law import RADII, has_range
 from .problem import Problem
 from .scaling import dimensionless, refused
+from .shapes import shaped
 from .smooth_contact.fitness import unfit
 from .solution import Solution
 from .status import Status
@@ -55,9 +56,9 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
         raise ValueError("x must be one-dimensional and within [0, 1]")
     yields = has_yield(problem).any()
     radii = np.append(x, RADII) if yields or has_range(problem) else x
-    scaled, shaped = dimensionless(problem), problem.shaped() | (problem.w_adhesion > 0)
+    scaled, special = dimensionless(problem), shaped(problem) | (problem.w_adhesion > 0)
     invalid = refused(problem, scaled) | problem.without_scheme() | unfit(scaled)
-    if np.any(exact := shaped & (problem.base == "auto")):
+    if np.any(exact := special & (problem.base == "auto")):
         problem = problem.but(base=np.where(exact, "layered", problem.base))
     is_auto = problem.base == "auto"
     is_judged = (problem.base == "thin_layer") & (problem.model_check == "first_order")

@@ -192,15 +192,6 @@ class Problem:
         """
         return np.all([self.micro != name for name, law in laws.LAWS.items() if not law.rough], axis=0)
 
-    def shaped(self) -> np.ndarray:
-        """Which cases have another shape than the paraboloid.
-
-        Returns
-        -------
-        numpy.ndarray : (B,) bool
-        """
-        return self.shape != shapes.PARABOLOID
-
     def may_pull(self) -> np.ndarray:
         """Which cases may have a control that is 0 or negative.
 

@@ -113,13 +113,13 @@ def restore(solution, problem):
         array, factor = getattr(solution, name), problem.R**of_R * problem.E2**of_E2
         arrays[name] = array * factor.reshape(-1, *[1] * (array.ndim - 1))
     solution = replace(solution, **arrays)
-    return solution.refused(solution.not_finite(problem.shaped() | pulls, unknown), Status.DIVERGED)
+    return solution.refused(solution.not_finite(shapes.shaped(problem) | pulls, unknown), Status.DIVERGED)
 
 
 def without_centre(problem):
     """(B,) bool: cases of which the pressure on the axis is not known: rough ones under a point
     (:func:`~solver.contact.results.pointed`)."""
-    without, shaped = np.zeros(len(problem), dtype=bool), problem.shaped() & problem.rough()
+    without, shaped = np.zeros(len(problem), dtype=bool), shapes.shaped(problem) & problem.rough()
     for word in np.unique(problem.shape[shaped]).tolist():
         index = np.flatnonzero(shaped & (problem.shape == word))
         without[index] = shapes.shape_of(problem.take(index)).pointed

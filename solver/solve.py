@@ -14,6 +14,7 @@ from .models.range_of_law import RADII, has_range
 from .models.table_ends import beyond_table
 from .problem import Problem
 from .scaling import dimensionless, refused
+from .shapes import shaped
 from .smooth_contact.fitness import unfit
 from .solution import Solution
 from .status import Status
@@ -56,9 +57,9 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
         raise ValueError("x must be one-dimensional and within [0, 1]")
     yields = has_yield(problem).any()
     radii = np.append(x, RADII) if yields or has_range(problem) else x
-    scaled, shaped = dimensionless(problem), problem.shaped() | (problem.w_adhesion > 0)
+    scaled, special = dimensionless(problem), shaped(problem) | (problem.w_adhesion > 0)
     invalid = refused(problem, scaled) | problem.without_scheme() | unfit(scaled)
-    if np.any(exact := shaped & (problem.base == "auto")):
+    if np.any(exact := special & (problem.base == "auto")):
         problem = problem.but(base=np.where(exact, "layered", problem.base))
     is_auto = problem.base == "auto"
     is_judged = (problem.base == "thin_layer") & (problem.model_check == "first_order")
@@ -73,7 +74,7 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
             part = problem if len(index) == len(problem) else problem.take(index)
             pieces.append((index, way(part, radii)))
     solution = Solution.join(*size, pieces)
-    if problem.shaped().any():
+    if shaped(problem).any():
         beyond = ~invalid & beyond_table(scaled, solution, lambda last: solve_named(last, radii))
         solution = solution.refused(beyond, Status.OUTSIDE_LAW)
     if yields:

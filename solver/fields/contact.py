@@ -12,6 +12,7 @@ from ..parameters import STACKED
 from ..scaling import as_cases, dimensionless
 from ..sensitivity.again import found_again, meshes, stacks
 from ..sensitivity.held import held
+from ..shapes import shaped
 from ..solve import solve
 from ..status import Status
 from ..threads import one_blas_thread
@@ -83,15 +84,15 @@ def have_fields(problem, solution):
     """(B,) bool: solved contacts of which there are stresses. There are none yet of stacks, of what sticks, of
     flat punches, whose pressure is infinite at the edge, and of rough punches of other shapes than the paraboloid."""
     without = np.isin(problem.base, STACKED[1]) | (problem.w_adhesion > 0) | (problem.shape == "flat")
-    return (solution.status == Status.CONVERGED) & ~without & ~(problem.shaped() & problem.rough())
+    return (solution.status == Status.CONVERGED) & ~without & ~(shaped(problem) & problem.rough())
 
 
 def pressures(scaled, solution, a):
     """Yield indices of cases, their :class:`~.pressure.Pressure` in units of E2*, and its error (b,)."""
-    shaped = np.flatnonzero(scaled.shaped())
-    for rows, pressure, missed in shaped_pressures(scaled.take(shaped), a[shaped]) if len(shaped) else ():
-        yield shaped[rows], pressure, missed + _LEAST
-    others = np.flatnonzero(~scaled.shaped())
+    with_shape = np.flatnonzero(shaped(scaled))
+    for rows, pressure, missed in shaped_pressures(scaled.take(with_shape), a[with_shape]) if len(with_shape) else ():
+        yield with_shape[rows], pressure, missed + _LEAST
+    others = np.flatnonzero(~shaped(scaled))
     for rows, pressure, missed in _of_paraboloids(scaled.take(others), solution.take(others), a[others]):
         yield others[rows], pressure, missed
 

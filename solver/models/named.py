@@ -10,7 +10,7 @@ from ..contact import smooth
 from ..laws import LAWS
 from ..scaling import as_cases, dimensionless, restore, with_a_stiff_base, with_rigid_punch, without_springs
 from ..schemes import SCHEMES
-from ..shapes import PARABOLOID, SHAPES
+from ..shapes import PARABOLOID, SHAPES, shaped
 from ..smooth_contact.contact import kinds_of
 from ..solution import Model, Solution
 from ..status import Status
@@ -91,8 +91,8 @@ def closed_form(problem, a):
 def _ways(problem, solvable):
     """Pairs of a mask (B,), True for some cases, and the way to solve these."""
     half_space, thin = problem.base == "half_space", problem.base == "thin_layer"
-    is_smooth, shaped = ~problem.rough(), problem.shaped() | (problem.w_adhesion > 0)
-    if np.any(of_shape := solvable & is_smooth & shaped):
+    is_smooth, special = ~problem.rough(), shaped(problem) | (problem.w_adhesion > 0)
+    if np.any(of_shape := solvable & is_smooth & special):
         yield from ((of_shape & mask, way) for mask, way in kinds_of(problem))
         solvable = solvable & ~of_shape
     yield solvable & is_smooth & half_space, _smooth_half_space

@@ -11,7 +11,7 @@ from ..parameters import PARAMETERS
 from . import blunt_cone, cone, flat, frustum, power, rounded_flat, sphere, table
 from .shape import Kind, Shape
 
-__all__ = ["PARABOLOID", "SHAPES", "Kind", "Shape", "named", "register", "shape_of"]
+__all__ = ["PARABOLOID", "SHAPES", "Kind", "Shape", "named", "register", "shape_of", "shaped"]
 
 #: The shape of the paper, which stands in :mod:`..punches.paraboloid` as well: the default.
 PARABOLOID = "paraboloid"
@@ -70,6 +70,11 @@ def shape_of(problem) -> Shape:
     """The :class:`~.shape.Shape` of the cases of a problem in units R = 1, which have one `shape`, no paraboloid."""
     kind = SHAPES[str(problem.shape[0])]
     return kind.of(**{name: getattr(problem, name) for name in kind.parameters}, size=len(problem))
+
+
+def shaped(problem):
+    """(B,) bool: the cases of a problem that have another shape than the paraboloid."""
+    return problem.shape != PARABOLOID
 
 
 BUILT_IN = (

@@ -18,7 +18,7 @@ def kinds_of(problem):
     law = np.where(problem.w_adhesion > 0, problem.adhesion, "")
     kinds = np.char.add(np.char.add(problem.base, np.char.add("|", problem.shape)), np.char.add("|", law))
     for kind in np.unique(kinds):
-        yield kinds == kind, free if kind.endswith("|") else sticking
+        yield kinds == kind, not_sticking if kind.endswith("|") else sticking
 
 
 def shape_in(part):
@@ -27,7 +27,7 @@ def shape_in(part):
     return Power(half, two, two) if str(part.shape[0]) == PARABOLOID else shape_of(part)
 
 
-def free(part, x):
+def not_sticking(part, x):
     """:class:`~..solution.Solution` of cases without adhesion in units R = E2* = 1, at the radii x (m,)."""
     shape, body = shape_in(part), BODIES[str(part.base[0])](part)
     if hasattr(body, "kernel") and body.kernel.sampler is None:  # of many layers

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..body.wave_rule import FILM, MILD, place_of
-from .products import Products, coarser, nodes, size_of
+from .products import Products, coarser, size_of, wave_nodes
 from .rises import rises
 from .tabulated import Tabulated, excess
 
@@ -99,7 +99,7 @@ def respond(shape, body, a):
         index = np.flatnonzero(usable & (kinds == kind))
         which = int(octave[index[0]]), int(place[index[0]])
         part, size = body.take(index), size_of(which[0], bool(kind % 2))
-        L1 = excess(part, nodes(sampler, *which) * (part.h / a[index])[:, None])
+        L1 = excess(part, wave_nodes(sampler, *which) * (part.h / a[index])[:, None])
         products = Products.of(L1, sampler, *which, size)
         pieces.append((index, _on_kernel(shape.take(index), part, a[index], products)))
     return Response.join(len(a), pieces)

@@ -2,21 +2,21 @@
 
 import numpy as np
 
-from ..shapes import PARABOLOID, shape_of
+from ..shapes import PARABOLOID, shape_of, shaped
 from ..shapes.shape import column
 
 
 def unfit(problem):
     """(B,) bool: cases of a problem in units R = E2* = 1 that have a shape or adhesion which does not go with the base,
     the asperities, the scheme or the control."""
-    shaped, pulls = problem.shaped(), problem.w_adhesion > 0
-    if not (shaped | pulls).any():
+    other, pulls = shaped(problem), problem.w_adhesion > 0
+    if not (other | pulls).any():
         return np.zeros(len(problem), dtype=bool)
-    out = (shaped | pulls) & np.isin(problem.base, ("thin_layer", "thin_stack"))
-    out |= (shaped | pulls) & (problem.scheme == "picard")
+    out = (other | pulls) & np.isin(problem.base, ("thin_layer", "thin_stack"))
+    out |= (other | pulls) & (problem.scheme == "picard")
     out |= pulls & problem.rough()
     if problem.control == "a":
-        for word in np.unique(problem.shape[shaped]).tolist():
+        for word in np.unique(problem.shape[other]).tolist():
             index = np.flatnonzero(problem.shape == word)
             out[index] |= _no_radius(problem.take(index))
     return out | pulls & _unfit_law(problem)

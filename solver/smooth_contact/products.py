@@ -62,7 +62,7 @@ class Products(NamedTuple):
 
     @classmethod
     def of(cls, L1, sampler, octave, stiffness, size):
-        """L1 (B, M) : L - 1 at :func:`nodes`."""
+        """L1 (B, M) : L - 1 at :func:`wave_nodes`."""
         if not _has_few(sampler, octave):
             return cls._summed(L1, octave, stiffness, size)
         key = sampler, octave, stiffness, size
@@ -107,7 +107,7 @@ class Waves(NamedTuple):
     weight: np.ndarray
 
 
-def nodes(sampler, octave, stiffness):
+def wave_nodes(sampler, octave, stiffness):
     """κ (M,) at which L - 1 is needed in an octave of h/a and a class of stiffness."""
     if octave == FILM:
         return np.concatenate([_film_rule(stiffness)[0], _far_rule()[0]])

@@ -22,7 +22,7 @@ _TOGETHER = 1_000_000
 _EPS = np.finfo(float).eps
 
 
-def panels(shape, a):
+def panel_ends(shape, a):
     """Pairs of places (b,) in the batch and the ends (b, K + 2) of panels from 0 to a for these, over a: 0, the kinks
     in the contact, 1."""
     kinks = np.sort(shape.kinks() / column(a), axis=1)
@@ -64,7 +64,7 @@ def _even_rule(size):
 def _kinked_rises(shape, a, size):
     out = np.empty((len(a), size))
     y, w = gauss_legendre(size + _MORE)
-    for index, ends in panels(shape, a):
+    for index, ends in panel_ends(shape, a):
         radius, low, width = column(a[index]), ends[:, :-1, None], np.diff(ends, axis=1)[:, :, None]
         tau = (low + width * y**2).reshape(len(index), -1)
         weights = (width * (2 * y * w)).reshape(len(index), -1)
@@ -119,7 +119,7 @@ def _kinked_pressure(shape, a, x):
     """On each panel beyond r, in y of t = start + width y². F' or 1/sqrt(t² - r²) is singular at the lower end of the
     panel or at r, whichever is not the start: the nearer it is, the more subpanels."""
     out = np.zeros((len(a), len(x)))
-    for index, ends in panels(shape, a):
+    for index, ends in panel_ends(shape, a):
         for low, high in zip(ends.T[:-1], ends.T[1:], strict=True):
             start = np.maximum(low[:, None], x)
             width = high[:, None] - start

@@ -10,7 +10,7 @@ from ..radius import guess
 from ..state import answer, beyond_profile, pinned
 from . import dmt
 from .jkr import Jkr
-from .maugis import Maugis, ring_pressure, stress
+from .maugis import Maugis, ring_pressure, ring_stress
 from .pull import Curve, Held, below, beyond, highest, last_minimum
 
 
@@ -21,16 +21,18 @@ def solve(part, shape, body, x):
         return dmt.solve(part, shape, body, machine(part), x)
     law, every, ring = Jkr(shape, body, part.w_adhesion), np.arange(len(part)), None
     if str(part.adhesion[0]) == "maugis":
-        law = Maugis(shape, body, part.w_adhesion, stress(part))
+        law = Maugis(shape, body, part.w_adhesion, ring_stress(part))
     if str(part.shape[0]) == "flat":
         return _flat(part, law, x)
-    curve, held = Curve(law), Held.by(machine(part))
+    curve, holder = Curve(law), Held.by(machine(part))
     control = Held.by(np.full(len(part), np.inf if part.control == "D" else 0.0))
-    turn = last_minimum(curve, held, highest(law, curve.radii))
-    state = law.at(part.value) if part.control == "a" else curve.at(_asked(part, curve, held, control, turn), every)[0]
-    jumped, _ = curve.at(_jump(curve, held, turn), every)
+    turn = last_minimum(curve, holder, highest(law, curve.radii))
+    state = (
+        law.at(part.value) if part.control == "a" else curve.at(_asked(part, curve, holder, control, turn), every)[0]
+    )
+    jumped, _ = curve.at(_jump(curve, holder, turn), every)
     pulls = {"P_off": turn.state.P, "D_off": turn.state.D, "a_off": np.where(turn.at_axis, 0.0, turn.state.a)}
-    pulls |= {"P_in": np.where(held.load, 0.0, jumped.P), "a_in": jumped.a}
+    pulls |= {"P_in": np.where(holder.load, 0.0, jumped.P), "a_in": jumped.a}
     off = turn.state.P_error / np.abs(turn.state.P) + turn.state.D_error / np.abs(turn.state.D)
     outside = beyond_profile(part, shape, lambda index, a: law.take(index).at(a))
     if isinstance(law, Maugis):
@@ -55,10 +57,10 @@ def machine(part):
     return np.where(np.isnan(part.k_machine), usual, part.k_machine)
 
 
-def _asked(part, curve, held, control, turn):
+def _asked(part, curve, holder, control, turn):
     """x (B,) of the asked branch where P or D is given; NaN where it has no such state. The largest radius with the
     value of the control is on the stable branch where it is beyond the :class:`~.pull.Turn` of what holds the punch."""
-    same = held.load.tolist() == control.load.tolist() and held.compliance.tolist() == control.compliance.tolist()
+    same = holder.load.tolist() == control.load.tolist() and holder.compliance.tolist() == control.compliance.tolist()
     of_control = turn if same else last_minimum(curve, control, highest(curve.law, curve.radii))
     least, unstable = control.of(of_control.state.P, of_control.state.D), part.branch == "unstable"
     largest = beyond(curve, control, np.where(part.value >= least, part.value, np.nan), of_control, _start(part, curve))
@@ -77,13 +79,13 @@ def _start(part, curve):
     return guess(part.control, np.where(value > 0, value, np.nan), curve.law.shape, curve.law.body, curve.radii)
 
 
-def _jump(curve, held, turn):
+def _jump(curve, holder, turn):
     """x (B,) to which the contact jumps from where the punch only touches, Q = 0: beyond the :class:`~.pull.Turn`; or
     below it, where Q is positive there."""
-    least = held.of(turn.state.P, turn.state.D)
-    x = beyond(curve, held, np.where(least <= 0, 0.0, np.nan), turn, turn.x + 1)
+    least = holder.of(turn.state.P, turn.state.D)
+    x = beyond(curve, holder, np.where(least <= 0, 0.0, np.nan), turn, turn.x + 1)
     if (rest := least > 0).any():
-        x = np.where(rest, below(curve, held, 0 * least, np.where(rest, turn.x, np.nan), True), x)
+        x = np.where(rest, below(curve, holder, 0 * least, np.where(rest, turn.x, np.nan), True), x)
     return x
 
 

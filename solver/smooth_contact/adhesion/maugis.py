@@ -159,13 +159,13 @@ class Maugis(NamedTuple):
         return d, np.cos(kappa), by, weight * L1 / gamma[:, None]
 
 
-def stress(part):
+def ring_stress(part):
     """σ₀ (B,) of cases in which it, or the range z₀ = w/(0.97 σ₀), is given."""
     return np.where(np.isnan(part.sigma0), part.w_adhesion / (0.97 * part.z0), part.sigma0)
 
 
 def ring_pressure(part, zone, x):
     """What the ring adds to the pressure (B, m) at x (m,) inside the contact, by the tension outside it."""
-    sigma = stress(part)[:, None]
+    sigma = ring_stress(part)[:, None]
     edge = np.sqrt((zone - 1) * (zone + 1))[:, None]
     return sigma * (2 / np.pi * np.arctan2(np.sqrt((1 - x) * (1 + x)), edge) - 1)

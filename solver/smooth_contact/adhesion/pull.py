@@ -1,7 +1,7 @@
 """Where a contact that sticks is pulled off, and which of its radii have a given load or depth.
 
 What moves the punch has the stiffness k, and the end of it is moved by Q = D + P/k: the depth where k is infinite, and
-where k is 0, the load itself. Along the curve of :mod:`.jkr` the contact is stable where Q rises with a. From large
+where k is 0, the load itself. Along the curve of :mod:`.jkr` the contact is stable where Q rising with a. From large
 radii down Q falls, to its last minimum: there the punch is pulled off. A stiff plate has more minima, at smaller radii.
 
 Q is looked at on radii from above the last minimum down. Between two of them it is a cubic polynomial with the right
@@ -111,14 +111,14 @@ class Turn(NamedTuple):
     at_axis: np.ndarray
 
 
-def last_minimum(curve, held, start):
+def last_minimum(curve, holder, start):
     """The :class:`Turn` of B cases from x = `start` (B,), beyond it, down."""
 
     def slope(x, index):
         state, _ = curve.at(x, index)
-        return held.take(index).of(state.dP, state.dD)
+        return holder.take(index).of(state.dP, state.dD)
 
-    found = descend(curve, held, start, lambda Q, dQ, _: (dQ[:, :-1] >= 0) & (dQ[:, 1:] < 0))
+    found = descend(curve, holder, start, lambda Q, dQ, _: (dQ[:, :-1] >= 0) & (dQ[:, 1:] < 0))
     x, corner = found.high.copy(), found.ended & (curve.radii.least > 0)
     inside = np.flatnonzero(~found.ended)
     if len(inside):
@@ -148,7 +148,7 @@ class Interval(NamedTuple):
     ended: np.ndarray
 
 
-def descend(curve, held, start, wanted):
+def descend(curve, holder, start, wanted):
     """The highest :class:`Interval` below `start` (B,) which is `wanted`.
 
     wanted : ``wanted(Q, dQ, index) -> (b, m - 1) bool`` of Q and its slope (b, m) at radii that go down, for the
@@ -156,10 +156,10 @@ def descend(curve, held, start, wanted):
     """
     size = len(start)
     out = Interval(*np.full((6, size), np.nan), np.ones(size, dtype=bool))
-    active, looked = np.arange(size), _looked_at(curve, held, start[:, None], np.arange(size))
+    active, looked = np.arange(size), _looked_at(curve, holder, start[:, None], np.arange(size))
     while len(active):
         below = looked[0] - _STEP * np.arange(1, _TOGETHER + 1)
-        more = _looked_at(curve, held, below, active)
+        more = _looked_at(curve, holder, below, active)
         looked = tuple(np.hstack(pair) for pair in zip(looked, more, strict=True))
         turns = _turns(curve, *looked, active)
         goes_on = np.ones(len(active), dtype=bool)
@@ -167,7 +167,7 @@ def descend(curve, held, start, wanted):
             if len(rows):
                 x, Q, dQ = (values[rows] for values in looked)
                 if turns[rows[0]]:
-                    x, Q, dQ = _with_middles(curve, held, x, Q, dQ, active[rows])
+                    x, Q, dQ = _with_middles(curve, holder, x, Q, dQ, active[rows])
                 goes_on[rows] = ~_note(out, active[rows], wanted(Q, dQ, active[rows]), x, Q, dQ)
         last = looked[0][:, -1]
         out.low[active] = np.where(goes_on, last, out.low[active])
@@ -186,16 +186,16 @@ def _note(out, index, hits, x, Q, dQ):
     return hits.any(axis=1)
 
 
-def _looked_at(curve, held, x, index):
+def _looked_at(curve, holder, x, index):
     """x, and Q and its slope by a, at x (b, m) of the cases `index`."""
     places = np.repeat(index, x.shape[1])
     state, _ = curve.at(x.ravel(), places)
-    part = held.take(places)
+    part = holder.take(places)
     return x, part.of(state.P, state.D).reshape(x.shape), part.of(state.dP, state.dD).reshape(x.shape)
 
 
 def _turns(curve, x, Q, dQ, index):
-    """(b,) bool: between two radii at which Q rises, or falls, the cubic polynomial through both turns."""
+    """(b,) bool: between two radii at which Q rising, or falls, the cubic polynomial through both turns."""
     _, da = curve.radii.at(x.ravel(), np.repeat(index, x.shape[1]))
     slope, width = dQ * da.reshape(x.shape), -np.diff(x, axis=1)
     high, low, mean = slope[:, :-1], slope[:, 1:], -np.diff(Q, axis=1) / width
@@ -207,24 +207,24 @@ def _turns(curve, x, Q, dQ, index):
     return inside.any(axis=1)
 
 
-def _with_middles(curve, held, x, Q, dQ, index):
+def _with_middles(curve, holder, x, Q, dQ, index):
     """x, Q and dQ with the middles of all intervals."""
-    middles = _looked_at(curve, held, (x[:, 1:] + x[:, :-1]) / 2, index)
+    middles = _looked_at(curve, holder, (x[:, 1:] + x[:, :-1]) / 2, index)
     out = [np.empty((len(index), 2 * x.shape[1] - 1)) for _ in range(3)]
     for array, ends, inner in zip(out, (x, Q, dQ), middles, strict=True):
         array[:, ::2], array[:, 1::2] = ends, inner
     return out
 
 
-def beyond(curve, held, value, turn, start):
+def beyond(curve, holder, value, turn, start):
     """x (B,) > turn.x at which Q has the `value` (B,), which is not below Q at the :class:`Turn`; `start` is a first
     guess. NaN where there is none."""
-    Q_off = held.of(turn.state.P, turn.state.D)
+    Q_off = holder.of(turn.state.P, turn.state.D)
     scale = np.maximum(np.abs(value), np.abs(Q_off))
 
     def evaluate(x, index):
         state, da = curve.at(x, index)
-        part = held.take(index)
+        part = holder.take(index)
         return (part.of(state.P, state.D) - value[index]) / scale[index], part.of(state.dP, state.dD) * da / scale[
             index
         ]
@@ -233,19 +233,19 @@ def beyond(curve, held, value, turn, start):
     return rising_root(evaluate, start, low=turn.x)[0]
 
 
-def below(curve, held, value, start, rises):
-    """The largest x (B,) < `start` at which Q has the `value` (B,); NaN where there is none. `rises` : Q rises with a
+def below(curve, holder, value, start, rising):
+    """The largest x (B,) < `start` at which Q has the `value` (B,); NaN where there is none. `rising` : Q rising with a
     there, or it falls."""
-    sign = 1.0 if rises else -1.0
+    sign = 1.0 if rising else -1.0
 
     def wanted(Q, _, index):
         off = sign * (Q - value[index, None])
         return (off[:, :-1] > 0) & (off[:, 1:] <= 0)
 
-    interval = descend(curve, held, start, wanted)
+    interval = descend(curve, holder, start, wanted)
     x, inside = np.full(len(start), np.nan), np.flatnonzero(~interval.ended)
     if len(inside):
-        v, part = value[inside], held.take(inside)
+        v, part = value[inside], holder.take(inside)
         scale = np.abs(interval.Q_high - interval.Q_low)[inside]
 
         def off(y, i):

@@ -1,7 +1,7 @@
 """Where a contact that sticks is pulled off, and which of its radii have a given load or depth.
 
 What moves the punch has the stiffness k, and the end of it is moved by Q = D + P/k: the depth where k is infinite, and
-where k is 0, the load itself. Along the curve of :mod:`.jkr` the contact is stable where Q rising with a. From large
+where k is 0, the load itself. Along the curve of :mod:`.jkr` the contact is stable where Q rises with a. From large
 radii down Q falls, to its last minimum: there the punch is pulled off. A stiff plate has more minima, at smaller radii.
 
 Q is looked at on radii from above the last minimum down. Between two of them it is a cubic polynomial with the right
@@ -195,7 +195,7 @@ def _looked_at(curve, holder, x, index):
 
 
 def _turns(curve, x, Q, dQ, index):
-    """(b,) bool: between two radii at which Q rising, or falls, the cubic polynomial through both turns."""
+    """(b,) bool: between two radii at which Q rises, or falls, the cubic polynomial through both turns."""
     _, da = curve.radii.at(x.ravel(), np.repeat(index, x.shape[1]))
     slope, width = dQ * da.reshape(x.shape), -np.diff(x, axis=1)
     high, low, mean = slope[:, :-1], slope[:, 1:], -np.diff(Q, axis=1) / width
@@ -234,7 +234,7 @@ def beyond(curve, holder, value, turn, start):
 
 
 def below(curve, holder, value, start, rising):
-    """The largest x (B,) < `start` at which Q has the `value` (B,); NaN where there is none. `rising` : Q rising with a
+    """The largest x (B,) < `start` at which Q has the `value` (B,); NaN where there is none. `rising` : Q rises with a
     there, or it falls."""
     sign = 1.0 if rising else -1.0
 

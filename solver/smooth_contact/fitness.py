@@ -23,7 +23,7 @@ def unfit(problem):
 
 
 def _no_radius(part):
-    """(B,) bool: no contact of the one shape of the cases has the radius that is given; that of a flat punch is its own."""
+    """(B,) bool: no contact of the one shape of the cases has the radius that is given. A flat punch has its own."""
     shape, a = shape_of(part), part.value
     poles = ~np.isfinite(shape.lifted(column(shape.most()))[:, 0])
     return (a <= shape.least()) | (a >= shape.most()) & (poles | (shape.least() == shape.most()))

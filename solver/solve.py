@@ -75,7 +75,7 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
             pieces.append((index, way(part, radii)))
     solution = Solution.join(*size, pieces)
     if shaped(problem).any():
-        beyond = ~invalid & beyond_table(scaled, solution, lambda last: solve_named(last, radii))
+        beyond = ~invalid & beyond_table(scaled, solution)
         solution = solution.refused(beyond, Status.OUTSIDE_LAW)
     if yields:
         solution = replace(solution, plastic_share=plastic_share(problem, solution.lam[:, len(x) :]))

@@ -25,7 +25,7 @@ from .inputs.vocabulary import VOCABULARY
 from .specimen.foreign import plain
 from .terminal import shown
 from .work.engine import solved
-from .work.screen import screen_of
+from .work.progress import screen_of
 
 
 def solve(

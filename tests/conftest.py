@@ -132,7 +132,7 @@ def drawing(results) -> Callable:
     @cache
     def composed(name: str) -> tuple:
         with pytest.MonkeyPatch.context() as patched:
-            patched.setattr("study.figures.registry.open_results", opened)
+            patched.setattr("study.figures.registry.opened", opened)
             return compose(name, results)
 
     return composed

@@ -6,14 +6,15 @@ from ..problem import Problem
 from ..shapes import shape_of
 from ..shapes.table import PREFIX
 from ..status import Status
+from .named import solve_named
 
 #: A contact radius so near to the last row stands for the last row; rtol of what a contact up to there bears.
 _LAST, _ROUGHLY = 1 - 1e-9, 1e-4
 
 
-def beyond_table(scaled, solution, solve):
+def beyond_table(scaled, solution):
     """(B,) bool: cases whose contact would reach beyond the last row of their table. Where load or depth are given and
-    the case was not solved, they are compared with those of a contact up to there, by ``solve(problem) -> Solution``.
+    the case was not solved, they are compared with those of a contact up to there.
 
     scaled : the problem in units R = E2* = 1
     """
@@ -28,5 +29,5 @@ def beyond_table(scaled, solution, solve):
         if len(left):
             part, control = scaled.take(index[left]), scaled.control
             last = Problem("a", most[left] * _LAST, part.parameters).but(rtol=_ROUGHLY, w_adhesion=0.0)
-            beyond[index[left]] = part.value > getattr(solve(last), control)
+            beyond[index[left]] = part.value > getattr(solve_named(last, np.zeros(0)), control)
     return beyond

@@ -13,10 +13,10 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import spherical_jn, spherical_yn
 
 from ..body.film import step
 from ..body.wave_rule import CUT, FILM, few, quadrature
+from ..numerics import special
 from ..numerics.kept import Kept
 from ..numerics.quadrature import gauss_legendre
 
@@ -141,7 +141,8 @@ def _waves(octave, stiffness, size):
         (k, weight), (far, far_weight) = quadrature(octave, stiffness), np.empty((2, 0))
     near = np.vstack([differences(size, k), np.cos(k), k * np.sin(k)])
     m, turned = np.arange(size)[:, None], np.exp(-1j * far)
-    amplitudes = (-1.0) ** m * np.sqrt(4 * m + 1) * (spherical_jn(2 * m, far) + 1j * spherical_yn(2 * m, far)) * turned
+    waves = special.spherical_jn(2 * m, far) + 1j * special.spherical_yn(2 * m, far)
+    amplitudes = (-1.0) ** m * np.sqrt(4 * m + 1) * waves * turned
     if len(far):
         amplitudes[0] = -1 - 1j / far
     return Waves(near, np.vstack([amplitudes, np.ones_like(far), -1j * far]), np.append(weight, far_weight))
@@ -181,11 +182,11 @@ def _table(sampler, octave, stiffness, size):
 def transforms(size, k):
     """ê_m (N, G) at κ (G,)."""
     m = np.arange(size)[:, None]
-    return (-1.0) ** m * np.sqrt(4 * m + 1) * spherical_jn(2 * m, k)
+    return (-1.0) ** m * np.sqrt(4 * m + 1) * special.spherical_jn(2 * m, k)
 
 
 def differences(size, k):
     """d_m (N, G) at κ (G,)."""
     values = transforms(size, k)
-    values[0] = k * spherical_jn(1, k)
+    values[0] = k * special.spherical_jn(1, k)
     return values

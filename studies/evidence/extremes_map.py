@@ -21,8 +21,10 @@ BINS = 24
 _MANY = 10_000  # cases in a map from which on converged ones are drawn as smaller points
 #: FAILED: status of a failed case -> its colour; COLOURS: the same of all statuses.
 _FAILURES = [status for status in Status if status not in (Status.CONVERGED, *NO_SOLUTION)]
+#: Statuses without a solution that occur without adhesion.
+_WITHOUT = [status for status in NO_SOLUTION if status != Status.PULLED_OFF]
 FAILED = dict(zip(_FAILURES, ("#d55e00", "#cc79a7", "black", "#e69f00", "#0072b2", "#009e73"), strict=False))
-COLOURS = {Status.CONVERGED: "0.85"} | dict(zip(NO_SOLUTION, ("0.4", "#56b4e9", "0.6"), strict=True)) | FAILED
+COLOURS = {Status.CONVERGED: "0.85"} | dict(zip(_WITHOUT, ("0.4", "#56b4e9"), strict=True)) | FAILED
 ITERATIONS = (1, 5, 10, 15, 20, 30, 50, 100, 200, 500)
 
 
@@ -138,9 +140,9 @@ def shares(*studies: xr.Dataset) -> list[tuple]:
     for base, law in product(BASES, LAWS):
         which = (cases["base"] == base) & (cases["micro"] == law)
         status = cases["status"][which]
-        solvable = status[~np.isin(status, list(NO_SOLUTION))]
+        solvable = status[~np.isin(status, _WITHOUT)]
         kinds = [Status.CONVERGED], [Status.TOLERANCE_NOT_MET], set(FAILED) - {Status.TOLERANCE_NOT_MET}
-        counts = [(status == s).mean() for s in NO_SOLUTION]
+        counts = [(status == s).mean() for s in _WITHOUT]
         counts += [np.isin(solvable, list(kind)).mean() for kind in kinds]
         error, iterations = (cases[name][which][status == Status.CONVERGED] for name in ("error/rtol", "iterations"))
         numbers = [*counts, *np.quantile(error, (0.5, 0.999, 1)), *np.quantile(iterations, (0.5, 1))]

@@ -37,8 +37,7 @@ from .units import physical_attributes, reduced_modulus
 ROUNDING = 1e-12
 """Pressures of a profile whose relative difference is smaller are equal: it is rounding."""
 LEAST_POINTS, LOAD_MISSED = 5, 5e-3
-"""Fewest points of a profile for `D_body`, and the largest relative error of the load from it. The error of D_body is
-then less than that times D (tests/data/test_depth.py)."""
+"""Fewest points of a profile for `D_body`, and the largest relative error of its load: that of D_body is smaller."""
 QUANTITIES: dict[str, Callable[[xr.Dataset], xr.DataArray]] = {}
 """Name -> function of a dataset: the formulas with the decorator `quantity`, which can be drawn like results."""
 SECTIONS_OF_QUANTITIES = """

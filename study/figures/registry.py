@@ -227,10 +227,9 @@ def study_beside(kind: str, name: str) -> Path | None:
 def open_studies(name: str, studies: tuple[str, ...], results) -> list[xr.Dataset]:
     """The datasets of the studies that a figure or table needs. Raises StudyError if one has no results yet."""
     paths = {study: results_of(Path(results), study) for study in studies}
-    missing = [f"{path}: does not exist, {name} needs it; {_way_out(path.stem)}"
-               for path in paths.values() if not path.exists()]  # fmt: skip
+    missing = [path for path in paths.values() if not path.exists()]
     if missing:
-        raise StudyError(missing)
+        raise StudyError([f"{path}: does not exist, {name} needs it; {_way_out(path.stem)}" for path in missing])
     return [opened(path) for path in paths.values()]
 
 

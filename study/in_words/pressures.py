@@ -49,7 +49,8 @@ def largest_of_all(contact: xr.Dataset | OneCase) -> dict[str, xr.Variable]:
     nominal, real = v["p0"], v["p_max"]
     top = v["p"].max("x") if "p" in v else nominal
     ring = top > RING * nominal
-    nominal, real = nominal.where(np.isfinite(nominal)), real.where(np.isfinite(real))  # others: of sharp tips
+    if np.isinf(nominal).any():  # of sharp tips
+        nominal, real = (v.where(np.isfinite(v)) for v in (nominal, real))
     if ring.any():
         contact = as_dataset(contact)
         nominal, real, top, ring = (as_xarray(variable) for variable in (nominal, real, top, ring))

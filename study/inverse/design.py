@@ -12,7 +12,7 @@ from ..in_words import doubts, falling
 from ..inputs.definition import StudyError
 from ..inputs.vocabulary import NOT_RUN, ROWS
 from ..specimen.foreign import plain
-from ..work.screen import screen_of
+from ..work.progress import screen_of
 from .design_answer import STATUSES, Answer, answered, searched, solutions, solved
 from .design_asked import wanted
 from .design_cases import Wanted

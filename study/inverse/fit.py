@@ -16,8 +16,7 @@ from ..specimen.quantities import quantity
 from ..terminal import shown
 from ..work.cases import Failure, laws_of_users
 from ..work.engine import computed_tasks
-from ..work.progress import Progress
-from ..work.screen import screen_of
+from ..work.progress import Progress, screen_of
 from .curves import measured
 from .fits.answer import answered
 from .fits.asked import Asked, asked

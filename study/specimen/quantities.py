@@ -1,7 +1,6 @@
 """Numbers with units: "5 mm", "200 ± 10 GPa" or quantities of pint become SI numbers, and SI numbers readable text.
 
-pint reads the units but those of READABLE. It is imported when the first other unit comes, for that takes half a
-second.
+pint reads the units but those of READABLE. The first other unit imports it, which takes half a second.
 """
 
 import math

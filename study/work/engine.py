@@ -2,9 +2,8 @@
 
 `study.solve` and the `run` of a study are served alike, and `study.fit`, whose blocks are curves. A block has the same
 numbers wherever it is computed, so one worker and many give the same bits. What the compiled core takes is solved in
-threads, which it lets run side by side (docs/threads.md). All else is solved in the processes of
-`study.work.processes`. They import this package and not the program that calls, so a script needs no
-`if __name__ == "__main__"`. They stay for a while, for the next call.
+threads (docs/threads.md), all else in the processes of `study.work.processes`. They import this package and not the
+program that calls, so a script needs no `if __name__ == "__main__"`. They stay for a while, for the next call.
 """
 
 import atexit

@@ -22,7 +22,7 @@ from ..inputs.vocabulary import NOT_RUN, suggest
 from ..store.blocks import Store, lost_cases
 from ..terminal import on_one_line, program, shown
 from .cost import describe, estimate
-from .screen import screen_of
+from .progress import screen_of
 
 
 @dataclass(frozen=True)

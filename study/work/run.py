@@ -21,8 +21,7 @@ from .cases import Failure, blocks_of
 from .cost import Estimate, estimate
 from .engine import computed
 from .plan import Order, Report, anything_there, check_replaceable, check_size, check_writable, look
-from .progress import Progress
-from .screen import screen_of
+from .progress import Progress, screen_of
 
 log = logging.getLogger(__name__)
 

@@ -32,7 +32,7 @@ def counted(monkeypatch):
 
         monkeypatch.setattr(module, name, counting)
 
-    watch(tables, "j0", "j0")
+    watch(tables.special, "j0", "j0")
     watch(film, "_in_octaves", "c")
     monkeypatch.setattr(tables, "_tables", Kept(4e8))
     tables._moments.cache_clear()

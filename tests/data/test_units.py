@@ -16,6 +16,7 @@ SCALE = {"R": 5e-3, "E2_star": 2e11}
 # SI sizes of dimensionless ones on a sphere of 5 mm on 200 GPa.
 FACTORS = {
     **dict.fromkeys(("a", "D", "h", "Ra", "sigma", "A0", "b0", "r_ring", "D_body"), 5e-3),  # m
+    **dict.fromkeys(("flat_radius", "tip_radius", "edge_radius", "z0", "table_unit", "D_off", "a_off", "a_in"), 5e-3),
     **dict.fromkeys(
         (
             "p0",
@@ -30,13 +31,14 @@ FACTORS = {
             "Y1",
             "Y2",
             "Y_punch",
+            "sigma0",
             *EXTREMES,
         ),
         2e11,
     ),  # Pa
-    "P": 5e6,  # N: 2e11 Pa (5e-3 m)²
+    **dict.fromkeys(("P", "P_off", "P_in"), 5e6),  # N: 2e11 Pa (5e-3 m)²
     "Nbar": 4e4,  # 1/(5 mm)²
-    "dP_dD": 1e9,  # N/m: 2e11 Pa 5e-3 m
+    **dict.fromkeys(("dP_dD", "w_adhesion", "k_machine"), 1e9),  # N/m: 2e11 Pa 5e-3 m
     "An": 25e-6,  # (5 mm)²
 }
 

@@ -197,7 +197,7 @@ def test_files_carry_the_name_and_the_studies_and_fit_a_page(figures, results):
 
 
 def test_captions_of_all_figures_that_have_results(results, tmp_path, monkeypatch):
-    monkeypatch.setattr("study.figures.registry.open_results", opened)
+    monkeypatch.setattr("study.figures.registry.opened", opened)
     (path,) = draw("captions", results, tmp_path)
     said = dict(re.findall(r"^[*]{2}(\w+)\.[*]{2} (.*)$", path.read_text(encoding="utf-8"), flags=re.MULTILINE))
     assert set(said) == {*FIGURES, *DRAWINGS} and all(len(text) > 40 for text in said.values())

@@ -8,7 +8,7 @@ import types
 
 import pytest
 
-from study.work import cases, progress, screen
+from study.work import cases, progress
 from study.work.progress import ERASE
 
 PATIENCE = 20  # seconds that a test waits for a line at most
@@ -46,7 +46,7 @@ def stderr(monkeypatch, impatient) -> Screen:
 
 def as_stderr(monkeypatch, stream):
     """Let a stream be stderr for calls, but not for pytest, which replaces it before each test."""
-    monkeypatch.setattr(screen, "sys", types.SimpleNamespace(stderr=stream, modules=sys.modules))
+    monkeypatch.setattr(progress, "sys", types.SimpleNamespace(stderr=stream, modules=sys.modules))
     return stream
 
 

@@ -13,7 +13,7 @@ from screens import CONTACT, PATIENCE, Screen, as_stderr, lines, nobody_speaks, 
 import study
 from solver import Status
 from study import solving
-from study.work import cases, engine, progress, screen
+from study.work import cases, engine, progress
 from study.work.progress import ERASE, Progress
 
 
@@ -103,7 +103,7 @@ def test_it_is_not_said_on_a_terminal_if_it_is_not_wanted(monkeypatch, stderr):
 def test_threads_of_a_program_that_divides_its_work_say_nothing_by_themselves(stderr):
     with_a_thread = []
     for value in (None, True):
-        thread = threading.Thread(target=lambda value=value: with_a_thread.append(screen.screen_of(value)))
+        thread = threading.Thread(target=lambda value=value: with_a_thread.append(progress.screen_of(value)))
         thread.start()
         thread.join()
     assert with_a_thread == [None, stderr]

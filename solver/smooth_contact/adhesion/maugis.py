@@ -15,9 +15,9 @@ So a and γ = c/a have one w; for a given w, γ is searched at each radius. With
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import j0, j1
 
 from ...body.wave_rule import OCTAVES, place_of, quadrature
+from ...numerics import special
 from ...numerics.bracket import false_position
 from ...numerics.quadrature import gauss_legendre
 from ..equation import Response, at_the_edge, solved
@@ -129,7 +129,7 @@ class Maugis(NamedTuple):
         y, less, bent, at_edge, change, of_waves = side, side, 0 * side, 0 * a, 0 * a, 0 * a
         if hasattr(self.body, "kernel"):
             d, cosine, by, q = self._waves(a, gamma, octave, place, N)
-            J1, J0 = j1(by) / (by / gamma[:, None]), j0(by)
+            J1, J0 = special.j1(by) / (by / gamma[:, None]), special.j0(by)
             side = side + (unit * c)[:, None] * np.einsum("bg,bng->bn", q * J1, d)
             products, few = Products.summed(d, cosine, 2 / np.pi * q), coarser(N)
             y, less = (solved(products, side[:, :n, None], n)[:, :, 0] for n in (N, few))

@@ -1,5 +1,7 @@
 """The shape of the punch and what sticks, in words."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from solver.shapes import PARABOLOID, SHAPES

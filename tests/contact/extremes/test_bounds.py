@@ -22,9 +22,23 @@ USED = {
     "rtol": (1e-12, 0.1), "R": (1e-300, 1e300), "E2": (1e-300, 1e300), "nu1": (-0.9, 0.5), "nu2": (-0.9, 0.5),
     "accuracy": (1e-6, 0.5), "max_iterations": (1, 100_000), "sigma": (0.0, 1.0), "cut": (3.0, 5.0),
     "hardness": (1e-12, 1e12), "yield_strength": (1e-12, 1e12),
-    **dict.fromkeys(("Y1", "Y2", "Y_punch"), (1e-12, 1e12)),
+    **dict.fromkeys(("Y1", "Y2", "Y_punch"), (1e-12, 1e12)), "half_angle": (1.0, 89.0),
+    **dict.fromkeys(("flat_radius", "tip_radius", "edge_radius"), (1e-6, 1.0)), "shape_power": (1.0, 20.0),
+    "shape_coefficient": (1e-3, 1e6), "w_adhesion": (0.0, 1.0), **dict.fromkeys(("sigma0", "z0"), (1e-12, 1.0)),
+    "k_machine": (0.0, 1e12),
 }  # fmt: skip
 BOUNDS = {name: ends(own.interval)[:2] for name, own in (CONTROL | PARAMETERS).items() if own.interval}
+BOUNDS.pop("table_unit", None)  # it is there where a test before has read a table of a shape
+#: What a number of a shape or of adhesion needs beside it; the rest of the case is smooth then.
+PUNCHES = {
+    "half_angle": {"shape": "cone"},
+    "flat_radius": {"shape": "frustum", "half_angle": 60.0},
+    "tip_radius": {"shape": "blunt_cone", "half_angle": 60.0},
+    "edge_radius": {"shape": "rounded_flat", "flat_radius": 0.2},
+    "shape_power": {"shape": "power", "shape_coefficient": 1.0},
+    "shape_coefficient": {"shape": "power", "shape_power": 2.0},
+    **dict.fromkeys(("w_adhesion", "k_machine", "sigma0", "z0"), {"w_adhesion": 1e-6}),
+}
 X = np.linspace(0.0, 1.0, 5)
 
 
@@ -48,6 +62,8 @@ def just_outside(name):
     low, high, with_low, with_high = ends(own.interval)
     if own.whole:
         return np.array([-1, high + 1])
+    if high == np.inf and with_high:  # nothing is above
+        return np.array([np.nextafter(low, -np.inf), -np.inf])
     return np.array(
         [np.nextafter(low, -np.inf) if with_low else low, np.nextafter(high, np.inf) if with_high else high]
     )
@@ -63,7 +79,9 @@ UNITS = {
     "Nbar": 0.25,
     "sigma": 2.0,
     "hardness": 4.0,
-    **dict.fromkeys(("yield_strength", "Y1", "Y2", "Y_punch"), 4.0),
+    **dict.fromkeys(("yield_strength", "Y1", "Y2", "Y_punch", "sigma0"), 4.0),
+    **dict.fromkeys(("flat_radius", "tip_radius", "edge_radius", "z0"), 2.0),
+    **dict.fromkeys(("w_adhesion", "k_machine"), 8.0),
 }
 CASE = MAIN | {"base": "auto", "R": 2.0, "E2": 4.0}
 LAWS = dict.fromkeys(("sigma", "cut"), "normal_heights") | dict.fromkeys(
@@ -78,8 +96,13 @@ def test_a_number_is_allowed_up_to_its_bounds(name):
     inside = [low if with_low else 0.1, high if with_high else 0.1, *(CONTROL | PARAMETERS)[name].also]
 
     def problem(values):
-        law = LAWS.get(name, "power_law")
-        case = ({} if name in CONTROL else {"P": LOAD}) | CASE | {"micro": law, "sigma": 1e-4, "cut": 4.0, name: values}
+        law = LAWS.get(name, "smooth" if name in PUNCHES else "power_law")
+        case = (
+            PUNCHES.get(name, {})
+            | ({} if name in CONTROL else {"P": LOAD})
+            | CASE
+            | {"micro": law, "sigma": 1e-4, "cut": 4.0, name: values}
+        )
         return Problem.of(**{key: np.multiply(v, UNITS[key]) if key in UNITS else v for key, v in case.items()})
 
     allowed = problem(inside)

@@ -105,6 +105,20 @@ def test_fine_asperities_leave_the_smooth_shape(name):
     assert 0.05 < apart[1] / apart[0] < 0.2
 
 
+def test_a_small_load_leaves_the_flat_end():
+    """Under 1e-10 a frustum and a rounded flat punch touch little beyond b, and their depth is nearly that of the flat
+    punch. The edge is 4e-5 of b beyond it: rounding of a is 1e-11 of that distance, and `error` says so."""
+    load, case = 1e-10, {"flat_radius": 0.012, "micro": "disc_cell"} | BARE
+    flat = solved(case, shape="flat", P=load)
+    frustum = solved(case, shape="frustum", half_angle=BLUNT, P=load)
+    rounded = solved(case, shape="rounded_flat", edge_radius=0.1, P=load)
+    for answer, part in ((frustum, 1e-4), (rounded, 0.01)):  # a/b - 1 is 4e-5 and 8e-3
+        assert answer.status.tolist() == [Status.CONVERGED] and 0 < answer.a[0] / 0.012 - 1 < part
+        assert_allclose((answer.D, answer.dP_dD), (flat.D, flat.dP_dD), rtol=part, atol=0)
+    by_depth = solved(case, shape="frustum", half_angle=BLUNT, D=frustum.D[0])
+    assert abs(by_depth.P[0] / load - 1) < frustum.error[0] < 1e-9
+
+
 def test_a_case_has_the_same_numbers_in_any_company():
     cases = [GIVEN[name][0] | {"P": GIVEN[name][2]} for name in ("cone", "frustum", "sphere", "flat")]
     names = {key for case in cases for key in case}

@@ -37,7 +37,23 @@ LINES = (
     "[model]", "[axes]", "[[cases]]", "[sample]", "[numerics]", "[output]", "[fit]", "x = 2", "block = 0", "size = 7",
     "profiles = []", "P = 1e-5", "a = [0.01, 0.02]", "D = 1e-4", "h = nan", "nodes = 17", 'kind = "micro_law"',
     'dtype = "float32"', ".".join(["a"] * 20_000) + " = 1", "[" + ".".join(["a"] * 20_000) + "]", "= 1", "\x00",
+    'shape = "cone"', 'half_angle = "70.3 ± 0.3 deg"', 'shape = "Berkovich"', 'shape = "flat"', "flat_radius = 0.01",
+    "edge_radius = 0.1", 'shape = "table:none.csv"', "w_adhesion = 1e-7", 'adhesion = "maugis"', "sigma0 = 1e-3",
+    'branch = "unstable"', "k_machine = 0.1", "[[layers]]", 'base = "stack"', 'tip = "sphere"',
 )  # fmt: skip
+#: Studies of shapes, of what sticks and of stacks, beside those of the repository.
+MORE = (
+    '[model]\nbase = "half_space"\nmicro = "smooth"\nshape = "cone"\n[axes]\nP = [1e-5, 1e-4]\nhalf_angle = [60, 70]\n',
+    '[model]\nh = 0.1\nn = 0.5\nmicro = "smooth"\nshape = "blunt_cone"\nhalf_angle = 75\ntip_radius = 0.1\n'
+    'tip = "sphere"\n[axes]\nD = [1e-3, 1e-2]\n',
+    '[model]\nbase = "half_space"\nmicro = "disc_cell"\nNbar = 250000\nRa = 0.004\nshape = "rounded_flat"\n'
+    "flat_radius = 0.02\nedge_radius = 0.1\nP = 1e-4\n",
+    '[model]\nbase = "half_space"\nmicro = "smooth"\nw_adhesion = 1e-7\nadhesion = "jkr"\nk_machine = 0.1\n'
+    '[axes]\nP = [-1e-7, 0.0, 1e-6]\nbranch = ["stable", "unstable"]\n',
+    '[model]\nbase = "half_space"\nmicro = "smooth"\nw_adhesion = 1e-7\nadhesion = "dmt"\nD = 1e-3\n',
+    '[model]\nbase = "stack"\nmicro = "smooth"\nshape = "sphere"\nP = 1e-4\n[[layers]]\nh = 0.01\nn = 2\n'
+    "nu = 0.3\n[[layers]]\nh = 0.1\nn = 0.5\nnu = 0.4\n",
+)
 
 
 class Hang(BaseException):
@@ -51,6 +67,7 @@ def bases() -> list[str]:
         return f"{found[1]}{min(int(found[2].replace('_', '')), 3)}"
 
     texts = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "studies").glob("*/*.toml"))]
+    texts += MORE
     return [re.sub(r"\b((?:num|size)\s*=\s*)([\d_]+)", few, text) for text in texts]
 
 
@@ -97,7 +114,8 @@ def _number(chance, lines, at):
 
 def _word(chance, lines, at):
     """Another word that the vocabulary knows in the place of a text."""
-    words = ("frictionless", "bonded", "layered", "thin_layer", "half_space", "auto", "disc_cell", "smooth", "newton")
+    words = ("frictionless", "bonded", "layered", "thin_layer", "half_space", "auto", "disc_cell", "smooth", "newton",
+             "cone", "sphere", "flat", "rounded_flat", "stack", "jkr", "dmt", "maugis", "unstable")  # fmt: skip
     return [*lines[:at], re.sub(r'"\w+"', f'"{chance.choice(words)}"', lines[at], count=1), *lines[at + 1 :]]
 
 

@@ -1,0 +1,155 @@
+"""Random punches of every shape, smooth, rough and sticking: nothing silently wrong, no warning.
+
+    python tools/fuzz/fuzz_shapes.py [GROUPS [SEED]]
+
+Each group is a batch of one shape, base, control and way to touch: smooth, one of the models of adhesion, or rough.
+Numbers are drawn between the bounds that the solver allows, half of them near those of contacts that people have. What
+has converged must be a contact: its numbers are finite but for those that are infinite or not known under a point, at
+an edge or at pull-off, and from its radius the same contact follows. What is wrong is printed with its case; the exit
+code is then 1.
+"""
+
+import sys
+import warnings
+from collections import Counter
+from time import perf_counter
+
+import numpy as np
+
+from solver import Problem, Solution, Status, solve
+from solver.parameters import ADHESIONS, BRANCHES, CONTROL, PARAMETERS, ends
+from solver.shapes import SHAPES
+
+X = np.array([0.0, 0.3, 0.7, 0.95, 1.0])
+NAMES = ("paraboloid", *(name for name in SHAPES if not name.startswith("table:") and name != "paraboloid"))
+WAYS = ("smooth", *ADHESIONS, "rough")
+BASES = ("half_space", "layered", "stack")
+LAWS = ("disc_cell", "power_law", "square_lattice")
+#: Cases of a group: a rough one takes a second.
+SIZES = {"smooth": 24, "jkr": 12, "dmt": 12, "maugis": 2, "rough": 2}
+#: About what numbers people have; the others are drawn between their bounds.
+USUAL = {"h": (1e-3, 10), "n": (1e-3, 1e3), "half_angle": (20, 88), "flat_radius": (1e-3, 0.3), "tip_radius": (1e-2, 1),
+         "edge_radius": (1e-2, 1), "shape_power": (1, 8), "shape_coefficient": (1e-2, 10), "w_adhesion": (1e-9, 1e-2),
+         "sigma0": (1e-5, 1), "z0": (1e-7, 1e-2), "k_machine": (1e-5, 10), "P": (1e-8, 1e-2), "D": (1e-6, 0.1),
+         "a": (1e-4, 0.5), "Nbar": (1e3, 1e6), "Ra": (1e-5, 1e-2), "B": (0.02, 1), "beta": (0.3, 0.9)}  # fmt: skip
+#: Errors by which a contact may differ from that of its radius.
+AGREE = 10.0
+
+
+def drawn(random, name, size, usual):
+    """Numbers (size,) of a parameter, uniform in their logarithm."""
+    low, high = USUAL[name] if usual else ends((CONTROL | PARAMETERS)[name].interval)[:2]
+    low, high = max(low, 1e-9 if name != "w_adhesion" else 1e-15), min(high, 1e9)
+    if name == "half_angle":
+        return random.uniform(low or 1e-3, min(high, 89.999), size)
+    return np.exp(random.uniform(np.log(low), np.log(high), size)).clip(low, high)
+
+
+def group(seed, number):
+    """Arguments of ``Problem.of`` of a group, and its control."""
+    random = np.random.default_rng([seed, number])
+    way, shape, base = WAYS[number % 5], NAMES[number // 5 % len(NAMES)], random.choice(BASES)
+    if way in ("dmt", "maugis"):
+        shape = "paraboloid"
+    control, size, usual = random.choice(("P", "D") if shape == "flat" else tuple(CONTROL)), SIZES[way], random.random() < 0.5
+    case = {name: drawn(random, name, size, usual) for name in SHAPES[shape].parameters if name in USUAL} if shape != "paraboloid" else {}
+    case |= {"shape": str(shape), "base": str(base), "micro": "smooth", "rtol": 10 ** random.uniform(-9, -2, size)}
+    if "tip_radius" in case:
+        case["tip"] = random.choice(("paraboloid", "sphere"), size)
+    if base == "layered":
+        case |= {"h": drawn(random, "h", size, usual), "n": drawn(random, "n", size, usual)}
+        case |= {"nu1": random.uniform(-0.9, 0.5, size), "nu2": random.uniform(-0.9, 0.5, size)}
+        case["bonding"] = random.choice(("bonded", "frictionless"), size)
+    if base == "stack":
+        case["layers"] = [
+            {"h": float(drawn(random, "h", 1, True)[0]), "n": float(drawn(random, "n", 1, True)[0]), "nu": 0.3,
+             "bonding": str(random.choice(("bonded", "frictionless")))} for _ in range(random.integers(1, 4))
+        ]  # fmt: skip
+    value = drawn(random, control, size, usual)
+    if way == "rough":
+        case |= {name: drawn(random, name, size, usual) for name in ("Nbar", "Ra", "B", "beta")}
+        case["micro"] = str(random.choice(LAWS))
+    elif way != "smooth":
+        case |= {"adhesion": way, "w_adhesion": drawn(random, "w_adhesion", size, usual)}
+        case |= {"branch": random.choice(BRANCHES, size, p=[0.8, 0.2])}
+        case |= {"k_machine": drawn(random, "k_machine", size, True)} if random.random() < 0.3 else {}
+        case |= {"sigma0": drawn(random, "sigma0", size, usual)} if way == "maugis" else {}
+        if control == "P":
+            value = np.where(random.random(size) < 0.5, -5 * random.random(size) * case["w_adhesion"], value)
+        elif control == "D":
+            value *= random.choice([1, 0, -0.01], size)
+    return case | {control: value}, str(control)
+
+
+def wrong_numbers(s: Solution, case: dict, control: str) -> np.ndarray:
+    """(B,) bool: converged cases whose numbers are not those of a contact."""
+    sticks, rough = "w_adhesion" in case, case["micro"] != "smooth"
+    kind = SHAPES[case["shape"]] if case["shape"] != "paraboloid" else None
+    pointed = case["shape"] in ("cone", "berkovich", "vickers", "cube_corner", "power")
+    bad = ~(s.a > 0) | ~(s.error <= case["rtol"]) | ~np.isfinite(s.P) | ~np.isfinite(s.D)
+    with np.errstate(all="ignore"):
+        inner = s.p[:, 1:-1]
+        bad |= ~np.isfinite(inner).all(axis=1) | np.isnan(s.dP_dD) | np.isnan(s.p[:, -1])
+        if kind is None or not pointed:
+            bad |= ~np.isfinite(s.p0) | ~np.isfinite(s.p_max)
+        if sticks:
+            pulls = np.stack([s.P_off, s.D_off, s.a_off, s.P_in, s.a_in])
+            bad |= ~np.isfinite(pulls[:3]).all(axis=0) | (s.stable != (s.a >= s.a_off))
+        else:
+            bad |= ~(s.P > 0) | ~(s.D > 0) | (inner < 0).any(axis=1)
+            bad |= s.dP_dD * s.D < s.P * (1 - AGREE * (s.error + case["rtol"]))
+        if rough:
+            bad |= (s.Ar_An > 1.0001) | ~(s.Ar_An > 0)
+    return bad & (s.status == Status.CONVERGED)
+
+
+def differs(s: Solution, case: dict, control: str) -> np.ndarray:
+    """(B,) bool: converged cases that are others when they are asked for by their radius."""
+    out, low = np.zeros(len(s.a), dtype=bool), ends(CONTROL["a"].interval)[0]
+    index = np.flatnonzero((s.status == Status.CONVERGED) & (s.a >= low))
+    if control == "a" or case["shape"] == "flat" or not len(index):
+        return out
+    part = {name: v[index] if isinstance(v, np.ndarray) else v for name, v in case.items() if name != control}
+    again = solve(Problem.of(**part, a=s.a[index]), X)
+    by_radius = np.abs(getattr(again, control) - getattr(s, control)[index])
+    # by its radius P or D is off by what rounding of a does: a - b of a flat end, P near 0 of what sticks
+    scale = np.abs(s.dP_dD if control == "P" else 1 / s.dP_dD)[index] * np.abs(s.D if control == "P" else s.P)[index]
+    scale = np.maximum(np.abs(getattr(s, control)[index]), np.where(np.isfinite(scale), scale, np.inf))
+    allowed = AGREE * (s.error[index] + again.error + 1e-9) * scale
+    out[index] = (again.status == Status.CONVERGED) & ~(by_radius <= allowed)
+    return out
+
+
+def violations(seed, number, ended):
+    """Texts of what is wrong in a group; `ended` counts how its cases ended."""
+    case, control = group(seed, number)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            s = solve(Problem.of(**case), X)
+            wrong, other = wrong_numbers(s, case, control), differs(s, case, control)
+        except Exception as error:
+            return [f"group {number}: {type(error).__name__}: {error}: {case}"]
+    ended.update(Status(value).name for value in s.status.tolist())
+    names = ("status", "a", "P", "D", "p0", "dP_dD", "error", "P_off", "D_off", "a_off", "stable")
+    texts = []
+    for words, mask in (("impossible", wrong), ("not the same by its radius", other)):
+        for i in np.flatnonzero(mask):
+            alone = {name: v[i].item() if isinstance(v, np.ndarray) else v for name, v in case.items()}
+            ends_with = ", ".join(f"{name} {getattr(s, name)[i]:.6g}" for name in names)
+            texts.append(f"{words}: group {number}: {alone}: {ends_with}, p {s.p[i]}")
+    return texts
+
+
+def main(count: int = 500, seed: int = 0) -> int:
+    begun, ended, texts = perf_counter(), Counter(), []
+    for number in range(count):
+        new = violations(seed, number, ended)
+        texts += new
+        print(*new, sep="\n", end="\n" if new else "", flush=True)
+    print(f"{sum(ended.values())} cases in {perf_counter() - begun:.0f} s: {dict(ended)}; {len(texts)} violations")
+    return min(len(texts), 1)
+
+
+if __name__ == "__main__":
+    sys.exit(main(*map(int, sys.argv[1:3])))

@@ -100,6 +100,7 @@ fresh_mutants: $(READY) ## which mistakes of the latest list in tests/mutants/fr
 
 fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crashes, nothing is silently wrong (minutes)
 	$(VENV)/bin/python tools/fuzz/fuzz_solver.py --cases 4800
+	$(VENV)/bin/python tools/fuzz/fuzz_shapes.py 100
 	$(VENV)/bin/python tools/fuzz/fuzz_studies.py 2000
 	$(VENV)/bin/python tools/fuzz/fuzz_files.py 400
 	$(VENV)/bin/python tools/fuzz/kill_runs.py 10

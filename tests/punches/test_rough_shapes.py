@@ -1,5 +1,7 @@
 """Rough punches of every shape against another code, limits, and what a batch does to them."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -43,7 +45,9 @@ def solved(case, **more):
     return solve(Problem.of(**(ROUGH | case | more)), X)
 
 
+@cache
 def of_name(name, control, **more):
+    """A case of GIVEN; solved once, however many tests ask."""
     case, *values = GIVEN[name]
     return solved(case, **{control: dict(zip("aPD", values, strict=True))[control]}, **more)
 
@@ -62,7 +66,7 @@ def test_another_code(name, control):
 
 def test_under_a_point_the_centre_is_not_known():
     """p0, p_max, A0 and λ on the axis are NaN, and nothing else; elsewhere they are as on a finer mesh."""
-    coarse, fine = of_name("cone", "P", rtol=1e-4), of_name("cone", "P")
+    coarse, fine = of_name("cone", "P", rtol=1e-4), of_name("cone", "P", rtol=1e-8)
     for name in ("p0", "p_max", "A0"):
         assert np.isnan(getattr(coarse, name)).all()
     for name in ("a", "P", "D", "Ar_An", "dP_dD", "error", "profile_error", "residual", "model_error"):
@@ -75,7 +79,7 @@ def test_under_a_point_the_centre_is_not_known():
 
 @pytest.mark.parametrize("name", ["frustum", "cone", "flat"])
 def test_error_encloses_what_a_finer_mesh_gives(name):
-    coarse, fine = (of_name(name, "D", rtol=rtol) for rtol in (1e-4, 1e-9))
+    coarse, fine = (of_name(name, "D", rtol=rtol) for rtol in (1e-4, 1e-8))
     names = [key for key in JUDGED if np.isfinite(getattr(fine, key)[0])]
     assert len(names) == (4 if name == "cone" else 6)
     assert difference(coarse, fine, names)[0] <= coarse.error[0] <= 1e-4
@@ -85,9 +89,8 @@ def test_error_encloses_what_a_finer_mesh_gives(name):
 def test_stiffness_is_the_slope_of_the_load(name):
     """dP/dD against a central difference of P by D: its h² is 1e-8, and the rounding of P over h some 1e-8."""
     case, _, _, D = GIVEN[name]
-    answers = [solved(case, D=D * (1 + step), rtol=1e-10) for step in (-1e-4, 0, 1e-4)]
-    slope = (answers[2].P - answers[0].P) / (2e-4 * D)
-    assert_allclose(answers[1].dP_dD, slope, rtol=1e-6, atol=0)
+    down, up = (solved(case, D=D * (1 + step), rtol=1e-10) for step in (-1e-4, 1e-4))
+    assert_allclose(of_name(name, "D", rtol=1e-8).dP_dD, (up.P - down.P) / (2e-4 * D), rtol=1e-6, atol=0)
 
 
 @pytest.mark.parametrize("name", GIVEN)
@@ -169,8 +172,10 @@ def test_a_table_ends(tmp_path):
     assert solved(case, D=0.1).status.tolist() == [Status.OUTSIDE_LAW]
 
 
-@pytest.mark.parametrize("micro", ["power_law", "square_lattice", "elastic_plastic"])
-@pytest.mark.parametrize("name", ["rounded_flat", "flat"])
+@pytest.mark.parametrize(
+    ("name", "micro"),
+    [("flat", "normal_heights"), ("flat", "elastic_plastic"), ("rounded_flat", "power_law"), ("flat", "square_lattice")],
+)
 def test_other_laws_and_a_stack(name, micro):
     """On a stack of one layer the contact is that on the layer; the law is as good as any."""
     case, _, P, _ = GIVEN[name]

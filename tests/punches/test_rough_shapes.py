@@ -174,7 +174,12 @@ def test_a_table_ends(tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "micro"),
-    [("flat", "normal_heights"), ("flat", "elastic_plastic"), ("rounded_flat", "power_law"), ("flat", "square_lattice")],
+    [
+        ("flat", "normal_heights"),
+        ("flat", "elastic_plastic"),
+        ("rounded_flat", "power_law"),
+        ("flat", "square_lattice"),
+    ],
 )
 def test_other_laws_and_a_stack(name, micro):
     """On a stack of one layer the contact is that on the layer; the law is as good as any."""

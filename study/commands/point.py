@@ -132,7 +132,9 @@ def as_numbers(contact: xr.Dataset) -> dict:
     """Inputs and results of one case for JSON: value, unit, and spread where the inputs have some; flags by name."""
     contact = contact.assign({name: QUANTITIES[name](contact) for name in _DERIVED} | _spreads_of_derived(contact))
     shown = {
-        name: described(contact, name) for name in dict.fromkeys((*all_inputs(), *SHOWN, *OF_PULL_OFF, *_DERIVED)) if name in contact
+        name: described(contact, name)
+        for name in dict.fromkeys((*all_inputs(), *SHOWN, *OF_PULL_OFF, *_DERIVED))
+        if name in contact
     }
     shown |= {"stable": bool(contact["stable"])} if "stable" in contact and contact["status"] == 0 else {}
     shown |= {name: number(contact[name]) for name in ("error", "model_error")}

@@ -180,7 +180,7 @@ def _rows(word):
 
 
 def _check(word, r, f, unit):
-    """Raise ValueError for rows of no convex shape. r, f : in the units of the file; unit : that of f over that of r."""
+    """Raise ValueError for rows of no convex shape. r, f : as in the file; unit : that of f over that of r."""
     if not np.all(np.isfinite(r)) or not np.all(np.isfinite(f)):
         raise ValueError(f"shape {word}: a number is not finite")
     if r[0] != 0 or f[0] != 0:

@@ -169,6 +169,7 @@ def _by_si(logs: dict, inputs: dict, powers: tuple[int, int], value: Any = 1.0) 
     def by(changes: dict) -> np.ndarray:
         changes = {key: change.reshape(-1, *[1] * (still.ndim - 1)) for key, change in changes.items()}
         parts = [logs[key] * change for key, change in changes.items() if key in logs]
-        return sum(parts, still) + sum(scales[key] * changes.get(key, 0.0) for key in SCALES) * value
+        with np.errstate(invalid="ignore"):  # p may be infinite at an edge: what it changes by is NaN
+            return sum(parts, still) + sum(scales[key] * changes.get(key, 0.0) for key in SCALES) * value
 
     return {name: by(changes) for name, changes in inputs.items() if any(key in logs for key in changes)}

@@ -160,30 +160,43 @@ def _bound(word, table_unit):
 
 
 def _rows(word):
+    path = word.removeprefix(PREFIX)
     try:
-        with open(word.removeprefix(PREFIX), newline="", encoding="utf-8-sig") as file:
-            lines = [line for line in csv.reader(file) if line and not line[0].lstrip().startswith("#")]
-        header = lines.pop(0) if lines and not _is_number(lines[0][0]) else []
-        numbers = np.array([[float(cell) for cell in line] for line in lines[: _ROWS + 1]])
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            reader = csv.reader(file)
+            lines = [(reader.line_num, line) for line in reader if line and not line[0].lstrip().startswith("#")]
     except (OSError, ValueError) as error:
-        raise ValueError(f"shape {word}: cannot be read: {error}") from None
-    if numbers.ndim != 2 or numbers.shape[1] != 2 or not 3 <= len(numbers) <= _ROWS:
-        raise ValueError(f"shape {word}: must have two columns, r and f, and 3 to {_ROWS} rows")
-    units = _lengths(word, header)
-    return _of_columns(word, *(numbers * units).T, units != (1.0, 1.0) or _has_units(header))
+        message = f"cannot be read: {error}" if path else 'names no file: "table:tip.csv"'
+        raise ValueError(f"shape {word}: {message}") from None
+    header = lines.pop(0)[1] if lines and not _is_number(lines[0][1][0]) else []
+    for number, line in lines:
+        if len(line) != 2 or not all(_is_number(cell) for cell in line):
+            raise ValueError(f"shape {word}: line {number}: {', '.join(line)}: must be two numbers, r and f")
+    if not 3 <= len(lines) <= _ROWS:
+        raise ValueError(f"shape {word}: must have two columns, r and f, and 3 to {_ROWS} rows, not {len(lines)}")
+    numbers, units = np.array([[float(cell) for cell in line] for _, line in lines]), _lengths(word, header)
+    _check(word, *numbers.T, units[1] / units[0])
+    return _of_columns(*(numbers * units).T, units != (1.0, 1.0) or _has_units(header))
 
 
-def _of_columns(word, r, f, metres):
+def _check(word, r, f, unit):
+    """Raise ValueError for rows of no convex shape. r, f : as in the file; unit : that of f over that of r."""
     if not np.all(np.isfinite(r)) or not np.all(np.isfinite(f)):
         raise ValueError(f"shape {word}: a number is not finite")
-    if r[0] != 0 or f[0] != 0 or not np.all(np.diff(r) > 0):
-        raise ValueError(f"shape {word}: r must grow from 0, and f be 0 there; the first row is {r[0]:g}, {f[0]:g}")
-    chords, middle = np.diff(f) / np.diff(r), (r[1:] + r[:-1]) / 2
+    if r[0] != 0 or f[0] != 0:
+        raise ValueError(f"shape {word}: r and f must be 0 in the first row, which is {r[0]:g}, {f[0]:g}")
+    if (back := np.diff(r) <= 0).any():
+        raise ValueError(f"shape {word}: r must grow from row to row, and {r[1:][back][0]:g} does not")
+    chords = unit * np.diff(f) / np.diff(r)
     falls = np.diff(chords) < -_FALLS * np.abs(chords).max()
     if falls.any() or not chords[-1] > 0 or chords[0] < 0:
-        where = f" beyond r = {r[1:-1][falls][0]:g}" if falls.any() else ""
+        where = f" beyond the row with r = {r[1:-1][falls][0]:g}" if falls.any() else ""
         way_out = "smooth it, or take the part around the axis that is"
         raise ValueError(f"shape {word}: is not convex{where}: the slope of f must not fall; {way_out}")
+
+
+def _of_columns(r, f, metres):
+    chords, middle = np.diff(f) / np.diff(r), (r[1:] + r[:-1]) / 2
     chords = np.maximum.accumulate(np.maximum(chords, 0.0))
     bend = np.diff(chords) / np.diff(middle)
     first = max(0.0, chords[0] - bend[0] * middle[0])

@@ -22,6 +22,7 @@ from ..derivatives import spread_of_formula
 from ..in_words import SHOWN, FarOutside, doubts, summary
 from ..in_words.columns import columns
 from ..in_words.inputs import all_inputs
+from ..in_words.notes.punch import OF_PULL_OFF
 from ..in_words.sentences import assumed
 from ..inputs.definition import StudyError
 from ..inputs.scene.names import INFINITE
@@ -131,8 +132,11 @@ def as_numbers(contact: xr.Dataset) -> dict:
     """Inputs and results of one case for JSON: value, unit, and spread where the inputs have some; flags by name."""
     contact = contact.assign({name: QUANTITIES[name](contact) for name in _DERIVED} | _spreads_of_derived(contact))
     shown = {
-        name: described(contact, name) for name in dict.fromkeys((*all_inputs(), *SHOWN, *_DERIVED)) if name in contact
+        name: described(contact, name)
+        for name in dict.fromkeys((*all_inputs(), *SHOWN, *OF_PULL_OFF, *_DERIVED))
+        if name in contact
     }
+    shown |= {"stable": bool(contact["stable"])} if "stable" in contact and contact["status"] == 0 else {}
     shown |= {name: number(contact[name]) for name in ("error", "model_error")}
     shown |= {name: decode(contact[name]).item() for name in ("status", "model_used")}
     shown["validity"] = decode(contact["validity"]).item().split()

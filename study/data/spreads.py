@@ -32,7 +32,8 @@ def spreads_of(definition: Definition, parts: Parts) -> dict[str, np.ndarray]:
         values = result.values.reshape(*grid.shape, 1, -1)
         by_input = parts.by_input[name].reshape(*grid.shape, count, -1)
         by_unit = np.einsum("...si,s->...i", by_scales, VOCABULARY[name].powers[::-1])
-        change = np.swapaxes(by_inputs, -1, -2) @ by_input + by_unit[..., None] * values
+        with np.errstate(invalid="ignore"):  # p may be infinite at an edge: its spread is NaN
+            change = np.swapaxes(by_inputs, -1, -2) @ by_input + by_unit[..., None] * values
         other = change if correlation is None else correlation @ change
         variance = np.maximum((change * other).sum(axis=-2), 0.0)  # rounding makes it negative where inputs cancel
         spreads[name] = np.sqrt(variance).reshape(result.shape).astype(result.dtype, copy=False)

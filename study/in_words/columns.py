@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from ..arrays import xarray_later as xr
@@ -32,6 +34,6 @@ def columns(contacts: xr.Dataset) -> str:
 
 def _row(case: xr.Dataset, dims: list, names: list[str]) -> list[str]:
     """The cells of one contact. A result that is not known stands as "-"."""
-    inputs = [given_text(case, dim).removeprefix(f"{dim} = ").removeprefix(f"{dim} of ") for dim in dims]
-    results = [result_text(case, name) if np.isfinite(case[name]) else "-" for name in names]
+    inputs = [re.sub(rf"^{re.escape(dim)} (= |of )?", "", given_text(case, dim)) for dim in dims]
+    results = ["-" if np.isnan(case[name]) else result_text(case, name) for name in names]
     return [*inputs, *results, str(decode(case["status"]).values), str(decode(case["validity"]).values)]

@@ -14,6 +14,8 @@ from ..specimen.quantities import READABLE, readable
 
 #: Words that a text needs before it, to be understood among others.
 _WORDS = {"shape": "shape", "tip": "tip", "adhesion": "adhesion", "branch": "branch"}
+#: Models of adhesion as people write them.
+_MODELS = {"jkr": "JKR", "dmt": "DMT", "maugis": "Maugis"}
 
 
 def given_text(case: xr.Dataset, name: str) -> str:
@@ -23,7 +25,7 @@ def given_text(case: xr.Dataset, name: str) -> str:
     value = case[name].values[()]
     assumed = " (assumed)" * (case[name].attrs.get("comment") == ASSUMED)
     if isinstance(value, (str, np.str_)):
-        word = str(value).upper() if name == "adhesion" and value != "maugis" else str(value)
+        word = _MODELS.get(str(value), str(value)) if name == "adhesion" else str(value)
         said = f"{_WORDS[name]} {word}" if name in _WORDS else word.replace("_", " ")
         return f"{name} of {value}" if name in BODIES else said + assumed
     text = f"{name} = {in_its_unit(case, name, float(value), spread_of(case, name))}"

@@ -22,6 +22,7 @@ READABLE = {
     "J/m^2": ("a work per area", (("J/m²", 1.0), ("mJ/m²", 1e-3), ("µJ/m²", 1e-6))),
     "1/m^2": ("a number per area", (("1/µm²", 1e12), ("1/mm²", 1e6), ("1/m²", 1.0))),
     "m^2": ("an area", (("mm²", 1e-6), ("µm²", 1e-12), ("nm²", 1e-18))),
+    "degree": ("an angle", (("deg", 1.0),)),
     "1": ("a pure number", (("", 1.0),)),
 }
 LONGEST = 100  # characters of a text with a unit, because pint computes any expression that is written there

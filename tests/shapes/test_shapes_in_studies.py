@@ -140,7 +140,7 @@ def test_a_table_is_read_anew_and_its_numbers_are_in_the_key(tip):
     assert (keys(first) == keys(same)).all()
     Path(first.removeprefix("table:")).write_text("0,0\n1,1\n2,4\n")
     assert (keys(first) != keys(same)).any()
-    with pytest.raises(study.StudyError, match="shape: table:.*is not convex beyond r = 1"):
+    with pytest.raises(study.StudyError, match="shape: table:.*is not convex beyond the row with r = 1"):
         keys(tip("0,0\n1,1\n2,1.5\n"))
 
 
@@ -208,3 +208,20 @@ def test_fits_and_designs_take_shapes():
         {"P": f"{load!r} N"}, by={"half_angle": (50, 80)}, shape="cone", E1="5 kPa", D="1.5 um", **gel
     )
     assert_allclose(designed.half_angle, 70, rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        (
+            {"shape": "cone", "half_angle": 70, "base": "thin_layer", "h": 0.1, "n": 1},
+            "is for shape = .paraboloid.",
+        ),
+        ({"shape": "frustum", "flat_radius": 0.2, "half_angle": 70, "a": 0.1}, "must be above that of the flat end"),
+        ({"w_adhesion": 1e-3, "base": "thin_layer", "h": 0.1, "n": 1}, "does not stick"),
+    ],
+)
+def test_a_contact_that_cannot_be_is_one_clear_message(parameters, message):
+    call = {"micro": "smooth", "base": "half_space"} | parameters
+    with pytest.raises(study.StudyError, match=message):
+        study.solve(**call | ({} if "a" in parameters else {"P": 1e-4}))

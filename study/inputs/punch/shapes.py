@@ -13,10 +13,14 @@ from ...terminal import shown
 from ..grid import Grid, along
 from ..vocabulary import PARAMETERS, VOCABULARY, Entry, cases_with
 
+#: Bases that take the paraboloid alone, and nothing that sticks.
+THIN = ("thin_layer", "thin_stack")
 #: Angles of the punch: numbers of degrees.
 ANGLES = ("half_angle",)
 #: The shapes whose profile has the radius R in it. R is the unit of length of all others.
 ROUND = (shapes.PARABOLOID, "sphere")
+#: The shapes with a flat end, beyond which a contact reaches.
+WITH_A_FLAT = ("frustum", "rounded_flat")
 #: Inputs with a length of which the first that is given is the unit of length of a shape without a radius.
 LENGTHS = ("flat_radius", "tip_radius", "h")
 #: That unit where no such input is given.
@@ -104,14 +108,30 @@ def mistakes(grid: Grid, sections: Any, physical: bool) -> list[str]:
     if "shape" not in grid.values:
         return messages
     words = values("shape")
-    if (words == "flat").any() and "a" in grid.values:
-        messages.append('a is given with shape = "flat": its contact radius is flat_radius; give P or D')
-    if "a" in grid.values and ((words == "sphere") & (values("a") >= 1)).any():
-        a = float(np.broadcast_to(values("a"), grid.shape)[np.broadcast_to(words == "sphere", grid.shape)].max())
-        messages.append(f'a = {a:g} R with shape = "sphere": the radius of the contact must be below that of the ball')
+    if ((words != shapes.PARABOLOID) & np.isin(values("base"), THIN)).any():
+        messages.append('base = "thin_layer" is for shape = "paraboloid": take "layered", or "auto"')
     if np.any(in_metres(words)) and not physical:
         example = 'R = "1 um", E2 = "1 MPa"'
         messages.append(f"shape: the table has units in its header: give the other inputs with units too ({example})")
+    return messages + (_of_the_radius(grid, words, values("a")) if "a" in grid.values else [])
+
+
+def _of_the_radius(grid: Grid, words: np.ndarray, a: np.ndarray) -> list[str]:
+    """Messages for contact radii that the shapes `words` do not have."""
+    messages = []
+    if (words == "flat").any():
+        messages.append('a is given with shape = "flat": its contact radius is flat_radius; give P or D')
+    if (wrong := (words == "sphere") & (a >= 1)).any():
+        most = np.broadcast_to(a, grid.shape)[np.broadcast_to(wrong, grid.shape)].max()
+        message = 'with shape = "sphere": the radius of the contact must be below that of the ball'
+        messages.append(f"a = {most:g} R {message}")
+    flat = along(grid, "flat_radius")
+    if (wrong := np.isin(words, WITH_A_FLAT) & (a <= flat)).any():
+        first = tuple(np.argwhere(np.broadcast_to(wrong, grid.shape))[0])
+        radii = [np.broadcast_to(array, grid.shape)[first] for array in (a, flat)]
+        shape = shown(str(np.broadcast_to(words, grid.shape)[first]))
+        message = "the radius of the contact must be above that of the flat end"
+        messages.append(f"a = {radii[0]:g} R with shape = {shape}, flat_radius = {radii[1]:g} R: {message}")
     return messages
 
 

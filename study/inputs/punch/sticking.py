@@ -12,6 +12,7 @@ from ...terminal import shown
 from ..grid import Grid, along
 from ..laws import smooth_laws
 from ..vocabulary import VOCABULARY, names
+from .shapes import THIN
 
 OF_ADHESION = names("adhesion")
 #: Bounds of load and depth under adhesion.
@@ -57,6 +58,8 @@ def mistakes(grid: Grid, sections: Any) -> list[str]:
     messages += [f'{name} is given with adhesion = "dmt", which has no use for it' for name in extra]
     if (dmt & (values("shape") != "paraboloid")).any():
         messages.append(f'adhesion = "dmt" is for shape = "paraboloid", not {_first(values("shape"), "paraboloid")}')
+    if (sticks & np.isin(values("base"), THIN)).any():
+        messages.append('base = "thin_layer" does not stick: w_adhesion > 0 needs base = "layered", or "auto"')
     if (sticks & (values("scheme") == "picard")).any():
         messages.append('scheme = "picard" is for asperities, and adhesion for smooth punches: leave the scheme out')
     return messages

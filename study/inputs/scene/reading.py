@@ -29,7 +29,8 @@ from .scene import Scene
 
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
 #: Bounds of inputs from which others are derived: (must be above, must be at most, words for a message).
-_LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
+_LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch", "flat_radius", "tip_radius"), _POSITIVE)
+_LIMITS |= dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
 _E1, _NU1 = ("E1", "E1_spread", "n"), ("nu1", "nu1_spread")
 #: What a case without a layer may leave out -> the coordinates that then have no value there, "" or NaN.
 _OF_LAYER = {"layer": ("layer", *_E1, *_NU1), "E1": _E1, "n": _E1, "h": ("h", "h_spread"), "nu1": _NU1, "bonding": ()}

@@ -27,7 +27,7 @@ def make_dimensionless(scene: Scene) -> None:
     if "R1" in values:
         values["R"] = 1 / (1 / values["R1"] + 1 / values["R2"])
     if scene.scale:
-        values["R"] = values.get(scene.scale, _MICROMETRE)
+        values["R"] = abs(values.get(scene.scale, _MICROMETRE))  # a thickness below 0 is refused in its own words
     scene.R, scene.unit, layer, body = values["R"], *moduli(values, scene.parameters)
     if "E1" in values:
         scene.parameters["n"] = layer / body

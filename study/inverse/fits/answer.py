@@ -11,7 +11,6 @@ from ...inputs.vocabulary import NOT_RUN, ROWS
 from ...solving import solve
 from .asked import Asked
 from .block import FitStatus
-from .model import is_ratio
 
 _HALVINGS = 4  # of the depth, to the place where the first assumption fails: it is right to 1/16
 
@@ -69,7 +68,7 @@ def answered(
 
 def _slope(model, name: str, p: float, sizes: dict) -> float:
     """d(value in SI)/d(unknown)."""
-    return sizes[name] if name in sizes else 1.0 if is_ratio(name) else float(np.exp(p))
+    return sizes[name] if name in sizes else float(model.slope(name, model.of_coordinate(name, p)))
 
 
 def _value(model, name: str, p: float, sizes: dict) -> float:

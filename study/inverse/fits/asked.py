@@ -10,6 +10,7 @@ import numpy as np
 from solver.parameters import ends
 
 from ...inputs.definition import Definition, StudyError
+from ...inputs.punch.shapes import ANGLES
 from ...inputs.reading import from_call
 from ...inputs.vocabulary import BODIES, CONTROLS, PARAMETERS, ROWS, SCENE, suggest
 from ...specimen.quantities import has_unit, quantity
@@ -104,7 +105,10 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
         if name not in bounds and name != model.modulus:
             value = model.value(name)
             bounds[name] = (0.0, 0.5) if is_ratio(name) else _within(name, value / 10, 10 * value)
-    spread = {name: _log_spread(model, name) for name in (*priors, *moved)}
+            if name in ANGLES:
+                bounds[name] = tuple(model.of_coordinate(name, model.coordinate(name, value) + [-DECADE, DECADE]))
+    spread = {name: _log_spread(model, name) for name in moved}
+    spread |= {name: float(model.scene.spreads[name] / model.slope(name, model.value(name))) for name in priors}
     prior = {name: (float(model.coordinate(name, model.value(name))), spread.pop(name)) for name in priors}
     shifts = [
         name for name, wanted in (("D0", "contact_point"), ("P0", "baseline"), ("tilt", "tilt")) if options[wanted]
@@ -167,7 +171,8 @@ def _bounds(name: str, pair: Any, errors: list[str]) -> dict[str, tuple[float, f
         errors.append(f"free: {name} = {shown(pair)}: must be (low, high)")
         return {}
     try:
-        low, high = (quantity(f"free: {name}", end, unit).value for end in pair)
+        units = ("degree" if name in ANGLES and has_unit(end) else unit for end in pair)
+        low, high = (quantity(f"free: {name}", end, of).value for end, of in zip(pair, units, strict=True))
     except ValueError as error:
         errors.append(str(error))
         return {}

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...inputs.punch.shapes import ANGLES
 from .model import HERTZ, is_ratio
 from .sticking import Direct, moved_by
 from .tables import STEP, WIDE, Places, Table
@@ -102,6 +103,8 @@ class Curve:
         def by(name: str) -> np.ndarray:
             value = values.get(name, model.value(name))
             other, change = moved_by(value, is_ratio(name))
+            if name in ANGLES and name in model.unknowns:
+                change = model.coordinate(name, other) - model.coordinate(name, value)
             return (direct.contact(values | {name: other}, depth)[0] - P) / change / high
 
         others = [by(name) for name in model.moved] if moved else []

@@ -11,6 +11,7 @@ from solver.parameters import ends
 from solver.shapes import PARABOLOID
 
 from ...inputs.definition import Definition, StudyError
+from ...inputs.punch.shapes import ANGLES
 from ...inputs.scene.scales import make_dimensionless, with_unit
 from ...inputs.scene.scene import Scene
 from ...inputs.vocabulary import PARAMETERS, VOCABULARY
@@ -39,7 +40,8 @@ class Model:
 
     scene : its inputs in SI; those in `unknowns` have any value
     x, y : ("D", "P"), ("P", "a") or ("a", "dP_dD")
-    unknowns : names of inputs; their coordinate is the logarithm of the SI value, of Poisson ratios the ratio
+    unknowns : names of inputs; their coordinate is the logarithm of the SI value, of Poisson ratios the ratio, of
+        angles the logarithm of the tangent: the load of a cone is a power of that, and any number is an angle
     moved : other inputs, by whose logarithms (ratios: themselves) derivatives are wanted
     """
 
@@ -94,12 +96,22 @@ class Model:
 
     def coordinate(self, name: str, value: Any) -> np.ndarray:
         """The coordinate of a value in SI."""
+        if name in ANGLES:
+            return np.log(np.tan(np.radians(value)))
         return np.asarray(value, float) if is_ratio(name) else np.log(value)
 
     def of_coordinate(self, name: str, coordinate: Any) -> Any:
         """The value in SI of a coordinate."""
         with np.errstate(over="ignore"):  # of the end of an interval of what is hardly known
+            if name in ANGLES:
+                return np.degrees(np.arctan(np.exp(coordinate)))
             return np.asarray(coordinate) if is_ratio(name) else np.exp(coordinate)
+
+    def slope(self, name: str, value: Any) -> Any:
+        """d(value in SI)/d(its coordinate)."""
+        if name in ANGLES:
+            return np.degrees(np.sin(2 * np.radians(value)) / 2)
+        return np.ones_like(value, float) if is_ratio(name) else np.asarray(value, float)
 
     def within(self, values: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Values (M,) moved to what the solver takes: ratios up to 0.5, and n = E1*/E2* within its interval. Beyond

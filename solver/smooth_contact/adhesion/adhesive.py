@@ -33,7 +33,7 @@ def solve(part, shape, body, x):
     jumped, _ = curve.at(_jump(curve, holder, turn), every)
     pulls = {"P_off": turn.state.P, "D_off": turn.state.D, "a_off": np.where(turn.at_axis, 0.0, turn.state.a)}
     pulls |= {"P_in": np.where(holder.load, 0.0, jumped.P), "a_in": jumped.a}
-    off = turn.state.P_error / np.abs(turn.state.P) + turn.state.D_error / np.abs(turn.state.D)
+    off = _off(turn.state)
     outside = beyond_profile(part, shape, lambda index, a: law.take(index).at(a))
     if isinstance(law, Maugis):
         ring = partial(ring_pressure, part, state.zone)
@@ -49,6 +49,13 @@ def _answered(part, shape, state, pulls, off, counts, x, ring=None):
     failed = np.isnan(pulls["P_off"])
     numbers = {"stable": solution.a >= pulls["a_off"], part.control: part.value}
     return replace(solution, **pulls, **numbers).refused(failed, Status.DIVERGED)
+
+
+def _off(state):
+    """Relative error (B,) of load and depth at pull-off. Either may be 0, as the depth of a power 3/2 under loads: then
+    it is relative to what adhesion takes."""
+    P, D = (np.abs(state.A) * v for v in (state.response.flat_P, state.response.flat_D))
+    return state.P_error / np.maximum(np.abs(state.P), P) + state.D_error / np.maximum(np.abs(state.D), D)
 
 
 def machine(part):
@@ -94,5 +101,4 @@ def _flat(part, law, x):
     off, state = law.at(law.shape.b), pinned(part, law.shape, law.body)
     holds = (state.A >= off.A) & (part.branch == "stable")
     pulls = {"P_off": off.P, "D_off": off.D, "a_off": off.a, "P_in": 0 * off.a, "a_in": off.a}
-    error = off.P_error / np.abs(off.P) + off.D_error / np.abs(off.D)
-    return _answered(part, law.shape, state.only(holds), pulls, error, np.ones(len(part), dtype=np.int32), x)
+    return _answered(part, law.shape, state.only(holds), pulls, _off(off), np.ones(len(part), dtype=np.int32), x)

@@ -1,11 +1,11 @@
-"""Adhesion in a ring around the contact, after Maugis and Dugdale, of the paraboloid on any kernel.
+"""Adhesion in a ring around the contact, after Maugis and Dugdale, of any shape on any kernel.
 
 The stress -σ₀ acts where a < r < c, up to the gap w/σ₀. Inside c the pressure is -σ₀ and that of a contact with
 φ(a) = 0, whose equation (:mod:`..equation`) has F - Q in place of F,
 
     Q(t) = (2 σ₀/E) [sqrt(c² - t²) + c ∫ (L - 1) J1(kc) cos kt dk/k],      P = 2 E a ∫₀¹ y dτ - π c² σ₀,
 
-and the gap at c is c²/2 - D + u(c),
+and the gap at c is f(c) - D + u(c),
 
     u(c) = (2/E) [∫₀ᵃ φ dt/sqrt(c² - t²) + ∫ (L - 1) J0(kc) φ̂ dk] - (2 σ₀ c/E) [2/π + ∫ (L - 1) J1(kc) J0(kc) dk/k].
 
@@ -47,7 +47,7 @@ class Ring(NamedTuple):
 
 
 class Maugis(NamedTuple):
-    """The law of adhesion of B cases: shapes, which are paraboloids, the body, w and σ₀ (B,)."""
+    """The law of adhesion of B cases: shapes, the body, w and σ₀ (B,)."""
 
     shape: object
     body: object

@@ -23,7 +23,7 @@ from .products import Products, coarser, size_of, wave_nodes
 from .rises import rises
 from .tabulated import Tabulated, excess
 
-_EPS = np.finfo(float).eps
+_EPS, _TINY = np.finfo(float).eps, np.finfo(float).tiny
 #: Number of classes of stiffness.
 _CLASSES = MILD + 1
 #: Rounding of closed forms, relative; and that of the equation, over eps times its size and the norm of its matrix.
@@ -136,7 +136,8 @@ def _on_kernel(shape, body, a, products):
     bent = y[:, :, :2] - sides[:, :, :2]
     changes, of_basis = _left_out(products, sides[:, :, :2], y, 2 * E * a)
     rounded = _FLOOR * _EPS * N * np.abs(matrix).sum(axis=2).max(axis=1)
-    of_waves = _OF_WAVES * np.minimum(_sizes(bent) / _sizes(y[:, :, :2]), 1.0)
+    whole = np.maximum(_sizes(y[:, :, :2]), _TINY)  # 0 under what is flat
+    of_waves = _OF_WAVES * np.minimum(_sizes(bent) / whole, 1.0)
     of_radius = _of_radius(a, slope)
     errors = [of_basis[i, j] + (rounded + of_waves[:, j]) * np.abs(v) for i, j, v in (
         (0, 0, P), (1, 0, D), (0, 1, flat_P), (1, 1, flat_D)
@@ -166,8 +167,7 @@ def _left_out(products, sides, y, unit):
         bent = np.pad(less - sides[:, :few], ((0, 0), (0, N - few), (0, 0)))
         levels.append((bent, unit[:, None] * less[:, 0], at_the_edge(products, less)))
     last, before = ([np.abs(u - v) for u, v in zip(*levels[i : i + 2], strict=True)] for i in (0, 1))
-    with np.errstate(invalid="ignore"):
-        ratio = np.clip(np.fmin(_sizes(last[0]) / _sizes(before[0]), 1.0), *_RATIOS)
+    ratio = np.clip(_sizes(last[0]) / np.maximum(_sizes(before[0]), _TINY), *_RATIOS)
     part = _BASIS * ratio / (1 - ratio)
     numbers = [(part * np.maximum(last[i], ratio * before[i])).T for i in (1, 2)]
     return part[:, None] * (levels[0][0] - levels[1][0]), np.array(numbers)

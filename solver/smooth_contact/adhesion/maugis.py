@@ -20,9 +20,10 @@ from ...body.wave_rule import OCTAVES, place_of, quadrature
 from ...numerics import special
 from ...numerics.bracket import false_position
 from ...numerics.quadrature import gauss_legendre
+from ...shapes.shape import column
 from ..equation import Response, at_the_edge, solved
 from ..products import Products, coarser, size_of
-from ..rises import functions, legendre
+from ..rises import functions, legendre, rises
 from ..state import State
 from ..tabulated import excess
 
@@ -124,8 +125,11 @@ class Maugis(NamedTuple):
         tau, root = gamma[:, None] * np.sin(end * z), gamma[:, None] * np.cos(end * z)  # γ sin z, sqrt(γ² - τ²)
         dz, basis = end * weight, np.stack(list(functions(tau, N)), axis=1)
         c, unit = a * gamma, 2 * self.sigma / E
-        exact = a[:, None] ** 2 * (1 - tau) * (1 + tau) + (unit * a)[:, None] * (root - edge[:, None])
-        side = np.einsum("bq,bnq->bn", exact * dz * root, basis)
+        depth = self.shape.lifted(column(a))
+        pulled = (unit * a)[:, None] * (root - edge[:, None])
+        exact = depth - self.shape.lifted(column(a) * tau) + pulled
+        side = rises(self.shape, a, N) + np.einsum("bq,bnq->bn", pulled * dz * root, basis)
+        free = side
         y, less, bent, at_edge, change, of_waves = side, side, 0 * side, 0 * a, 0 * a, 0 * a
         if hasattr(self.body, "kernel"):
             d, cosine, by, q = self._waves(a, gamma, octave, place, N)
@@ -135,15 +139,16 @@ class Maugis(NamedTuple):
             y, less = (solved(products, side[:, :n, None], n)[:, :, 0] for n in (N, few))
             ends = [at_the_edge(products, v[:, :, None])[:, 0] for v in (y, less)]
             at_edge, change = ends[0] - unit * c * (q * J1 * cosine).sum(axis=1), np.abs(ends[1] - ends[0])
-            bent = y - np.einsum("bq,bnq->bn", exact * dz * root, basis)
+            bent = y - free
             transform = np.einsum("bn,bng->bg", y, d) + y[:, :1] * cosine
             of_waves = (q * J0 * (2 / np.pi * transform - (unit * c)[:, None] * J1)).sum(axis=1)
         whole = exact + np.einsum("bn,bnq->bq", bent, basis)
-        D = a**2 - unit * a * edge + at_edge
+        D = depth[:, 0] - unit * a * edge + at_edge
         moved = 2 / np.pi * ((whole * dz).sum(axis=1) - unit * c) + of_waves  # u(c)
         P = 2 * E * a * y[:, 0] - np.pi * c**2 * self.sigma
         P_error = 2 * E * a * np.abs(y[:, 0] - less[:, 0]) + _ROUNDING * N * (np.abs(P) + np.pi * c**2 * self.sigma)
-        return Ring(self.sigma * (c**2 / 2 - D + moved), P, D, P_error, change + _ROUNDING * N * np.abs(D), bent)
+        height = self.shape.height(column(c))[:, 0]
+        return Ring(self.sigma * (height - D + moved), P, D, P_error, change + _ROUNDING * N * np.abs(D), bent)
 
     def _waves(self, a, gamma, octave, place, N):
         """d_m (B, N, G), cos κ, κγ and the weights of ∫ (L - 1) · dκ (B, G) each."""

@@ -23,7 +23,7 @@ from ...numerics.quadrature import gauss_legendre
 from ...shapes.shape import column
 from ..equation import Response, at_the_edge, solved
 from ..products import Products, coarser, size_of
-from ..rises import functions, legendre, rises
+from ..rises import MOST_KINKS, functions, legendre, rises
 from ..state import State
 from ..tabulated import excess
 
@@ -102,7 +102,7 @@ class Maugis(NamedTuple):
         if hasattr(self.body, "kernel"):
             octave, place = place_of(self.body, c)
             octave = np.maximum(octave, OCTAVES[0])
-        kinds, pieces = octave * 16 + place, []
+        kinds, pieces = 2 * (octave * 16 + place) + self.shape.even, []
         usable = np.isfinite(c)
         for kind in np.unique(kinds[usable]).tolist():
             index = np.flatnonzero(usable & (kinds == kind))
@@ -118,12 +118,11 @@ class Maugis(NamedTuple):
 
     def _ring(self, a, over, octave, place):
         """The :class:`Ring` where h/c is in one octave and class of stiffness."""
-        N, E, gamma = size_of(octave, True) + 4, self.body.E, 1 + np.exp(over)
+        N, E, gamma = size_of(octave, bool(self.shape.even[0])) + 4, self.body.E, 1 + np.exp(over)
         edge = np.sqrt(np.exp(over) * (gamma + 1))  # sqrt(γ² - 1)
-        z, weight = gauss_legendre(N + _MORE)
-        end = np.arctan2(1.0, edge)[:, None]  # arcsin(1/γ)
-        tau, root = gamma[:, None] * np.sin(end * z), gamma[:, None] * np.cos(end * z)  # γ sin z, sqrt(γ² - τ²)
-        dz, basis = end * weight, np.stack(list(functions(tau, N)), axis=1)
+        z, dz = self._rule(a, gamma, edge, N)
+        tau, root = gamma[:, None] * np.sin(z), gamma[:, None] * np.cos(z)  # γ sin z, sqrt(γ² - τ²)
+        basis = np.stack(list(functions(tau, N)), axis=1)
         c, unit = a * gamma, 2 * self.sigma / E
         depth = self.shape.lifted(column(a))
         pulled = (unit * a)[:, None] * (root - edge[:, None])
@@ -149,6 +148,20 @@ class Maugis(NamedTuple):
         P_error = 2 * E * a * np.abs(y[:, 0] - less[:, 0]) + _ROUNDING * N * (np.abs(P) + np.pi * c**2 * self.sigma)
         height = self.shape.height(column(c))[:, 0]
         return Ring(self.sigma * (height - D + moved), P, D, P_error, change + _ROUNDING * N * np.abs(D), bent)
+
+    def _rule(self, a, gamma, edge, N):
+        """Points z and weights (B, Q), τ = γ sin z <= 1. Beyond each kink of the shape, and beyond 0 where it is not
+        smooth in r², the variable is y in z = start + width y²."""
+        y, w = gauss_legendre(N + _MORE)
+        end = np.arctan2(1.0, edge)[:, None]  # arcsin(1/γ)
+        if self.shape.even[0]:
+            return end * y, end * w
+        kinks = np.sort(np.minimum(np.nan_to_num(self.shape.kinks() / column(a), nan=1.0), 1.0), axis=1)
+        chosen = np.unique(np.linspace(0, kinks.shape[1] - 1, min(kinks.shape[1], MOST_KINKS)).astype(int))
+        inner = np.minimum(np.arcsin(kinks[:, chosen] / gamma[:, None]), end)
+        ends = np.hstack([0 * end, inner, end])
+        low, width = ends[:, :-1, None], np.diff(ends, axis=1)[:, :, None]
+        return (low + width * y**2).reshape(len(a), -1), (width * (2 * y * w)).reshape(len(a), -1)
 
     def _waves(self, a, gamma, octave, place, N):
         """d_m (B, N, G), cos κ, κγ and the weights of ∫ (L - 1) · dκ (B, G) each."""

@@ -44,7 +44,7 @@ class State(NamedTuple):
     def stiffness(self):
         """dP/dD along the curve, (B,): infinite where the depth has its minimum."""
         steep = np.abs(self.dD) < _FLAT * self.response.slope
-        free = (self.A == 0) & (self.zone == 1)
+        free = (self.A == 0) & (self.zone == 1) | np.isinf(self.response.slope)  # or at a corner
         return np.where(free, self.response.S, np.where(steep, np.inf, self.dP / self.dD))
 
     @classmethod
@@ -98,7 +98,8 @@ def answer(part, shape, state, counts, x, ring=None):
     p0 = p0[:, 0]
     moved, error = _error(part.control, state)
     of_p = np.abs(pressure_changes(response, A, _LOOKED_AT))
-    of_p0 = of_p[:, :_INNER].max(axis=1) + _OF_PRESSURE * np.abs(p0) + np.abs(flat_pressure(response) * state.dD) * moved
+    along = np.where(moved > 0, np.abs(flat_pressure(response) * state.dD) * moved, 0.0)
+    of_p0 = of_p[:, :_INNER].max(axis=1) + _OF_PRESSURE * np.abs(p0) + along
     error = error + np.where(np.isfinite(p0), _over(of_p0, p0), 0.0)
     largest = np.max(np.where(np.isfinite(looked_at), np.abs(looked_at), 0.0), axis=1)
     numbers = {"a": state.a, "P": state.P, "D": state.D, part.control: part.value}

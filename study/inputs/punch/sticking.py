@@ -57,6 +57,8 @@ def mistakes(grid: Grid, sections: Any) -> list[str]:
     messages += [f'{name} is given with adhesion = "dmt", which has no use for it' for name in extra]
     if (dmt & (values("shape") != "paraboloid")).any():
         messages.append(f'adhesion = "dmt" is for shape = "paraboloid", not {_first(values("shape"), "paraboloid")}')
+    if (maugis & (values("shape") == "flat")).any():
+        messages.append('adhesion = "maugis" does not go with shape = "flat", whose edge is held: take "jkr"')
     if (sticks & (values("scheme") == "picard")).any():
         messages.append('scheme = "picard" is for asperities, and adhesion for smooth punches: leave the scheme out')
     return messages

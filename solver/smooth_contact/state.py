@@ -14,7 +14,7 @@ _LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
 _FLAT = 1e-12
 #: Rounding of a pressure over the largest one: 3e-13 at most beside kinks of the shape (tools/errors/shape_errors.py).
 _OF_PRESSURE = 5e-13
-#: The error of p(0) is the largest at so many of these radii, those below 0.45 a: at one alone it may be small by chance.
+#: The error of p(0) is the largest at so many of these radii, those below 0.45 a: one may be small by chance.
 _INNER = 8
 
 

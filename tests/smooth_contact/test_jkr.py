@@ -203,23 +203,23 @@ def test_at_pull_off_itself(control):
     also under a frustum, at its corner, and a flat punch."""
     layer = {"h": 0.03, "n": 0.4, "nu1": 0.3, "bonding": "bonded", "w_adhesion": np.array([1e-5, 1e-4])} | SMOOTH
     flat = {"flat_radius": 0.05, "half_angle": 70.0}
-    for shape in ({"shape": "paraboloid"}, {"shape": "frustum"} | flat, {"shape": "flat", "flat_radius": 0.05}):
-        value = getattr(solve(Problem.of(**{control: 0.01}, **layer, **shape)), f"{control}_off")
-        last = solve(Problem.of(**{control: value}, **layer, **shape))
+    for punch in ({"shape": "paraboloid"}, {"shape": "frustum"} | flat, {"shape": "flat", "flat_radius": 0.05}):
+        value = getattr(solve(Problem.of(**{control: 0.01}, **layer, **punch)), f"{control}_off")
+        last = solve(Problem.of(**{control: value}, **layer, **punch))
         assert np.all(last.status == Status.CONVERGED) and np.all(last.stable)
         assert_allclose(last.a, last.a_off, rtol=1e-6, atol=0)
-        if control == "D" and shape["shape"] == "paraboloid":
+        if control == "D" and punch["shape"] == "paraboloid":
             assert np.all(last.dP_dD == np.inf)
-        gone = solve(Problem.of(**{control: value * (1 + 1e-9)}, **layer, **shape))
+        gone = solve(Problem.of(**{control: value * (1 + 1e-9)}, **layer, **punch))
         assert np.all(gone.status == Status.PULLED_OFF)
 
 
 def test_company():
     """A case that sticks has the same numbers alone and among others, to the last digit."""
     case = {"h": np.geomspace(0.01, 1, 5), "n": 0.4, "nu1": 0.5, "bonding": "bonded", "w_adhesion": 1e-4} | SMOOTH
-    for shape in ({}, {"shape": "cone", "half_angle": 60.0}):
-        together = solve(Problem.of(D=0.002, **case, **shape))
+    for punch in ({}, {"shape": "cone", "half_angle": 60.0}):
+        together = solve(Problem.of(D=0.002, **case, **punch))
         for i in (0, 3):
-            alone = solve(Problem.of(D=0.002, **case | {"h": case["h"][i]}, **shape))
+            alone = solve(Problem.of(D=0.002, **case | {"h": case["h"][i]}, **punch))
             for name in ("a", "P", "dP_dD", "p0", "P_off", "a_off", "a_in"):
                 assert getattr(together, name)[i] == getattr(alone, name)[0]

@@ -55,8 +55,8 @@ def test_another_code(name, control):
 
 @pytest.mark.parametrize("name", STACKS)
 def test_another_code_with_adhesion(name):
-    """1e-9, which is asked for: load and depth of an edge that tears, at a radius; and back from these, on the branch on
-    which the radius is. Near pull-off the `error` of a radius is above 1e-9, so 1e-8 is the tolerance."""
+    """1e-9, which is asked for: load and depth of an edge that tears, at a radius; and back, on the branch on which the
+    radius is. Near pull-off the `error` of a radius is above 1e-9, so 1e-8 is the tolerance."""
     stack, unit, R = given(name)
     row = {key: float(value) for key, value in CONTACTS[name].items() if key != "stack"}
     stack |= {"w_adhesion": row["w"] / unit / R} | SMOOTH

@@ -3,8 +3,8 @@
 
 SIZE random contacts (2 by default) of each shape on each base, under each control, with each law of adhesion (all, or
 those that are named: none, jkr, maugis, dmt) are solved; and again, which is the truth, with half as many more
-functions in the basis, at all nodes of a finer quadrature, without tables of the kernel. The truth of a half-space is a layer of
-its own material. The tolerances are from 1e-4 to 1e-10. A line for each law and base:
+functions in the basis, at all nodes of a finer quadrature, without tables of the kernel. The truth of a
+half-space is a layer of its own material. The tolerances are from 1e-4 to 1e-10. A line for each law and base:
 
 - how the answers end;
 - judged: how many have a truth; how many of them are farther from it than `error`, and the largest distance over it;

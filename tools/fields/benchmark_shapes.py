@@ -1,10 +1,15 @@
-"""What smooth contacts of shapes, and such that stick, take: `python tools/bench/benchmark_shapes.py`.
+"""What smooth contacts of shapes, and such that stick, take: `python tools/fields/benchmark_shapes.py`.
 
 Shortest processor times by turns of warm batches on a layer, in all and a case, over that of spheres under a depth.
 """
 
+import sys
+from pathlib import Path
+
 import numpy as np
-from benchmark_cases import by_turns
+
+sys.path.append(str(Path(__file__).parents[1] / "bench"))
+from benchmark_cases import by_turns  # noqa: E402
 
 from solver import Problem, solve
 

@@ -12,11 +12,14 @@ class Status(IntEnum):
     DIVERGED = 3, "the iteration diverged, or ended in a number that cannot be; no numbers"
     THIN_LAYER_NOT_APPLICABLE = 4, "the thin-layer equation does not apply (C <= 0 in Eq. (3)); no numbers"
     TOLERANCE_NOT_MET = 5, "the estimated error exceeds rtol at the finest mesh; the numbers are kept"
-    INVALID_INPUT = 6, "a parameter is not finite or out of bounds, or a smooth case asks for picard; no numbers"
+    INVALID_INPUT = 6, "a parameter is not finite, out of bounds, or does not go with the others; no numbers"
     # 7 was a status of numerics version 2 and is not used again
     LIFT_OFF = 8, "the punch lifts off inside the contact, or the pressure is tensile there; no numbers"
     BUDGET_SPENT = 9, "the work that one case may take is spent; last numbers, if any, kept"
-    OUTSIDE_LAW = 10, "the nominal pressures are not in the range that the micro law knows; no numbers"
+    OUTSIDE_LAW = (
+        10,
+        "the contact is not in the range of the micro law, or of the table of a tip; no numbers",
+    )
     PULLED_OFF = (
         11,
         "no state of the asked branch has this load or depth; numbers of pull-off and pull-in alone",

@@ -23,11 +23,17 @@ from .products import Products, coarser, size_of, wave_nodes
 from .rises import rises
 from .tabulated import Tabulated, excess
 
-_EPS = np.finfo(float).eps
+_EPS, _TINY = np.finfo(float).eps, np.finfo(float).tiny
 #: Number of classes of stiffness.
 _CLASSES = MILD + 1
 #: Rounding of closed forms, relative; and that of the equation, over eps times its size and the norm of its matrix.
 _ROUNDING, _FLOOR = 16 * _EPS, 8
+#: Relative error of the kernel's part, by the waves at which it is looked at.
+_OF_WAVES = 2e-11
+#: The error of a basis is what two smaller ones show, as of a geometric series, times this factor: a series whose terms
+#: fall like 1/N² or 1/N, as in films, has 2 and 2.7 times as much left. The terms of the series fall at least and at
+#: most by these ratios.
+_BASIS, _RATIOS = 3.0, (1e-3, 0.9)
 
 
 class Response(NamedTuple):
@@ -38,7 +44,7 @@ class Response(NamedTuple):
     flat_slope : d flat_D/da
     P_error, D_error, flat_P_error, flat_D_error : of these numbers at the radius a, absolute
     bent, flat_bent : (B, N), the second terms of the equation, y_F - F(a) + F and y_1 - 1, in the basis
-    changes, flat_changes : (B, N), by how much these change with the last functions of the basis
+    changes, flat_changes : (B, N), by how much the basis may leave these off
     size : (B,) int, the number of functions of the basis; 0 in closed form
     """
 
@@ -108,7 +114,8 @@ def respond(shape, body, a):
 def _on_half_space(shape, body, a):
     none, depth = np.zeros((len(a), 1)), shape.lifted(a[:, None])[:, 0]
     P, slope = 2 * body.E * shape.lifted_load(a), shape.lifted_slope(a[:, None])[:, 0]
-    errors = (_ROUNDING * v for v in (P, depth, 2 * body.E * a, 1 + 0 * a))
+    moved = _of_radius(a, slope)
+    errors = (_ROUNDING * P + moved * 2 * body.E * a, _ROUNDING * depth + moved, _ROUNDING * 2 * body.E * a, 0 * a)
     flat = 2 * body.E * a, 1 + 0 * a
     return Response(a, body.E, P, depth, *flat, slope, 0 * a, *errors, 0 * a, none, none, none, none)
 
@@ -127,21 +134,48 @@ def _on_kernel(shape, body, a, products):
     bends = np.einsum("bn,bnj->bj", products.slope, y)
     resolvent = (products.corner - at_edge[:, 2]) / flat_D
     bent = y[:, :, :2] - sides[:, :, :2]
-    few = coarser(N)
-    less = solved(products, sides[:, :few, :2], few)
-    changes = bent - np.pad(less - sides[:, :few, :2], ((0, 0), (0, N - few), (0, 0)))
+    changes, of_basis = _left_out(products, sides[:, :, :2], y, 2 * E * a)
     rounded = _FLOOR * _EPS * N * np.abs(matrix).sum(axis=2).max(axis=1)
-    off = np.abs(at_the_edge(products, less) - at_edge[:, :2])
-    flat_change = 2 * E * a * changes[:, 0, 1]
-    of_basis = (2 * E * a * changes[:, 0, 0], off[:, 0], flat_change, off[:, 1])
-    whole = (P, D, flat_P, flat_D)
-    errors = (np.abs(change) + rounded * np.abs(v) for change, v in zip(of_basis, whole, strict=True))
+    whole = np.maximum(_sizes(y[:, :, :2]), _TINY)  # 0 under what is flat
+    of_waves = _OF_WAVES * np.minimum(_sizes(bent) / whole, 1.0)
+    of_radius = _of_radius(a, slope)
+    errors = [of_basis[i, j] + (rounded + of_waves[:, j]) * np.abs(v) for i, j, v in (
+        (0, 0, P), (1, 0, D), (0, 1, flat_P), (1, 1, flat_D)
+    )]  # fmt: skip
+    errors[0], errors[1] = errors[0] + of_radius * flat_P, errors[1] + of_radius * flat_D
     return Response(
         a, E, P, D, flat_P, flat_D,
         (slope - bends[:, 0] / a) * flat_D,
         -flat_D / a * (bends[:, 1] - resolvent),
         *errors, N + 0 * a, *np.moveaxis(bent, 2, 0), *np.moveaxis(changes, 2, 0),
     )  # fmt: skip
+
+
+def _of_radius(a, slope):
+    """Error (B,) of the depth by the rounding of a: just beyond a corner it rises by much with a, at it without end."""
+    return np.where(np.isfinite(slope), _EPS * a * slope, 0.0)
+
+
+def _left_out(products, sides, y, unit):
+    """Estimates of what the basis leaves out: of the second terms (B, N, 2) of the equation, and of P, in `unit` (B,),
+    and D, (2, 2, B), first without adhesion and then of a flat punch."""
+    N = few = sides.shape[1]
+    levels = [(y[:, :, :2] - sides, unit[:, None] * y[:, 0, :2], at_the_edge(products, y)[:, :2])]
+    for _ in range(2):
+        few = coarser(few)
+        less = solved(products, sides[:, :few], few)
+        bent = np.pad(less - sides[:, :few], ((0, 0), (0, N - few), (0, 0)))
+        levels.append((bent, unit[:, None] * less[:, 0], at_the_edge(products, less)))
+    last, before = ([np.abs(u - v) for u, v in zip(*levels[i : i + 2], strict=True)] for i in (0, 1))
+    ratio = np.clip(_sizes(last[0]) / np.maximum(_sizes(before[0]), _TINY), *_RATIOS)
+    part = _BASIS * ratio / (1 - ratio)
+    numbers = [(part * np.maximum(last[i], ratio * before[i])).T for i in (1, 2)]
+    return part[:, None] * (levels[0][0] - levels[1][0]), np.array(numbers)
+
+
+def _sizes(y):
+    """Norms (B, j) of functions (B, N, j) in the basis."""
+    return np.sqrt((y**2).sum(axis=1))
 
 
 def solved(products, sides, N):

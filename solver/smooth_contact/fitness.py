@@ -30,8 +30,9 @@ def _no_radius(part):
 
 
 def _unfit_law(problem):
-    """(B,) bool: the law of adhesion has a number that it does not take, or lacks one."""
+    """(B,) bool: the law of adhesion has a number that it does not take, or lacks one; or a shape for which it does
+    not stand. A flat punch is pinned at its edge: a ring beside it begins at a gap of 0."""
     jkr, dmt = problem.adhesion == "jkr", problem.adhesion == "dmt"
     numbers = np.isfinite(problem.sigma0).astype(int) + np.isfinite(problem.z0)
     wrong = np.where(dmt, numbers != 0, np.where(jkr, numbers == 2, numbers != 1))
-    return wrong | ~jkr & (problem.shape != PARABOLOID)
+    return wrong | dmt & (problem.shape != PARABOLOID) | ~jkr & (problem.shape == "flat")

@@ -14,7 +14,7 @@ from .products import in_blocks
 
 #: More points of a rule than the basis has functions, and the most kinks that end a panel: of more, as a table of many
 #: rows has, some are left out.
-_MORE, _MOST_KINKS = 20, 24
+_MORE, MOST_KINKS = 20, 24
 #: Points of a rule of the pressure: in a subpanel towards a singularity, and under a shape without one.
 _NEAR, _SMOOTH = 22, 40
 #: Numbers that are computed together.
@@ -29,7 +29,7 @@ def panel_ends(shape, a):
     counts = (kinks < 1).sum(axis=1)
     for count in np.unique(counts).tolist():
         index = np.flatnonzero(counts == count)
-        chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_KINKS)).astype(int)) if count else []
+        chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_KINKS)).astype(int)) if count else []
         inner = kinks[index][:, chosen]
         yield index, np.hstack([np.zeros((len(index), 1)), inner, np.ones((len(index), 1))])
 

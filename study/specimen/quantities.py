@@ -33,7 +33,6 @@ _SURE = 1e-5  # a smaller relative spread is not written
 _SPREAD = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
 _UNIT_OR_SPREAD = re.compile(rf"(?![eE][-+]?\d)[^\W\d_]|[%°]|{_SPREAD.pattern}")  # the e of "1,2e-5" is no unit
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-
 #: A number with a unit that is a product of powers: read without pint, as the number times the size of its unit. The 1
 #: of "1/um^2" must not be a digit of the number: "2.1/um^2" would be "2." times 1/um^2.
 _PLAIN = re.compile(rf"({_NUMBER.pattern})\s*((?:(?<![\d.])1/)?[A-Za-zµ]+(?:(?:\^|\*|/)-?[A-Za-z0-9µ]+)*)")

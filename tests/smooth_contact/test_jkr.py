@@ -195,3 +195,31 @@ def test_dmt():
 )
 def test_what_does_not_go_together(wrong):
     assert solve(Problem.of(P=1e-3, **HALF_SPACE | wrong)).status == Status.INVALID_INPUT
+
+
+@pytest.mark.parametrize("control", ["P", "D"])
+def test_at_pull_off_itself(control):
+    """The load, or depth, that was returned is the last one that holds, at a_off to 1e-6; a little less is too much. So
+    also under a frustum, at its corner, and a flat punch."""
+    layer = {"h": 0.03, "n": 0.4, "nu1": 0.3, "bonding": "bonded", "w_adhesion": np.array([1e-5, 1e-4])} | SMOOTH
+    flat = {"flat_radius": 0.05, "half_angle": 70.0}
+    for punch in ({"shape": "paraboloid"}, {"shape": "frustum"} | flat, {"shape": "flat", "flat_radius": 0.05}):
+        value = getattr(solve(Problem.of(**{control: 0.01}, **layer, **punch)), f"{control}_off")
+        last = solve(Problem.of(**{control: value}, **layer, **punch))
+        assert np.all(last.status == Status.CONVERGED) and np.all(last.stable)
+        assert_allclose(last.a, last.a_off, rtol=1e-6, atol=0)
+        if control == "D" and punch["shape"] == "paraboloid":
+            assert np.all(last.dP_dD == np.inf)
+        gone = solve(Problem.of(**{control: value * (1 + 1e-9)}, **layer, **punch))
+        assert np.all(gone.status == Status.PULLED_OFF)
+
+
+def test_company():
+    """A case that sticks has the same numbers alone and among others, to the last digit."""
+    case = {"h": np.geomspace(0.01, 1, 5), "n": 0.4, "nu1": 0.5, "bonding": "bonded", "w_adhesion": 1e-4} | SMOOTH
+    for punch in ({}, {"shape": "cone", "half_angle": 60.0}):
+        together = solve(Problem.of(D=0.002, **case, **punch))
+        for i in (0, 3):
+            alone = solve(Problem.of(D=0.002, **case | {"h": case["h"][i]}, **punch))
+            for name in ("a", "P", "dP_dD", "p0", "P_off", "a_off", "a_in"):
+                assert getattr(together, name)[i] == getattr(alone, name)[0]

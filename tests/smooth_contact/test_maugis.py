@@ -59,3 +59,35 @@ def test_stiffness_is_the_slope_of_the_curve():
     contact = solve(Problem.of(a=[0.0999, 0.1, 0.1001], **layer, adhesion="maugis", **SMOOTH))
     slope = (contact.P[2] - contact.P[0]) / (contact.D[2] - contact.D[0])
     assert_allclose(slope, contact.dP_dD[1], rtol=1e-5, atol=0)
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        {"shape": "sphere"},
+        {"shape": "cone", "half_angle": 60.0},
+        {"shape": "frustum", "flat_radius": 0.1, "half_angle": 70.0},
+    ],
+    ids=lambda shape: shape["shape"],
+)
+def test_other_shapes_tend_to_jkr(shape):
+    """P and D at a radius go to those of an edge that tears, like 1/sigma0²; and at 10 they are there to 2e-5."""
+    layer = {"a": 0.2, "h": 0.1, "n": 0.3, "nu1": 0.4, "bonding": "bonded", "w_adhesion": 1e-4} | SMOOTH | shape
+    ring, edge = solve(Problem.of(**layer, adhesion="maugis", sigma0=[1.0, 10.0])), solve(Problem.of(**layer))
+    for name in "PD":
+        off = getattr(ring, name) / getattr(edge, name) - 1
+        assert 0 < off[1] < 2e-5
+        assert_allclose(off[0] / off[1], 100, rtol=0.02, atol=0)
+
+
+def test_a_depth():
+    """The depth of the state at a radius leads back to it."""
+    at = solve(Problem.of(a=0.1, sigma0=0.01, **HALF_SPACE))
+    again = solve(Problem.of(D=at.D, sigma0=0.01, **HALF_SPACE))
+    assert again.status == Status.CONVERGED
+    assert_allclose([again.a[0], again.P[0]], [at.a[0], at.P[0]], rtol=1e-10, atol=0)
+
+
+def test_a_flat_punch_is_refused():
+    contact = solve(Problem.of(P=0.0, shape="flat", flat_radius=0.1, sigma0=0.01, **HALF_SPACE))
+    assert contact.status == Status.INVALID_INPUT

@@ -53,6 +53,23 @@ def test_another_code(name, control):
     assert np.abs(contact.P / exact["P"] - 1) <= contact.error
 
 
+@pytest.mark.parametrize("name", STACKS)
+def test_another_code_with_adhesion(name):
+    """1e-9, which is asked for: load and depth of an edge that tears, at a radius; and back, on the branch on which the
+    radius is. Near pull-off the `error` of a radius is above 1e-9, so 1e-8 is the tolerance."""
+    stack, unit, R = given(name)
+    row = {key: float(value) for key, value in CONTACTS[name].items() if key != "stack"}
+    stack |= {"w_adhesion": row["w"] / unit / R} | SMOOTH
+    exact = {"a": row["a_over_h1"] / R, "P": row["P_JKR"] / unit / R**2, "D": row["D_JKR"] / R}
+    for control in "aPD":
+        off = 0.0 if control == "a" else solve(Problem.of(**{control: exact[control]}, **stack)).a_off[0]
+        branch = "unstable" if exact["a"] < off else "stable"
+        contact = solve(Problem.of(**{control: exact[control]}, **stack, branch=branch, rtol=1e-8))
+        assert contact.status == Status.CONVERGED
+        for quantity, value in exact.items():
+            assert_allclose(getattr(contact, quantity), value, rtol=1e-9, atol=0)
+
+
 @pytest.mark.parametrize("control", ["a", "P", "D"])
 @pytest.mark.parametrize("kind", [SMOOTH, ROUGH], ids=["smooth", "rough"])
 def test_one_layer_is_layered(kind, control):

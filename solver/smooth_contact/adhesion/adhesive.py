@@ -13,6 +13,9 @@ from .jkr import Jkr
 from .maugis import Maugis, ring_pressure, ring_stress
 from .pull import Curve, Held, below, beyond, highest, last_minimum
 
+#: A load or depth as near as this to that of pull-off is it, relative: rounding, by the units of what was returned.
+_SAME = 64 * np.finfo(float).eps
+
 
 def solve(part, shape, body, x):
     """:class:`~...solution.Solution` of cases of one base, one shape and one law of adhesion, w > 0, in units R = E2* =
@@ -27,17 +30,33 @@ def solve(part, shape, body, x):
     curve, holder = Curve(law), Held.by(machine(part))
     control = Held.by(np.full(len(part), np.inf if part.control == "D" else 0.0))
     turn = last_minimum(curve, holder, highest(law, curve.radii))
-    state = (
-        law.at(part.value) if part.control == "a" else curve.at(_asked(part, curve, holder, control, turn), every)[0]
-    )
+    at_turn = np.zeros(len(part), dtype=bool)
+    if part.control == "a":
+        state = law.at(part.value)
+    else:
+        asked, at_turn = _asked(part, curve, holder, control, turn)
+        state = curve.at(asked, every)[0]
     jumped, _ = curve.at(_jump(curve, holder, turn), every)
     pulls = {"P_off": turn.state.P, "D_off": turn.state.D, "a_off": np.where(turn.at_axis, 0.0, turn.state.a)}
     pulls |= {"P_in": np.where(holder.load, 0.0, jumped.P), "a_in": jumped.a}
-    off = turn.state.P_error / np.abs(turn.state.P) + turn.state.D_error / np.abs(turn.state.D)
+    off = _off(turn.state)
     outside = beyond_profile(part, shape, lambda index, a: law.take(index).at(a))
     if isinstance(law, Maugis):
         ring = partial(ring_pressure, part, state.zone)
-    return _answered(part, shape, state, pulls, off, curve.counts, x, ring).refused(outside, Status.OUTSIDE_LAW)
+    exact = _at_minimum(part, state, at_turn)
+    solution = _answered(part, shape, exact, pulls, off, curve.counts, x, ring)
+    steep = at_turn & (part.control == "D") & ~turn.corner
+    solution = replace(solution, dP_dD=np.where(steep, np.inf, np.where(at_turn, state.stiffness, solution.dP_dD)))
+    return solution.refused(outside, Status.OUTSIDE_LAW)
+
+
+def _at_minimum(part, state, at_turn):
+    """The states; those `at_turn` (B,) are the ones of pull-off itself, whose radius is not off by what the control is
+    off there, over a slope that is 0."""
+    if part.control == "a":
+        return state
+    name = f"d{part.control}"
+    return state._replace(**{name: np.where(at_turn, np.inf, getattr(state, name))})
 
 
 def _answered(part, shape, state, pulls, off, counts, x, ring=None):
@@ -51,6 +70,13 @@ def _answered(part, shape, state, pulls, off, counts, x, ring=None):
     return replace(solution, **pulls, **numbers).refused(failed, Status.DIVERGED)
 
 
+def _off(state):
+    """Relative error (B,) of load and depth at pull-off. Either may be 0, as the depth of a power 3/2 under loads: then
+    it is relative to what adhesion takes."""
+    P, D = (np.abs(state.A) * v for v in (state.response.flat_P, state.response.flat_D))
+    return state.P_error / np.maximum(np.abs(state.P), P) + state.D_error / np.maximum(np.abs(state.D), D)
+
+
 def machine(part):
     """Stiffness (B,) of what holds the punches: 0 and infinite where nothing is said, for loads and for depths."""
     usual = np.inf if part.control == "D" else 0.0
@@ -58,19 +84,22 @@ def machine(part):
 
 
 def _asked(part, curve, holder, control, turn):
-    """x (B,) of the asked branch where P or D is given; NaN where it has no such state. The largest radius with the
+    """x (B,) of the asked branch where P or D is given; NaN where it has no such state; and whether the control is at
+    its minimum (B,). The largest radius with the
     value of the control is on the stable branch where it is beyond the :class:`~.pull.Turn` of what holds the punch."""
     same = holder.load.tolist() == control.load.tolist() and holder.compliance.tolist() == control.compliance.tolist()
     of_control = turn if same else last_minimum(curve, control, highest(curve.law, curve.radii))
     least, unstable = control.of(of_control.state.P, of_control.state.D), part.branch == "unstable"
-    largest = beyond(curve, control, np.where(part.value >= least, part.value, np.nan), of_control, _start(part, curve))
+    at_turn = (np.abs(part.value - least) <= _SAME * np.abs(least)) & ~of_control.at_axis
+    above = np.where((part.value >= least) & ~at_turn, part.value, np.nan)
+    largest = np.where(at_turn, of_control.x, beyond(curve, control, above, of_control, _start(part, curve)))
     stays = largest >= turn.x
     x = np.where(stays ^ unstable, largest, np.nan)
-    rest = unstable & np.isnan(x) & ~of_control.corner
+    rest = unstable & np.isnan(x) & ~of_control.corner & ~at_turn
     if rest.any():
         smaller = below(curve, control, part.value, np.where(rest, of_control.x, np.nan), False)
         x = np.where(rest & (smaller < turn.x), smaller, x)
-    return x
+    return x, at_turn & np.isfinite(of_control.state.P) & ~(np.isnan(x))
 
 
 def _start(part, curve):
@@ -92,7 +121,6 @@ def _jump(curve, holder, turn):
 def _flat(part, law, x):
     """A flat punch: it holds at its radius down to the load, or depth, at which its edge gives way."""
     off, state = law.at(law.shape.b), pinned(part, law.shape, law.body)
-    holds = (state.A >= off.A) & (part.branch == "stable")
+    holds = (state.A >= off.A * (1 + _SAME)) & (part.branch == "stable")
     pulls = {"P_off": off.P, "D_off": off.D, "a_off": off.a, "P_in": 0 * off.a, "a_in": off.a}
-    error = off.P_error / np.abs(off.P) + off.D_error / np.abs(off.D)
-    return _answered(part, law.shape, state.only(holds), pulls, error, np.ones(len(part), dtype=np.int32), x)
+    return _answered(part, law.shape, state.only(holds), pulls, _off(off), np.ones(len(part), dtype=np.int32), x)

@@ -1,11 +1,11 @@
-"""Adhesion in a ring around the contact, after Maugis and Dugdale, of the paraboloid on any kernel.
+"""Adhesion in a ring around the contact, after Maugis and Dugdale, of any shape on any kernel.
 
 The stress -σ₀ acts where a < r < c, up to the gap w/σ₀. Inside c the pressure is -σ₀ and that of a contact with
 φ(a) = 0, whose equation (:mod:`..equation`) has F - Q in place of F,
 
     Q(t) = (2 σ₀/E) [sqrt(c² - t²) + c ∫ (L - 1) J1(kc) cos kt dk/k],      P = 2 E a ∫₀¹ y dτ - π c² σ₀,
 
-and the gap at c is c²/2 - D + u(c),
+and the gap at c is f(c) - D + u(c),
 
     u(c) = (2/E) [∫₀ᵃ φ dt/sqrt(c² - t²) + ∫ (L - 1) J0(kc) φ̂ dk] - (2 σ₀ c/E) [2/π + ∫ (L - 1) J1(kc) J0(kc) dk/k].
 
@@ -20,9 +20,10 @@ from ...body.wave_rule import OCTAVES, place_of, quadrature
 from ...numerics import special
 from ...numerics.bracket import false_position
 from ...numerics.quadrature import gauss_legendre
+from ...shapes.shape import column
 from ..equation import Response, at_the_edge, solved
 from ..products import Products, coarser, size_of
-from ..rises import functions, legendre
+from ..rises import MOST_KINKS, functions, legendre, rises
 from ..state import State
 from ..tabulated import excess
 
@@ -47,7 +48,7 @@ class Ring(NamedTuple):
 
 
 class Maugis(NamedTuple):
-    """The law of adhesion of B cases: shapes, which are paraboloids, the body, w and σ₀ (B,)."""
+    """The law of adhesion of B cases: shapes, the body, w and σ₀ (B,)."""
 
     shape: object
     body: object
@@ -101,7 +102,7 @@ class Maugis(NamedTuple):
         if hasattr(self.body, "kernel"):
             octave, place = place_of(self.body, c)
             octave = np.maximum(octave, OCTAVES[0])
-        kinds, pieces = octave * 16 + place, []
+        kinds, pieces = 2 * (octave * 16 + place) + self.shape.even, []
         usable = np.isfinite(c)
         for kind in np.unique(kinds[usable]).tolist():
             index = np.flatnonzero(usable & (kinds == kind))
@@ -117,15 +118,17 @@ class Maugis(NamedTuple):
 
     def _ring(self, a, over, octave, place):
         """The :class:`Ring` where h/c is in one octave and class of stiffness."""
-        N, E, gamma = size_of(octave, True) + 4, self.body.E, 1 + np.exp(over)
+        N, E, gamma = size_of(octave, bool(self.shape.even[0])) + 4, self.body.E, 1 + np.exp(over)
         edge = np.sqrt(np.exp(over) * (gamma + 1))  # sqrt(γ² - 1)
-        z, weight = gauss_legendre(N + _MORE)
-        end = np.arctan2(1.0, edge)[:, None]  # arcsin(1/γ)
-        tau, root = gamma[:, None] * np.sin(end * z), gamma[:, None] * np.cos(end * z)  # γ sin z, sqrt(γ² - τ²)
-        dz, basis = end * weight, np.stack(list(functions(tau, N)), axis=1)
+        z, dz = self._rule(a, gamma, edge, N)
+        tau, root = gamma[:, None] * np.sin(z), gamma[:, None] * np.cos(z)  # γ sin z, sqrt(γ² - τ²)
+        basis = np.stack(list(functions(tau, N)), axis=1)
         c, unit = a * gamma, 2 * self.sigma / E
-        exact = a[:, None] ** 2 * (1 - tau) * (1 + tau) + (unit * a)[:, None] * (root - edge[:, None])
-        side = np.einsum("bq,bnq->bn", exact * dz * root, basis)
+        depth = self.shape.lifted(column(a))
+        pulled = (unit * a)[:, None] * (root - edge[:, None])
+        exact = depth - self.shape.lifted(column(a) * tau) + pulled
+        side = rises(self.shape, a, N) + np.einsum("bq,bnq->bn", pulled * dz * root, basis)
+        free = side
         y, less, bent, at_edge, change, of_waves = side, side, 0 * side, 0 * a, 0 * a, 0 * a
         if hasattr(self.body, "kernel"):
             d, cosine, by, q = self._waves(a, gamma, octave, place, N)
@@ -135,15 +138,30 @@ class Maugis(NamedTuple):
             y, less = (solved(products, side[:, :n, None], n)[:, :, 0] for n in (N, few))
             ends = [at_the_edge(products, v[:, :, None])[:, 0] for v in (y, less)]
             at_edge, change = ends[0] - unit * c * (q * J1 * cosine).sum(axis=1), np.abs(ends[1] - ends[0])
-            bent = y - np.einsum("bq,bnq->bn", exact * dz * root, basis)
+            bent = y - free
             transform = np.einsum("bn,bng->bg", y, d) + y[:, :1] * cosine
             of_waves = (q * J0 * (2 / np.pi * transform - (unit * c)[:, None] * J1)).sum(axis=1)
         whole = exact + np.einsum("bn,bnq->bq", bent, basis)
-        D = a**2 - unit * a * edge + at_edge
+        D = depth[:, 0] - unit * a * edge + at_edge
         moved = 2 / np.pi * ((whole * dz).sum(axis=1) - unit * c) + of_waves  # u(c)
         P = 2 * E * a * y[:, 0] - np.pi * c**2 * self.sigma
         P_error = 2 * E * a * np.abs(y[:, 0] - less[:, 0]) + _ROUNDING * N * (np.abs(P) + np.pi * c**2 * self.sigma)
-        return Ring(self.sigma * (c**2 / 2 - D + moved), P, D, P_error, change + _ROUNDING * N * np.abs(D), bent)
+        height = self.shape.height(column(c))[:, 0]
+        return Ring(self.sigma * (height - D + moved), P, D, P_error, change + _ROUNDING * N * np.abs(D), bent)
+
+    def _rule(self, a, gamma, edge, N):
+        """Points z and weights (B, Q), τ = γ sin z <= 1. Beyond each kink of the shape, and beyond 0 where it is not
+        smooth in r², the variable is y in z = start + width y²."""
+        y, w = gauss_legendre(N + _MORE)
+        end = np.arctan2(1.0, edge)[:, None]  # arcsin(1/γ)
+        if self.shape.even[0]:
+            return end * y, end * w
+        kinks = np.sort(np.minimum(np.nan_to_num(self.shape.kinks() / column(a), nan=1.0), 1.0), axis=1)
+        chosen = np.unique(np.linspace(0, kinks.shape[1] - 1, min(kinks.shape[1], MOST_KINKS)).astype(int))
+        inner = np.minimum(np.arcsin(kinks[:, chosen] / gamma[:, None]), end)
+        ends = np.hstack([0 * end, inner, end])
+        low, width = ends[:, :-1, None], np.diff(ends, axis=1)[:, :, None]
+        return (low + width * y**2).reshape(len(a), -1), (width * (2 * y * w)).reshape(len(a), -1)
 
     def _waves(self, a, gamma, octave, place, N):
         """d_m (B, N, G), cos κ, κγ and the weights of ∫ (L - 1) · dκ (B, G) each."""

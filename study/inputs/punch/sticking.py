@@ -60,6 +60,8 @@ def mistakes(grid: Grid, sections: Any) -> list[str]:
         messages.append(f'adhesion = "dmt" is for shape = "paraboloid", not {_first(values("shape"), "paraboloid")}')
     if (sticks & np.isin(values("base"), THIN)).any():
         messages.append('base = "thin_layer" does not stick: w_adhesion > 0 needs base = "layered", or "auto"')
+    if (maugis & (values("shape") == "flat")).any():
+        messages.append('adhesion = "maugis" does not go with shape = "flat", whose edge is held: take "jkr"')
     if (sticks & (values("scheme") == "picard")).any():
         messages.append('scheme = "picard" is for asperities, and adhesion for smooth punches: leave the scheme out')
     return messages

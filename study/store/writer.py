@@ -1,7 +1,6 @@
 """The results file, written window by window, so that only a small part of a study is in memory at a time.
 
-It is begun while cases are still computed: a window is written when the last of its cases has come. A run of a million
-thin cases with 33 points takes a quarter less time so, on two processors (docs/speed.md).
+It is begun while cases are still computed: a window is written when the last of its cases has come.
 """
 
 from collections import deque

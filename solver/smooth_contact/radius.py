@@ -11,6 +11,8 @@ _MOST, _NEAR = 80, 1e-13
 _LONGEST = 3.0
 #: P or D that is not reached to this part is not reached: there is no such contact.
 _REACHED = 1e-9
+#: Rounding of a radius. Next to what is flat it is a larger part of a - least, on which P and D depend.
+_ROUNDED = 4 * np.finfo(float).eps
 #: The first guess is right to this part of P or D, and begins at this radius, in R.
 _CLOSE, _USUAL = 0.01, 0.05
 #: A bracket as narrow as this holds nothing more: rounding.
@@ -92,7 +94,8 @@ def touching(control, value, shape, body):
         return pieces[0][1], np.ones(len(value), dtype=np.int32)
     x, counts = rising_root(evaluate, guess(control, value, shape, body, radii))
     response = Response.join(len(value), pieces)
-    reached = np.abs(np.log(getattr(response, control) / value)) < _REACHED
+    rounding = _ROUNDED * response.a / (response.a - radii.least)
+    reached = np.abs(np.log(getattr(response, control) / value)) < _REACHED + rounding
     return response.only(np.isfinite(x) & reached & (response.slope > 0)), counts
 
 

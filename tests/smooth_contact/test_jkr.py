@@ -223,3 +223,23 @@ def test_company():
             alone = solve(Problem.of(D=0.002, **case | {"h": case["h"][i]}, **punch))
             for name in ("a", "P", "dP_dD", "p0", "P_off", "a_off", "a_in"):
                 assert getattr(together, name)[i] == getattr(alone, name)[0]
+
+
+def test_the_unstable_branch_goes_on_to_the_axis():
+    """However small a load or depth below 0 is: a radius has it, which tends to 0 as on a half-space, a ~ Q²."""
+    case = {"h": 1.0, "n": 1e-3, "bonding": "bonded", "nu1": 0.49, "micro": "smooth", "w_adhesion": 1e-8}
+    for control, values in {"D": [-1e-6, -1e-7, 0.0], "P": [-1e-11, -1e-12, 1e-9]}.items():
+        unstable = solve(Problem.of(**case, **{control: values}, branch="unstable"))
+        assert unstable.status.tolist() == [Status.CONVERGED] * 2 + [Status.PULLED_OFF]
+        again = solve(Problem.of(**case, a=unstable.a[:1]))
+        np.testing.assert_allclose(getattr(again, control), values[:1], rtol=1e-12)
+        np.testing.assert_allclose(unstable.a[1] / unstable.a[0], 0.01 if control == "D" else 0.1 ** (2 / 3), rtol=1e-3)
+
+
+def test_a_frustum_that_hardly_touches_is_told_so_by_its_error():
+    """a - b has then few digits; D is that of the flat end."""
+    case = {"base": "half_space", "micro": "smooth", "shape": "frustum", "flat_radius": 0.012, "half_angle": 70.0}
+    answer = solve(Problem.of(**case, P=[1e-8, 1e-9]))
+    assert answer.status.tolist() == [Status.CONVERGED, Status.TOLERANCE_NOT_MET]
+    flat = [1e-8 / 0.024, 1e-9 / 0.024]
+    np.testing.assert_allclose(answer.D, flat, rtol=1e-5)  # a is above b by 4e-9 of it; the rest is that rounding

@@ -148,13 +148,13 @@ class Interval(NamedTuple):
     ended: np.ndarray
 
 
-def descend(curve, holder, start, wanted):
-    """The highest :class:`Interval` below `start` (B,) which is `wanted`.
+def descend(curve, holder, start, wanted, until=-np.inf):
+    """The highest :class:`Interval` below `start` (B,) which is `wanted`. Where Q falls it goes on until `until` (B,).
 
     wanted : ``wanted(Q, dQ, index) -> (b, m - 1) bool`` of Q and its slope (b, m) at radii that go down, for the
         intervals of the cases `index`
     """
-    size = len(start)
+    size, until = len(start), np.broadcast_to(until, len(start))
     out = Interval(*np.full((6, size), np.nan), np.ones(size, dtype=bool))
     active, looked = np.arange(size), _looked_at(curve, holder, start[:, None], np.arange(size))
     while len(active):
@@ -171,7 +171,8 @@ def descend(curve, holder, start, wanted):
                 goes_on[rows] = ~_note(out, active[rows], wanted(Q, dQ, active[rows]), x, Q, dQ)
         last = looked[0][:, -1]
         out.low[active] = np.where(goes_on, last, out.low[active])
-        goes_on &= ~lowest(curve.law, last, active, curve.radii) & ~np.isnan(last)
+        ends = lowest(curve.law, last, active, curve.radii) & ~(looked[1][:, -1] < until[active])
+        goes_on &= ~ends & ~np.isnan(last)
         active, looked = active[goes_on], tuple(values[goes_on, -1:] for values in looked)
     return out
 
@@ -224,10 +225,8 @@ def beyond(curve, holder, value, turn, start):
 
     def evaluate(x, index):
         state, da = curve.at(x, index)
-        part = holder.take(index)
-        return (part.of(state.P, state.D) - value[index]) / scale[index], part.of(state.dP, state.dD) * da / scale[
-            index
-        ]
+        part, unit = holder.take(index), scale[index]
+        return (part.of(state.P, state.D) - value[index]) / unit, part.of(state.dP, state.dD) * da / unit
 
     start = np.fmax(start, np.where(turn.corner, turn.above, turn.x + 0.3))
     return rising_root(evaluate, start, low=turn.x)[0]
@@ -242,7 +241,8 @@ def below(curve, holder, value, start, rising):
         off = sign * (Q - value[index, None])
         return (off[:, :-1] > 0) & (off[:, 1:] <= 0)
 
-    interval = descend(curve, holder, start, wanted)
+    to_axis = (value < 0) & (curve.radii.least == 0) & (not rising)  # Q rises to 0 there, at the axis
+    interval = descend(curve, holder, start, wanted, np.where(to_axis, value, -np.inf))
     x, inside = np.full(len(start), np.nan), np.flatnonzero(~interval.ended)
     if len(inside):
         v, part = value[inside], holder.take(inside)

@@ -109,12 +109,12 @@ def test_a_table_of_any_convex_profile(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("r,f\n0,0\n1,1\n2,1.5\n", "is not convex beyond r = 1"),
-        ("r,f\n0.1,0\n1,1\n2,3\n", "must grow from 0"),
+        ("r,f\n0,0\n1,1\n2,1.5\n", "is not convex beyond the row with r = 1"),
+        ("r,f\n0.1,0\n1,1\n2,3\n", "must be 0 in the first row"),
         ("r,f\n0,0\n1,1\n", "3 to 1000 rows"),
         ("r [um],f [parsec]\n0,0\n1,1\n2,3\n", "must name a length"),
         ("r,f\n0,0\n1,nan\n2,3\n", "not finite"),
-        ("r,f\n0,0\n1,x\n2,3\n", "cannot be read"),
+        ("r,f\n0,0\n1,x\n2,3\n", "line 3: 1, x: must be two numbers"),
     ],
 )
 def test_a_table_that_cannot_be_used_is_told(tmp_path, text, message):

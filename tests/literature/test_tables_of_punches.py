@@ -1,4 +1,4 @@
-"""The tables of formulas for cones, flat punches and balls, and of pull-off loads, against contacts that are solved here."""
+"""The tables of formulas for cones, flat punches and balls, and of pull-off loads, against what is known of them."""
 
 import csv
 

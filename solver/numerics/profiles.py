@@ -38,7 +38,7 @@ def read(word):
     try:
         with open(path, newline="", encoding="utf-8") as file:
             lines = [line for line in csv.reader(file) if line and not line[0].lstrip().startswith("#")]
-        lines = lines[1:] if lines and not _is_number(lines[0][0]) else lines
+        lines = lines[1:] if lines and not is_number(lines[0][0]) else lines
         rows = np.array([[float(cell) for cell in line] for line in lines[: _ROWS + 1]])
     except (OSError, ValueError) as error:
         raise ValueError(f"profile {word}: cannot be read: {error}") from None
@@ -53,7 +53,8 @@ def read(word):
     return TABLES[word]
 
 
-def _is_number(text):
+def is_number(text):
+    """Whether a text is a number."""
     try:
         float(text)
     except ValueError:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics.profiles import is_number
 from ..parameters import Parameter
 from .shape import Kind, column, load_by_quadrature
 
@@ -168,15 +169,15 @@ def _rows(word):
     except (OSError, ValueError) as error:
         message = f"cannot be read: {error}" if path else 'names no file: "table:tip.csv"'
         raise ValueError(f"shape {word}: {message}") from None
-    header = lines.pop(0)[1] if lines and not _is_number(lines[0][1][0]) else []
+    header = lines.pop(0)[1] if lines and not is_number(lines[0][1][0]) else []
     for number, line in lines:
-        if len(line) != 2 or not all(_is_number(cell) for cell in line):
+        if len(line) != 2 or not all(is_number(cell) for cell in line):
             raise ValueError(f"shape {word}: line {number}: {', '.join(line)}: must be two numbers, r and f")
     if not 3 <= len(lines) <= _ROWS:
         raise ValueError(f"shape {word}: must have two columns, r and f, and 3 to {_ROWS} rows, not {len(lines)}")
     numbers, units = np.array([[float(cell) for cell in line] for _, line in lines]), _lengths(word, header)
     _check(word, *numbers.T, units[1] / units[0])
-    return _of_columns(*(numbers * units).T, units != (1.0, 1.0) or _has_units(header))
+    return _of_columns(*(numbers * units).T, _has_units(header))
 
 
 def _check(word, r, f, unit):
@@ -219,11 +220,3 @@ def _lengths(word, header):
 
 def _has_units(header):
     return any("[" in cell or "(" in cell for cell in header)
-
-
-def _is_number(text):
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

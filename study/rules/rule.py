@@ -122,16 +122,16 @@ def slope(v):
     """f'(a) of the shapes of the punches: a/R of paraboloids; NaN of a shape that is not registered."""
     if "shape" not in v:
         return v["a"]
-    found = np.where(v["shape"] == PARABOLOID, v["a"], np.nan) * np.ones(np.shape(v["shape"]))
+    slopes = np.where(v["shape"] == PARABOLOID, v["a"], np.nan) * np.ones(np.shape(v["shape"]))
     for kind in SHAPES.values():
         if np.any(v["shape"] == kind.name):
-            arrays = np.broadcast_arrays(*(v[name] for name in ("a", *kind.parameters)), found)
+            arrays = np.broadcast_arrays(*(v[name] for name in ("a", *kind.parameters)), slopes)
             a, *numbers = (array.ravel() for array in arrays[:-1])
             shape = kind.of(**dict(zip(kind.parameters, numbers, strict=True)), size=len(a))
             with np.errstate(all="ignore"):  # of cases without numbers
                 at_edge = shape.slope(a[:, None])[:, 0].reshape(arrays[0].shape)
-            found = np.where(v["shape"] == kind.name, at_edge, found)
-    return found
+            slopes = np.where(v["shape"] == kind.name, at_edge, slopes)
+    return slopes
 
 
 def _pressure(v):

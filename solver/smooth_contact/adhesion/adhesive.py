@@ -84,9 +84,9 @@ def machine(part):
 
 
 def _asked(part, curve, holder, control, turn):
-    """x (B,) of the asked branch where P or D is given; NaN where it has no such state; and whether the control is at
-    its minimum (B,). The largest radius with the
-    value of the control is on the stable branch where it is beyond the :class:`~.pull.Turn` of what holds the punch."""
+    """x (B,) of the asked branch where P or D is given, NaN where it has no such state; and whether the control is at
+    its minimum (B,). The largest radius with the value of the control is on the stable branch where it is beyond the
+    :class:`~.pull.Turn` of what holds the punch."""
     same = holder.load.tolist() == control.load.tolist() and holder.compliance.tolist() == control.compliance.tolist()
     of_control = turn if same else last_minimum(curve, control, highest(curve.law, curve.radii))
     least, unstable = control.of(of_control.state.P, of_control.state.D), part.branch == "unstable"

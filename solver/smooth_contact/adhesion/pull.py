@@ -118,19 +118,19 @@ def last_minimum(curve, holder, start):
         state, _ = curve.at(x, index)
         return holder.take(index).of(state.dP, state.dD)
 
-    found = descend(curve, holder, start, lambda Q, dQ, _: (dQ[:, :-1] >= 0) & (dQ[:, 1:] < 0))
-    x, corner = found.high.copy(), found.ended & (curve.radii.least > 0)
-    inside = np.flatnonzero(~found.ended)
+    interval = descend(curve, holder, start, lambda Q, dQ, _: (dQ[:, :-1] >= 0) & (dQ[:, 1:] < 0))
+    x, corner = interval.high.copy(), interval.ended & (curve.radii.least > 0)
+    inside = np.flatnonzero(~interval.ended)
     if len(inside):
-        low, high = found.low[inside], found.high[inside]
-        ends = found.dQ_low[inside], found.dQ_high[inside]
+        low, high = interval.low[inside], interval.high[inside]
+        ends = interval.dQ_low[inside], interval.dQ_high[inside]
         tolerance = np.full(len(inside), _NARROW)
         scale = ends[1] - ends[0]
         x[inside], _ = between(
             lambda y, i: slope(y, inside[i]) / scale[i], low, high, ends[0] / scale, ends[1] / scale, tolerance
         )
-    at_axis = found.ended & ~corner & curve.law.reaches_axis & np.isfinite(found.low)
-    x = np.where(found.ended & ~corner, np.where(at_axis, found.low, np.nan), np.where(corner, -np.inf, x))
+    at_axis = interval.ended & ~corner & curve.law.reaches_axis & np.isfinite(interval.low)
+    x = np.where(interval.ended & ~corner, np.where(at_axis, interval.low, np.nan), np.where(corner, -np.inf, x))
     state, _ = curve.at(x, np.arange(len(x)))
     return Turn(start, x, state, corner, at_axis)
 

@@ -2,16 +2,17 @@
 
 from dataclasses import replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 from ...status import Status
 from ..radius import guess
-from ..state import answer, beyond_profile, pinned
+from ..state import State, answer, beyond_profile, pinned
 from . import dmt
 from .jkr import Jkr
 from .maugis import Maugis, ring_pressure, ring_stress
-from .pull import Curve, Held, below, beyond, highest, last_minimum
+from .pull import Curve, Held, Turn, below, beyond, highest, last_minimum
 
 #: A load or depth as near as this to that of pull-off is it, relative: rounding, by the units of what was returned.
 _SAME = 64 * np.finfo(float).eps
@@ -27,27 +28,62 @@ def solve(part, shape, body, x):
         law = Maugis(shape, body, part.w_adhesion, ring_stress(part))
     if str(part.shape[0]) == "flat":
         return _flat(part, law, x)
-    curve, holder = Curve(law), Held.by(machine(part))
-    control = Held.by(np.full(len(part), np.inf if part.control == "D" else 0.0))
-    turn = last_minimum(curve, holder, highest(law, curve.radii))
-    at_turn = np.zeros(len(part), dtype=bool)
+    curve, at_turn = Curve(law), np.zeros(len(part), dtype=bool)
+    found, counts = pulled(part, law)
+    turn, jumped = found.turn, found.jumped
     if part.control == "a":
         state = law.at(part.value)
     else:
-        asked, at_turn = _asked(part, curve, holder, control, turn)
+        asked, at_turn = _asked(part, curve, found)
         state = curve.at(asked, every)[0]
-    jumped, _ = curve.at(_jump(curve, holder, turn), every)
     pulls = {"P_off": turn.state.P, "D_off": turn.state.D, "a_off": np.where(turn.at_axis, 0.0, turn.state.a)}
-    pulls |= {"P_in": np.where(holder.load, 0.0, jumped.P), "a_in": jumped.a}
+    pulls |= {"P_in": np.where(found.holder.load, 0.0, jumped.P), "a_in": jumped.a}
     off = _off(turn.state)
     outside = beyond_profile(part, shape, lambda index, a: law.take(index).at(a))
     if isinstance(law, Maugis):
         ring = partial(ring_pressure, part, state.zone)
     exact = _at_minimum(part, state, at_turn)
-    solution = _answered(part, shape, exact, pulls, off, curve.counts, x, ring)
+    solution = _answered(part, shape, exact, pulls, off, curve.counts + counts, x, ring)
     steep = at_turn & (part.control == "D") & ~turn.corner
     solution = replace(solution, dP_dD=np.where(steep, np.inf, np.where(at_turn, state.stiffness, solution.dP_dD)))
     return solution.refused(outside, Status.OUTSIDE_LAW)
+
+
+class Pulled(NamedTuple):
+    """Of B cases, what does not depend on their load or depth: what holds the punch, `holder`; its
+    :class:`~.pull.Turn`, and the state to which the contact jumps where the punch only touches; and the Turn of a
+    machine that holds the `control`."""
+
+    holder: Held
+    turn: Turn
+    jumped: State
+    control: Held
+    of_control: Turn
+
+    def take(self, index):
+        return Pulled(*(part.take(index) for part in self))
+
+
+def pulled(part, law):
+    """:class:`Pulled` of the cases, and how often the equation was solved for each (B,). Cases that differ in the value
+    of their control alone have one search."""
+    first, same = _alike(part)
+    few, law = part.take(first), law.take(first)
+    curve, holder = Curve(law), Held.by(machine(few))
+    start = highest(law, curve.radii)
+    turn = of_control = last_minimum(curve, holder, start)
+    control = Held.by(np.full(len(few), np.inf if part.control == "D" else 0.0))
+    if any((one != other).any() for one, other in zip(holder, control, strict=True)) and part.control != "a":
+        of_control = last_minimum(curve, control, start)
+    jumped, _ = curve.at(_jump(curve, holder, turn), np.arange(len(few)))
+    return Pulled(holder, turn, jumped, control, of_control).take(same), curve.counts[same]
+
+
+def _alike(part):
+    """Places of cases of which no two have the same parameters, and for each case (B,) the one that has its own."""
+    codes = [np.unique(values, return_inverse=True)[1] for values in part.parameters.values()]
+    _, first, same = np.unique(np.stack(codes), axis=1, return_index=True, return_inverse=True)
+    return first, same.ravel()
 
 
 def _at_minimum(part, state, at_turn):
@@ -83,12 +119,11 @@ def machine(part):
     return np.where(np.isnan(part.k_machine), usual, part.k_machine)
 
 
-def _asked(part, curve, holder, control, turn):
+def _asked(part, curve, pulls):
     """x (B,) of the asked branch where P or D is given, NaN where it has no such state; and whether the control is at
     its minimum (B,). The largest radius with the value of the control is on the stable branch where it is beyond the
     :class:`~.pull.Turn` of what holds the punch."""
-    same = holder.load.tolist() == control.load.tolist() and holder.compliance.tolist() == control.compliance.tolist()
-    of_control = turn if same else last_minimum(curve, control, highest(curve.law, curve.radii))
+    control, of_control, turn = pulls.control, pulls.of_control, pulls.turn
     least, unstable = control.of(of_control.state.P, of_control.state.D), part.branch == "unstable"
     at_turn = (np.abs(part.value - least) <= _SAME * np.abs(least)) & ~of_control.at_axis
     above = np.where((part.value >= least) & ~at_turn, part.value, np.nan)

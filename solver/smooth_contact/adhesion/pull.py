@@ -110,6 +110,9 @@ class Turn(NamedTuple):
     corner: np.ndarray
     at_axis: np.ndarray
 
+    def take(self, index):
+        return Turn(*(part.take(index) if isinstance(part, State) else part[index] for part in self))
+
 
 def last_minimum(curve, holder, start):
     """The :class:`Turn` of B cases from x = `start` (B,), beyond it, down."""

@@ -29,15 +29,15 @@ def solve(part, shape, body, x):
     if str(part.shape[0]) == "flat":
         return _flat(part, law, x)
     curve, at_turn = Curve(law), np.zeros(len(part), dtype=bool)
-    found, counts = pulled(part, law)
-    turn, jumped = found.turn, found.jumped
+    search, counts = pulled(part, law)
+    turn, jumped = search.turn, search.jumped
     if part.control == "a":
         state = law.at(part.value)
     else:
-        asked, at_turn = _asked(part, curve, found)
+        asked, at_turn = _asked(part, curve, search)
         state = curve.at(asked, every)[0]
     pulls = {"P_off": turn.state.P, "D_off": turn.state.D, "a_off": np.where(turn.at_axis, 0.0, turn.state.a)}
-    pulls |= {"P_in": np.where(found.holder.load, 0.0, jumped.P), "a_in": jumped.a}
+    pulls |= {"P_in": np.where(search.holder.load, 0.0, jumped.P), "a_in": jumped.a}
     off = _off(turn.state)
     outside = beyond_profile(part, shape, lambda index, a: law.take(index).at(a))
     if isinstance(law, Maugis):

@@ -74,25 +74,34 @@ def of_contacts(problem, solution, r, z, mu=0.0):
                 for name, values in field.items():
                     made[name][here[some]] = values * units[name.startswith("u")]
         at_tip = np.isposinf(ended.p0)[:, None, None] & np.isin(np.arange(len(z) + 2), np.flatnonzero(z == 0))[:, None]
-        for name in ("sr", "st", "sz"):
-            made[name][index] = np.where(at_tip & (r == 0), -np.inf, made[name][index])
+        made["sz"][index] = np.where(at_tip & (r == 0), -np.inf, made["sz"][index])
+        infinite = np.isinf(made["sz"])
+        for name in ("sr", "st"):
+            made[name] = np.where(infinite, made["sz"], made[name])
     parts = (slice(None, len(z)), len(z), len(z) + 1)
     return Fields(*({name: values[:, part] for name, values in made.items()} for part in parts), error)
 
 
 def have_fields(problem, solution):
-    """(B,) bool: solved contacts of which there are stresses. There are none yet of stacks, of what sticks, of
-    flat punches, whose pressure is infinite at the edge, and of rough punches of other shapes than the paraboloid."""
-    without = np.isin(problem.base, STACKED[1]) | (problem.w_adhesion > 0) | (problem.shape == "flat")
+    """(B,) bool: solved contacts of which there are stresses. There are none yet of stacks, of what attracts outside
+    of the contact, and of rough punches of other shapes than the paraboloid."""
+    without = np.isin(problem.base, STACKED[1]) | ((problem.w_adhesion > 0) & (problem.adhesion != "jkr"))
     return (solution.status == Status.CONVERGED) & ~without & ~(shaped(problem) & problem.rough())
+
+
+def are_infinite(problem):
+    """(B,) bool: contacts whose stresses are infinite at the edge, as those of flat punches and of what sticks."""
+    return (problem.shape == "flat") | (problem.w_adhesion > 0)
 
 
 def pressures(scaled, solution, a):
     """Yield indices of cases, their :class:`~.pressure.Pressure` in units of E2*, and its error (b,)."""
-    with_shape = np.flatnonzero(shaped(scaled))
-    for rows, pressure, missed in shaped_pressures(scaled.take(with_shape), a[with_shape]) if len(with_shape) else ():
+    of_basis = shaped(scaled) | (scaled.w_adhesion > 0)
+    with_shape = np.flatnonzero(of_basis)
+    depths = solution.D[with_shape] / scaled.R[with_shape]
+    for rows, pressure, missed in shaped_pressures(scaled.take(with_shape), a[with_shape], depths):
         yield with_shape[rows], pressure, missed + _LEAST
-    others = np.flatnonzero(~shaped(scaled))
+    others = np.flatnonzero(~of_basis)
     for rows, pressure, missed in _of_paraboloids(scaled.take(others), solution.take(others), a[others]):
         yield others[rows], pressure, missed
 
@@ -139,7 +148,7 @@ def _of_pressures(scaled, a, pressure, r, z, mu):
         index = np.flatnonzero(kind.ravel() == number)
         for some in np.array_split(index, -(-len(index) // most)):
             rows, layers = (depths[some], body[some[0]]), bodies_of(scaled.take(some), bare[some[0]])
-            here = h[some], pressure._replace(values=pressure.values[some]), r, *rows
+            here = h[some], pressure.take(some), r, *rows
             G2 = np.where(rows[1], 1 - layers.nu2[:, None], (layer_modulus(layers.n) * (1 - layers.nu1))[:, None])
             field = normal.components(integrals(normal.NORMAL, layers, *here), G2[..., None])
             if mu > 0:

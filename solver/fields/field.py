@@ -36,7 +36,7 @@ def integrals(load, layers, h, pressure, r, z, body, roughly=False):
     alike = np.all(z[:, closed] == z[:1, closed])  # depths that all cases share are one batch
     for case in [slice(None)] if alike else map(slice, range(len(h)), range(1, len(h) + 1)):
         if len(closed):
-            own = pressure._replace(values=pressure.values[case])
+            own = pressure.take(case)
             displacements = len(load.orders) > load.stresses
             whole[:, case, closed] += load.in_closed_form(own, r, z[case][0, closed], layers.nu1[case], displacements)
     whole[:, (layers.n == 0)[:, None] & body] = np.nan

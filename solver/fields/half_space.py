@@ -79,7 +79,14 @@ class _Nodes(NamedTuple):
         t, s = np.sin(angle), np.maximum(np.cos(angle), 0.0)
         beyond = 2 * np.cos(centre + distance / 2) * np.sin(distance / 2) - np.maximum(r - 1, 0.0)[:, None]
         density = pressure.density(s) * s + (2 / np.pi * pressure.at_edge())[:, None, None]
-        return cls(t, beyond, density * t * (width * w).reshape(len(r), -1))
+        weight = density * t * (width * w).reshape(len(r), -1)
+        if pressure.A is None:
+            return cls(t, beyond, weight)
+        at_edge = np.broadcast_to(pressure.A[:, None, None], (len(weight), len(r), 1))
+        last = np.ones((len(r), 1))
+        return cls(
+            np.hstack([t, last]), np.hstack([beyond, (1 - r)[:, None]]), np.concatenate([weight, at_edge], axis=2)
+        )
 
 
 def _halvings(r, z):
@@ -132,4 +139,10 @@ def on_surface(pressure, r):
     φ = (pressure.density(s) + (2 / np.pi * pressure.at_edge())[:, None, None] / s) * t
     b = np.where(within, angle, np.arcsin(np.minimum(t / np.maximum(r[:, None], 1.0), 1.0)))
     weight = (width * w).reshape(len(r), -1) / root
-    return np.stack([np.einsum("brt,rt->br", φ, weight * np.sin(m * b)) for m in (1, 3)])
+    whole = np.stack([np.einsum("brt,rt->br", φ, weight * np.sin(m * b)) for m in (1, 3)])
+    if pressure.A is not None:
+        outside = np.maximum(r, 1.0)
+        root = np.sqrt((outside - 1) * (outside + 1))
+        of_edge = np.stack([np.sin(m * np.arcsin(1 / outside)) / root for m in (1, 3)])
+        whole = whole + pressure.A[:, None] * np.where(r < 1, 0.0, of_edge)[:, None]
+    return whole

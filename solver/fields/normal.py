@@ -24,7 +24,7 @@ def in_closed_form(pressure, r, z, nu, displacements=True):
     surface = z == 0
     if surface.any():
         p, mean = pressure.at(r)[:, None], pressure.mean(r)[:, None]
-        whole[:4, :, surface] = np.stack([-(1 + 2 * nu) * p, (1 - 2 * nu) * (2 * mean - p), -p, 0 * p])
+        whole[:4, :, surface] = np.stack([-(1 + 2 * nu) * p, (1 - 2 * nu) * (2 * mean - p), -p, 0 * mean])
     return whole
 
 

@@ -1,6 +1,7 @@
 """Pressures p(r) of cases on one mesh (a = 1), and what the fields need of them: docs/stresses.md, Waves.
 
-p is the polynomial in s = sqrt(1 - r²) through the values at the nodes, one on each panel.
+p is the polynomial in s = sqrt(1 - r²) through the values at the nodes, one on each panel, and A/s: the edge of a flat
+punch, A > 0, or of a contact that sticks, A < 0. The waves of 1/s are sin k/k, so that its φ is δ(t - 1).
 """
 
 from functools import lru_cache
@@ -28,10 +29,15 @@ _ROUNDING = 1e-12
 
 
 class Pressure(NamedTuple):
-    """`values` (B, n), the pressures of B cases at the nodes of a mesh."""
+    """`values` (B, n), the pressures of B cases at the nodes of a mesh; and A (B,) of 1/s, 0 for all if it is None."""
 
     mesh: Mesh
     values: np.ndarray
+    A: np.ndarray | None = None
+
+    def take(self, index):
+        """The sub-batch at `index`."""
+        return Pressure(self.mesh, self.values[index], None if self.A is None else self.A[index])
 
     def transform(self, k):
         """p^(k) = ∫ p J0(kr) r dr (B, K) at ascending k (K,)."""
@@ -42,12 +48,14 @@ class Pressure(NamedTuple):
             (_kept_waves if piece.size * self.mesh.n <= _KEPT else _waves)(self.mesh, piece.tobytes())
             for piece in pieces
         ]
-        return np.concatenate([self.values @ piece.T for piece in rows], axis=1)
+        waves = np.concatenate([self.values @ piece.T for piece in rows], axis=1)
+        return waves if self.A is None else waves + self.A[:, None] * (np.sin(k) / k)
 
     def at(self, r):
-        """p at radii r (R,), (B, R); 0 outside."""
+        """p at radii r (R,), (B, R); 0 outside, infinite at an edge that has A."""
         s = np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
-        return np.where(r <= 1, self.values @ self.mesh.basis(s).T, 0.0)
+        p = self.values @ self.mesh.basis(s).T
+        return np.where(r <= 1, p if self.A is None else p + self.A[:, None] / s, 0.0)
 
     def at_edge(self):
         """p at s = 0, (B,): rounding and taken for 0, but for the polynomials of films."""
@@ -66,10 +74,11 @@ class Pressure(NamedTuple):
         points = s[:, None, None] + (1 - s)[:, None, None] * (ends[:, :-1, None] + width * t)
         weights = width * weight * points / (1 + s)[:, None, None] / np.maximum(r, 1.0)[:, None, None] ** 2
         basis = self.mesh.basis(np.minimum(points, 1.0).ravel()).reshape(len(r), -1, self.mesh.n)
-        return self.values @ np.einsum("rgn,rg->nr", basis, weights.reshape(len(r), -1))
+        mean = self.values @ np.einsum("rgn,rg->nr", basis, weights.reshape(len(r), -1))
+        return mean if self.A is None else mean + self.A[:, None] / (1 + s) / np.maximum(r, 1.0) ** 2
 
     def density(self, s):
-        """φ/t of Abel's φ(t) (B, ...) at s = sqrt(1 - t²) (...), without what :meth:`at_edge` adds."""
+        """φ/t of Abel's φ(t) (B, ...) at s = sqrt(1 - t²) (...), without what :meth:`at_edge` and A add."""
         nodal = self.values @ _density(self.mesh).T
         return (nodal @ self.mesh.basis(s.ravel()).T).reshape(len(nodal), *s.shape)
 

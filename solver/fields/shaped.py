@@ -1,5 +1,5 @@
-"""Pressures of smooth contacts of other shapes than the paraboloid, as the fields need them: on panels that shrink to
-where the shape has kinks, and to a sharp tip."""
+"""Pressures of smooth contacts of other shapes than the paraboloid, and of what sticks, as the fields need them: on
+panels that shrink to where the shape has kinks, and to a sharp tip."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from ..numerics.mesh import Mesh, mesh_of, on_panels
 from ..numerics.quadrature import radau_nodes
 from ..smooth_contact.contact import kinds_of, shape_in
 from ..smooth_contact.equation import respond
-from ..smooth_contact.pressure import pressure_changes, pressures
+from ..smooth_contact.pressure import pressure_changes, without_edge
 from .pressure import Pressure
 
 #: Nodes of one panel under shapes that are smooth in r², and of each of several panels. With half of them the stresses
@@ -23,30 +23,36 @@ _BESIDE = 0.1
 _LOOKED_AT = np.sin(np.pi / 2 * (np.arange(40) + 0.37) / 40)
 
 
-def shaped_pressures(scaled, a):
-    """Yield indices of smooth cases with a shape, their :class:`~.pressure.Pressure` in units of E2*, and its error
-    (b,), over the largest pressure that is looked at."""
-    for mask, _ in kinds_of(scaled):
+def shaped_pressures(scaled, a, D):
+    """Yield indices of smooth cases with a shape or with adhesion at the edge, their :class:`~.pressure.Pressure` in
+    units of E2*, and its error (b,), over the largest pressure that is looked at."""
+    for mask, _ in kinds_of(scaled) if len(scaled) else ():
         index = np.flatnonzero(mask)
-        part = scaled.take(index)
+        part, at = scaled.take(index), a[index]
         shape, body = shape_in(part), BODIES[str(part.base[0])](part)
-        response, even = respond(shape, body, a[index]), shape.even
+        response, even = respond(shape, body, at), shape.even
+        A = (
+            D[index] / response.flat_D
+            if part.shape[0] == "flat"
+            else -np.sqrt(2 * np.pi * at * part.w_adhesion / body.E)
+        )
         several = np.flatnonzero(~even)
         for rows in (np.flatnonzero(even), *several[:, None]):
             if len(rows):
-                mesh = mesh_of(_WHOLE) if even[rows[0]] else _panels(shape.take(rows), a[index[rows]])
-                picked = type(response)(*(values[rows] for values in response))
-                yield index[rows], *_on(mesh, shape.take(rows), picked)
+                mesh = mesh_of(_WHOLE) if even[rows[0]] else _panels(shape.take(rows), at[rows])
+                yield index[rows], *_on(mesh, shape.take(rows), response.take(rows), A[rows])
 
 
-def _on(mesh, shape, response):
-    zero = np.zeros(len(response.a))
-    pressure = Pressure(mesh, pressures(shape, response, zero, mesh.x))
-    p = pressures(shape, response, zero, _LOOKED_AT)
-    changes = np.abs(pressure_changes(response, zero, _LOOKED_AT)).max(axis=1)
-    off = np.abs(pressure.at(_LOOKED_AT) - p).max(axis=1)
+def _on(mesh, shape, response, A):
+    edge = A * response.E / (np.pi * response.a)
+    pressure = Pressure(mesh, without_edge(shape, response, A, mesh.x), edge if edge.any() else None)
+    p = without_edge(shape, response, A, _LOOKED_AT)
+    changes = np.abs(pressure_changes(response, A, _LOOKED_AT)).max(axis=1)
+    off = np.abs(pressure._replace(A=None).at(_LOOKED_AT) - p).max(axis=1)
+    largest = np.abs(p + edge[:, None] / np.sqrt((1 - _LOOKED_AT) * (1 + _LOOKED_AT))).max(axis=1)
     load = 2 * np.pi * pressure.mean(np.ones(1))[:, 0] * response.a**2
-    return pressure, (off + changes) / np.abs(p).max(axis=1) + np.abs(load / response.P - 1)
+    of_shape, of_edge = response.P, A * response.flat_P
+    return pressure, (off + changes) / largest + np.abs(load - of_shape - of_edge) / (of_shape + np.abs(of_edge))
 
 
 def _panels(shape, a):

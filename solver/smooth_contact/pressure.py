@@ -15,20 +15,33 @@ from ..shapes.shape import column
 from .products import in_blocks
 from .rises import on_half_space
 
-_CENTRE = np.zeros(1).tobytes()
-
 
 def pressures(shape, response, A, x):
     """p (B, m) at x (m,) with the edge value A (B,); at x = 1 it is 0 or infinite, by the sign of A."""
     inside = x < 1
     s = np.sqrt((1 - x[inside]) * (1 + x[inside]))
-    a, over_E = column(response.a), column(np.pi / response.E)
-    bent = response.bent + column(A) * response.flat_bent
-    of_layer = in_blocks(bent, _slopes(bent.shape[1], x[inside].tobytes()))
     p = np.empty((len(A), len(x)))
-    p[:, inside] = (on_half_space(shape, response.a, x[inside]) + (column(A) / s - of_layer) / a) / over_E
+    p[:, inside] = without_edge(shape, response, A, x[inside]) + column(A * response.E / (np.pi * response.a)) / s
     p[:, ~inside] = column(np.where(A == 0, 0.0, np.inf * np.sign(A)))
     return p
+
+
+def without_edge(shape, response, A, x):
+    """p (B, m) at x (m,) < 1 but for its first term, which is infinite at the edge."""
+    bent = response.bent + column(A) * response.flat_bent
+    of_layer = _of_basis(bent, response.size, x)
+    return (on_half_space(shape, response.a, x) - of_layer / column(response.a)) / column(np.pi / response.E)
+
+
+def _of_basis(rows, sizes, x):
+    """Σ_m rows_m ∫ e_m'(τ)/τ dv (B, m) at x (m,), of the functions that each case has, `sizes` (B,), among those of the
+    `rows` (B, N): so its numbers do not depend on its company."""
+    out = np.full((len(rows), len(x)), np.nan)
+    out[sizes == 0] = 0.0
+    for size in np.unique(sizes[sizes > 0]).astype(int).tolist():
+        index = np.flatnonzero(sizes == size)
+        out[index] = in_blocks(rows[index, :size], _slopes(size, x.tobytes()))
+    return out
 
 
 @lru_cache(maxsize=64)
@@ -55,10 +68,10 @@ def _over_tau(tau, size):
 def pressure_changes(response, A, x):
     """By how much p (B, m) changes at x (m,) < 1 with the last functions of the basis."""
     changes = response.changes + column(A) * response.flat_changes
-    return in_blocks(changes, _slopes(changes.shape[1], x.tobytes())) * column(response.E / (np.pi * response.a))
+    return _of_basis(changes, response.size, x) * column(response.E / (np.pi * response.a))
 
 
 def flat_pressure(response):
     """p(0) (B,) of a flat punch of the radius a, over its depth."""
-    bent = in_blocks(response.flat_bent, _slopes(response.flat_bent.shape[1], _CENTRE))[:, 0]
+    bent = _of_basis(response.flat_bent, response.size, np.zeros(1))[:, 0]
     return response.E / (np.pi * response.a) * (1 - bent) / response.flat_D

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..fields.contact import bodies_of, have_fields, pressures
+from ..fields.contact import are_infinite, bodies_of, have_fields, pressures
 from ..scaling import dimensionless
 from ..threads import one_blas_thread
 from .extremes import EXTREMES, coarsely, extremes
@@ -29,7 +29,7 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
     coarse : the values alone, from the coarse grid: up to 10 % too small
     """
     made = {name: np.full((3, len(problem)), np.nan) for name in names}
-    index = np.flatnonzero(have_fields(problem, solution))
+    index = np.flatnonzero(have_fields(problem, solution) & ~are_infinite(problem))
     residual = np.broadcast_to(residual, len(problem)) / problem.E2
     if len(index):
         part, ended = problem.take(index), solution.take(index)
@@ -62,5 +62,5 @@ def alike(scaled, a, pressure, mu, residual, punch=None):
         index = np.flatnonzero(kind.ravel() == number)
         for some in np.array_split(index, -(-len(index) // _TOGETHER)):
             own = scaled.take(some) if punch is None else scaled.take(some).but(nu2=punch[some])
-            layers, part = bodies_of(own, bare[some[0]]), pressure._replace(values=pressure.values[some])
+            layers, part = bodies_of(own, bare[some[0]]), pressure.take(some)
             yield some, Loaded(layers, h[some], part, bool(bare[some[0]]), mu, residual[some])

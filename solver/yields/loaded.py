@@ -35,7 +35,7 @@ class Loaded(NamedTuple):
         return (1.0, -1.0) if self.mu > 0 else (1.0,)
 
     def take(self, index):
-        pressure = self.pressure._replace(values=self.pressure.values[index])
+        pressure = self.pressure.take(index)
         return self._replace(
             layers=self.layers.take(index), h=self.h[index], pressure=pressure, residual=self.residual[index]
         )

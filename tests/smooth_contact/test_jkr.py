@@ -218,7 +218,8 @@ def test_company():
     """A case that sticks has the same numbers alone and among others, of which some differ in the depth alone, to the
     last digit."""
     depths = [0.002, 0.002, 0.003, 0.002, 0.001]
-    case = {"h": np.array([0.01, 0.1, 0.1, 1.0, 0.1]), "n": 0.4, "nu1": 0.5, "bonding": "bonded", "w_adhesion": 1e-4} | SMOOTH
+    layer = {"h": np.array([0.01, 0.1, 0.1, 1.0, 0.1]), "n": 0.4, "nu1": 0.5, "bonding": "bonded"}
+    case = layer | {"w_adhesion": 1e-4} | SMOOTH
     for punch in ({}, {"shape": "cone", "half_angle": 60.0}):
         together = solve(Problem.of(D=depths, **case, **punch))
         for i in (0, 2, 3, 4):

@@ -82,11 +82,9 @@ class _Nodes(NamedTuple):
         weight = density * t * (width * w).reshape(len(r), -1)
         if pressure.A is None:
             return cls(t, beyond, weight)
-        at_edge = np.broadcast_to(pressure.A[:, None, None], (len(weight), len(r), 1))
-        last = np.ones((len(r), 1))
-        return cls(
-            np.hstack([t, last]), np.hstack([beyond, (1 - r)[:, None]]), np.concatenate([weight, at_edge], axis=2)
-        )
+        edge = np.broadcast_to(pressure.A[:, None, None], (len(weight), len(r), 1))
+        t, beyond = np.hstack([t, np.ones((len(r), 1))]), np.hstack([beyond, (1 - r)[:, None]])
+        return cls(t, beyond, np.concatenate([weight, edge], axis=2))
 
 
 def _halvings(r, z):

@@ -31,11 +31,8 @@ def shaped_pressures(scaled, a, D):
         part, at = scaled.take(index), a[index]
         shape, body = shape_in(part), BODIES[str(part.base[0])](part)
         response, even = respond(shape, body, at), shape.even
-        A = (
-            D[index] / response.flat_D
-            if part.shape[0] == "flat"
-            else -np.sqrt(2 * np.pi * at * part.w_adhesion / body.E)
-        )
+        sticks = -np.sqrt(2 * np.pi * at * part.w_adhesion / body.E)
+        A = D[index] / response.flat_D if part.shape[0] == "flat" else sticks
         several = np.flatnonzero(~even)
         for rows in (np.flatnonzero(even), *several[:, None]):
             if len(rows):

@@ -11,8 +11,9 @@ from ..radius import guess
 from ..state import State, answer, beyond_profile, pinned
 from . import dmt
 from .jkr import Jkr
+from .machine import Held, machine
 from .maugis import Maugis, ring_pressure, ring_stress
-from .pull import Curve, Held, Turn, below, beyond, highest, last_minimum
+from .pull import Curve, Turn, below, beyond, highest, last_minimum
 
 #: A load or depth as near as this to that of pull-off is it, relative: rounding, by the units of what was returned.
 _SAME = 64 * np.finfo(float).eps
@@ -111,12 +112,6 @@ def _off(state):
     it is relative to what adhesion takes."""
     P, D = (np.abs(state.A) * v for v in (state.response.flat_P, state.response.flat_D))
     return state.P_error / np.maximum(np.abs(state.P), P) + state.D_error / np.maximum(np.abs(state.D), D)
-
-
-def machine(part):
-    """Stiffness (B,) of what holds the punches: 0 and infinite where nothing is said, for loads and for depths."""
-    usual = np.inf if part.control == "D" else 0.0
-    return np.where(np.isnan(part.k_machine), usual, part.k_machine)
 
 
 def _asked(part, curve, pulls):

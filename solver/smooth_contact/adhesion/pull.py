@@ -33,27 +33,6 @@ _WAVES = np.geomspace(1e-9, 30.0, 72)
 _NARROW = 1e-14
 
 
-class Held(NamedTuple):
-    """What holds the punches: of B cases whether the load counts alone, k = 0, and the compliance 1/k else."""
-
-    load: np.ndarray
-    compliance: np.ndarray
-
-    @classmethod
-    def by(cls, k):
-        """The stiffnesses k (B,), from 0 to infinite."""
-        with np.errstate(divide="ignore"):
-            return cls(k == 0, np.where(k == 0, 0.0, 1 / k))
-
-    def take(self, index):
-        return Held(self.load[index], self.compliance[index])
-
-    def of(self, P, D):
-        """Q, or its slope, of P and D, or their slopes."""
-        with np.errstate(invalid="ignore"):
-            return np.where(self.load, P, D + self.compliance * P)
-
-
 class Curve:
     """The states of B cases by the variable x of their radii; every state that was computed is kept."""
 

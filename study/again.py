@@ -62,10 +62,16 @@ class Again(NamedTuple):
         return cls(problem, numbers, scene, dims, shape)
 
 
-def refuse_without_stresses(again: Again, who: str) -> None:
-    """Raise StudyError where stresses of a contact are not computed yet, as in a stack of layers."""
-    problem = again.problem
-    if reason := without_stresses(problem.base, problem.micro, problem.shape, problem.w_adhesion):
+def no_stresses(again: Again, *, largest: bool = True) -> str:
+    """Why some contacts have no stresses, or no `largest` ones; "" where all have them."""
+    values = (getattr(again.problem, name) for name in ("base", "micro", "shape", "w_adhesion", "adhesion"))
+    return without_stresses(*values, largest=largest)
+
+
+def refuse_without_stresses(again: Again, who: str, *, largest: bool = True) -> None:
+    """Raise StudyError where stresses of a contact, or the `largest` ones, are not computed: in a stack of layers, at
+    an edge where they are infinite."""
+    if reason := no_stresses(again, largest=largest):
         raise StudyError([f"{who}: {reason}"])
 
 

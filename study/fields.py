@@ -63,7 +63,7 @@ def stresses(
     xarray.Dataset : over the dimensions of the contact, `r` and `z`: sr, st, sz, trz, ur, uz, the principal stresses
         s1, s2, s3, mises, tresca; NAME_above and NAME_below at the interface, in the layer and in the body; and
         `stress_error`, of any stress relative to the largest. NaN of cases that have not converged, in a rigid body,
-        and at an interface that is not there
+        and at an interface that is not there. At the edge of a flat punch and of what sticks they are infinite
 
     Raises
     ------
@@ -80,7 +80,7 @@ def stresses(
     r = _axis("r", _mirrored(_RADII) if r is None and mu > 0 else _RADII if r is None else r, mu > 0)
     z = _axis("z", _DEPTHS if z is None else z, False)
     again = Again.of(contact, "stresses")
-    refuse_without_stresses(again, "stresses")
+    refuse_without_stresses(again, "stresses", largest=False)
     unit, size = units_of(again)
     solution = _solved(again, contact)
     fields = fields_of(again.problem, solution, np.abs(r), z, mu)

@@ -12,12 +12,11 @@ from solver import Problem, solve
 from solver.yields import spots
 from solver.yields.contact import of_contacts
 
-from ..again import Again, of_all_cases, strengths
+from ..again import Again, no_stresses, of_all_cases, strengths
 from ..arrays import xarray_later as xr
 from ..data.dataset import flag_words
 from ..inputs.definition import StudyError
 from ..inputs.punch.shapes import ROUND
-from ..inputs.punch.stresses import without_stresses
 from ..inputs.vocabulary import BODIES
 from ..specimen import materials
 from ..specimen.quantities import readable
@@ -70,7 +69,7 @@ def holds(case: xr.Dataset) -> list[str]:
     if not (hard or np.isfinite(list(known.values())).any()):
         return []
     problem = again.problem
-    if reason := without_stresses(problem.base, problem.micro, problem.shape, problem.w_adhesion):
+    if reason := no_stresses(again):
         return [f"Not known: {reason}."]
     if problem.shape[0] not in ROUND:
         return [_SHAPE]

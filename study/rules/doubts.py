@@ -58,7 +58,8 @@ def metals_yield(v):
     if not ("p_peak" in v and (v["p_peak"] > YIELD * least).any()):
         return []
     v = {name: as_xarray(variable) for name, variable in v.items()}
-    v["p_peak"] = v["p_peak"].where(np.isfinite(v["p_peak"]))  # infinite at an edge or a tip: the shape says it
+    # infinite at an edge or a tip: the shape says it
+    v |= {name: v[name].where(np.isfinite(v[name])) for name in ("p_peak", "p_ring") if name in v}
     moduli = {body: as_xarray(E) for body, E in moduli.items()}
     moduli = {body: E.where((E >= STIFF) & np.isfinite(E)) for body, E in moduli.items()}
     bare = v["base"] == "half_space"

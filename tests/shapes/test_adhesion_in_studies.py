@@ -100,9 +100,16 @@ def test_a_refusal_says_what_the_asperities_may_pull():
         study.solve(**rough, P="1 nN", w_adhesion="1 mJ/m^2")
 
 
-def test_there_are_no_stresses_of_what_sticks():
-    with pytest.raises(study.StudyError, match="no stresses of contacts that stick"):
-        study.extremes(study.solve(P=1e-5, w_adhesion=1e-7, **ALONE))
+def test_stresses_of_what_sticks():
+    """Under the centre of the surface sz is -p(0); at the edge it pulls without limit, and dmt attracts outside."""
+    contact = study.solve(P=[1e-5, -1e-7], w_adhesion=1e-7, **ALONE)
+    sz = study.stresses(contact, r=[0.0, 1.0], z=[0.0]).sz.squeeze("z")
+    assert_allclose(sz.sel(r=0.0), -contact.p0, rtol=1e-9)
+    assert np.all(sz.sel(r=1.0) == np.inf)
+    with pytest.raises(study.StudyError, match="extremes: there are no largest stresses .* where the surfaces stick"):
+        study.extremes(contact)
+    with pytest.raises(study.StudyError, match='no stresses of contacts that stick yet, but by adhesion = "jkr"'):
+        study.stresses(study.solve(P=1e-5, w_adhesion=1e-7, adhesion="dmt", **ALONE))
 
 
 def test_a_results_file_has_what_is_true_and_false(tmp_path, monkeypatch):

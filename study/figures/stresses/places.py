@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from ...again import Again, strengths
+from ...again import Again, refuse_without_stresses, strengths
 from ...data.dataset import decode
 from ...fields import extremes, stresses
 from ...in_words.inputs import is_rigid
@@ -52,6 +52,7 @@ class Stresses(NamedTuple):
 def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tuple[xr.Dataset, Stresses]:
     """The contact without dimensions, and its stresses. Raises StudyError for several contacts, or one not solved."""
     contact = _one(contact)
+    refuse_without_stresses(Again.of(contact, "plot_stresses"), "plot_stresses")
     largest = extremes(contact, mu, sigma_res)
     bare, rigid = str(contact["base"].values) == "half_space", is_rigid(contact, "base")
     h = None if bare else float(contact["h"] / contact["a"])

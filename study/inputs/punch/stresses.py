@@ -8,16 +8,22 @@ from solver.shapes import PARABOLOID
 from ..laws import smooth_laws
 
 
-def without_stresses(base, micro, shape=PARABOLOID, w_adhesion=0.0) -> str:
-    """Why some of the cases have no stresses; "" where all have them. Values are texts and numbers, or arrays."""
-    rough = ~np.isin(micro, smooth_laws())
+def without_stresses(base, micro, shape=PARABOLOID, w_adhesion=0.0, adhesion="jkr", *, largest=False) -> str:
+    """Why some of the cases have no stresses, or no `largest` ones; "" where all have them. Values are texts and
+    numbers, or arrays."""
+    shape, sticks = np.asarray(shape), np.asarray(w_adhesion) > 0
+    rough, flat = ~np.isin(micro, smooth_laws()), shape == "flat"
     reasons = (
-        (np.isin(base, STACKED[1]), "in stacks of layers yet, but of one layer (base = layered)"),
-        (np.asarray(w_adhesion) > 0, "of contacts that stick (w_adhesion > 0) yet"),
+        (np.isin(base, STACKED[1]), "no stresses in stacks of layers yet, but of one layer (base = layered)"),
+        (sticks & (np.asarray(adhesion) != "jkr"), 'no stresses of contacts that stick yet, but by adhesion = "jkr"'),
         (
-            np.asarray(shape) == "flat",
-            "under a flat punch, at whose edge they are infinite, but under a rounded_flat one",
+            rough & (shape != PARABOLOID),
+            "no stresses under rough punches of this shape yet, but under smooth ones",
         ),
-        (rough & (np.asarray(shape) != PARABOLOID), "under rough punches of this shape yet, but under smooth ones"),
+        (
+            largest & (flat | sticks),
+            "no largest stresses under a flat punch, or where the surfaces stick: they are infinite at the edge; "
+            "study.stresses computes those inside, and a rounded_flat has finite ones",
+        ),
     )
-    return next((f"there are no stresses {text}" for where, text in reasons if np.any(where)), "")
+    return next((f"there are {text}" for where, text in reasons if np.any(where)), "")

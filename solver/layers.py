@@ -206,6 +206,8 @@ def fields_of(layer: Mapping, number: int) -> dict[str, Any]:
             if len(pair) != 2:
                 raise ValueError(f"{where}.{field} = {pair!r:.60}: of a graded layer must be [top, bottom]")
             fields[field], fields[f"{field}_bottom"] = pair
+        elif profile in profiles.GRADED and field in fields and field != "nu":
+            raise ValueError(f"{where}.{field} = {pair!r:.60}: of a graded layer must be [top, bottom]")
     return fields
 
 

@@ -86,7 +86,7 @@ def stresses(
     fields = fields_of(again.problem, solution, np.abs(r), z, mu)
     residual, bare = residual_stress(sigma_res, again) / unit, again.problem.base == "half_space"
     within = (z <= (again.problem.h / solution.a)[:, None]) & ~bare[:, None]
-    variables = {}
+    compressible, variables = np.where(bare, again.problem.nu2, again.problem.nu1) < 0.5, {}
     places = ("", "r", "z"), ("_above", "r"), ("_below", "r")
     for (end, *axes), field in zip(places, fields[:3], strict=True):
         field = in_plane(field, r < 0) if mu > 0 else field
@@ -94,6 +94,9 @@ def stresses(
         for name in ("sr", "st"):
             field[name] = field[name] + np.where(layer, residual[:, None, None] if not end else residual[:, None], 0.0)
         field |= invariants(*(field[name] for name in ("sr", "st", "sz", "trz")))._asdict()
+        tips = np.isneginf(field["sz"]) & np.expand_dims(compressible, tuple(range(1, field["sz"].ndim)))
+        for name in ("mises", "tresca"):  # a difference of infinite stresses
+            field[name] = np.where(tips, np.inf, field[name])
         for name, long_name in _LONG_NAMES.items():
             length = name.startswith("u")
             values = field[name] * ((size if length else 1) * (1 if length else unit))[(...,) + (None,) * len(axes)]

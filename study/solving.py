@@ -19,6 +19,7 @@ from .derivatives import sensitivities as derivatives_of
 from .in_words import FarOutside, doubts, falling, far_outside
 from .inputs.checks import unloading
 from .inputs.definition import POINTS, Definition, StudyError
+from .inputs.punch.stresses import none_in
 from .inputs.reading import from_call
 from .inputs.scene.hints import Parameters
 from .inputs.vocabulary import VOCABULARY
@@ -173,10 +174,15 @@ def solve(
     return found
 
 
-def solve_one(*, same_piece: bool = False, **parameters: Any) -> OneCase:
-    """One contact, as of :func:`solve`, without a dataset, and without warnings of what its summary says."""
+def solve_one(stresses: bool = False, /, *, same_piece: bool = False, **parameters: Any) -> OneCase:
+    """One contact, as of :func:`solve`, without a dataset, and without warnings of what its summary says.
+
+    stresses : whether these are wanted besides: a contact that has none is refused before it is solved
+    """
     begun = time.monotonic()
     definition = from_call(parameters, [], same_piece, {"title": "", "output": {"x": POINTS, "profiles": True}})
+    if stresses and (reason := none_in(definition.grid)):
+        raise StudyError([reason])
     if far := far_outside(definition):
         warnings.warn("\n".join(far), FarOutside, stacklevel=2)
     return OneCase(_solved_parts(definition, None, screen_of(None), begun))

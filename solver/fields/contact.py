@@ -19,7 +19,7 @@ from ..threads import one_blas_thread
 from . import normal, sliding
 from .field import integrals
 from .pressure import Pressure
-from .shaped import shaped_pressures
+from .shaped import corners, shaped_pressures
 from .waves import MISSED, THINNEST
 
 #: The pressure is solved again with at most this rtol, whatever that of the contact was.
@@ -73,8 +73,9 @@ def of_contacts(problem, solution, r, z, mu=0.0):
                 units = problem.E2[here[some], None, None], solution.a[here[some], None, None]
                 for name, values in field.items():
                     made[name][here[some]] = values * units[name.startswith("u")]
-        at_tip = np.isposinf(ended.p0)[:, None, None] & np.isin(np.arange(len(z) + 2), np.flatnonzero(z == 0))[:, None]
-        made["sz"][index] = np.where(at_tip & (r == 0), -np.inf, made["sz"][index])
+        on_surface = np.isin(np.arange(len(z) + 2), np.flatnonzero(z == 0))[:, None]
+        at_tip = on_surface & (r == corners(scaled, a)[:, None])[:, None]
+        made["sz"][index] = np.where(at_tip, -np.inf, made["sz"][index])
         infinite = np.isinf(made["sz"])
         for name in ("sr", "st"):
             made[name] = np.where(infinite, made["sz"], made[name])

@@ -15,13 +15,19 @@ class Invariants(NamedTuple):
     tresca: np.ndarray
 
 
+@np.errstate(invalid="ignore")  # stresses may be infinite: beneath a tip, at the edge of a flat punch
 def invariants(sr, st, sz, trz):
-    """:class:`Invariants` of the stresses; arrays of any shape. For sliding in the plane y = 0 trz is sxz."""
-    middle, radius = (sr + sz) / 2, np.hypot((sr - sz) / 2, trz)
+    """:class:`Invariants` of the stresses; arrays of any shape. For sliding in the plane y = 0 trz is sxz.
+
+    Where sr, st and sz are infinite alike s1, s2 and s3 are too, and the differences of which von Mises' and Tresca's
+    stress are made are NaN.
+    """
+    middle, radius = (sr + sz) / 2, np.hypot(np.where(sr == sz, 0.0, sr - sz) / 2, trz)
     s3, s2, s1 = np.sort(np.stack([middle - radius, middle + radius, st]), axis=0)
     return Invariants(s1, s2, s3, mises(sr, st, sz, trz), s1 - s3)
 
 
+@np.errstate(invalid="ignore")
 def mises(sr, st, sz, trz):
     """von Mises' stress of the stresses; arrays of any shape."""
     return np.sqrt(((sr - st) ** 2 + (st - sz) ** 2 + (sz - sr) ** 2) / 2 + 3 * trz * trz)

@@ -19,6 +19,8 @@ _WHOLE, _EACH = 64, 16
 _SHRINK, _TIMES, _TIP_TIMES = 0.4, 20, 30
 #: At a kink or a tip itself p may be infinite: it is taken at this part of the smallest panel beside it.
 _BESIDE = 0.1
+#: A slope jumps where this part of a radius changes it by this part of that at the edge.
+_APART, _JUMP = 1e-10, 1e-6
 #: Radii at which the polynomials are compared with the pressure.
 _LOOKED_AT = np.sin(np.pi / 2 * (np.arange(40) + 0.37) / 40)
 
@@ -38,6 +40,20 @@ def shaped_pressures(scaled, a, D):
             if len(rows):
                 mesh = mesh_of(_WHOLE) if even[rows[0]] else _panels(shape.take(rows), at[rows])
                 yield index[rows], *_on(mesh, shape.take(rows), response.take(rows), A[rows])
+
+
+def corners(scaled, a):
+    """Radius (B,) in a of where the slope of the shape jumps inside the contact, the innermost; 0 of a sharp tip, NaN
+    where there is none. The pressure of a smooth punch is infinite there, like a logarithm."""
+    at = np.full(len(scaled), np.nan)
+    for mask, _ in kinds_of(scaled):
+        index = np.flatnonzero(mask)
+        shape, kinks = shape_in(scaled.take(index)), shape_in(scaled.take(index)).kinks()
+        jumps = shape.slope(kinks * (1 + _APART)) - shape.slope(kinks * (1 - _APART))
+        sharp = (jumps > _JUMP * shape.slope(a[index, None])) & (kinks < a[index, None])
+        first = np.min(np.where(sharp, kinks, np.inf), axis=1, initial=np.inf) / a[index]
+        at[index] = np.where(shape.pointed, 0.0, np.where(np.isfinite(first), first, np.nan))
+    return at
 
 
 def _on(mesh, shape, response, A):

@@ -171,8 +171,9 @@ def _rows(word):
         raise ValueError(f"shape {word}: {message}") from None
     header = lines.pop(0)[1] if lines and not is_number(lines[0][1][0]) else []
     for number, line in lines:
-        if len(line) != 2 or not all(is_number(cell) for cell in line):
-            raise ValueError(f"shape {word}: line {number}: {', '.join(line)}: must be two numbers, r and f")
+        if len(line) != 2 or not all(is_number(cell) and np.isfinite(float(cell)) for cell in line):
+            wanted = "must be two numbers, r and f, with a comma between them"
+            raise ValueError(f"shape {word}: line {number}: {', '.join(line)}: {wanted}")
     if not 3 <= len(lines) <= _ROWS:
         raise ValueError(f"shape {word}: must have two columns, r and f, and 3 to {_ROWS} rows, not {len(lines)}")
     numbers, units = np.array([[float(cell) for cell in line] for _, line in lines]), _lengths(word, header)
@@ -182,8 +183,6 @@ def _rows(word):
 
 def _check(word, r, f, unit):
     """Raise ValueError for rows of no convex shape. r, f : as in the file; unit : that of f over that of r."""
-    if not np.all(np.isfinite(r)) or not np.all(np.isfinite(f)):
-        raise ValueError(f"shape {word}: a number is not finite")
     if r[0] != 0 or f[0] != 0:
         raise ValueError(f"shape {word}: r and f must be 0 in the first row, which is {r[0]:g}, {f[0]:g}")
     if (back := np.diff(r) <= 0).any():

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..fields.contact import are_infinite, bodies_of, have_fields, pressures
+from ..fields.shaped import corners
 from ..scaling import dimensionless
 from ..threads import one_blas_thread
 from .extremes import EXTREMES, coarsely, extremes
@@ -10,7 +11,8 @@ from .loaded import Loaded
 
 #: Cases whose coarse grids are in memory together: each has some 1,000 points and as many waves.
 _TOGETHER = 64
-#: Without a layer, and with one: stresses that are infinite below a sharp tip, as sz = -p and sr = -(1 + 2 nu) p/2.
+#: Without a layer, and with one: stresses that are infinite below a sharp tip or corner, as sz = -p and sr =
+#: -(1 + 2 nu) p/2 on the axis, sr = -p and st = -2 nu p at a ring.
 _OF_TIPS = {True: ("mises2", "tresca2"), False: ("mises1", "tresca1")}
 
 
@@ -34,14 +36,15 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
     if len(index):
         part, ended = problem.take(index), solution.take(index)
         scaled, a = dimensionless(part), ended.a / part.R
+        sharp = corners(scaled, a)
         for rows, pressure, _ in pressures(scaled, ended, a):
             nu = None if punch is None else punch[index[rows]]
             for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]], nu):
-                tips = np.isposinf(ended.p0[rows[some]]) & (_touched(loaded) < 0.5)
+                tips = np.isfinite(sharp[rows[some]]) & (_touched(loaded) < 0.5)
                 for name, values in (coarsely if coarse else extremes)(loaded, names).items():
                     values[0] *= problem.E2[index[rows[some]]]
                     if name in _OF_TIPS[loaded.bare]:
-                        values[:, tips] = [[np.inf], [0.0], [0.0]][: len(values)]
+                        values[0, tips], values[1, tips], values[2, tips] = np.inf, sharp[rows[some]][tips], 0.0
                     made[name][:, index[rows[some]]] = values
     return made
 

@@ -78,7 +78,9 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     contacts = contacts.squeeze([dim for dim, size in contacts.sizes.items() if size == 1 and dim not in (x, hue)])
     pair = xr.broadcast(contacts[x], contacts[y])
     if not np.logical_and(*(np.isfinite(array.values) for array in pair)).any():
-        raise StudyError([f"nothing to draw: no case has numbers for {x} and {y}; status says what became of each"])
+        infinite = [name for name, array in zip((x, y), pair, strict=True) if np.isinf(array.values).any()]
+        way_out = f"{infinite[0]} is infinite" if infinite else "status says what became of each"
+        raise StudyError([f"nothing to draw: no case has numbers for {x} and {y}; {way_out}"])
     if "validity" in contacts and not {*contacts["validity"].dims} <= {*pair[1].dims}:
         contacts = contacts.drop_vars("validity")
     dims = [dim for dim in pair[1].dims if pair[1].sizes[dim] > 1 or dim in (x, hue)]

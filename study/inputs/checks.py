@@ -7,6 +7,7 @@ import numpy as np
 
 from solver import Problem
 from solver.laws import LAWS, untried
+from solver.parameters import STACKED
 from solver.scaling import dimensionless, law_of
 
 from ..terminal import shown
@@ -33,6 +34,9 @@ def missing_everywhere(names: Collection[str], texts_of: Callable[[str], Iterabl
     messages = []
     if any(text in error for error in errors for text in ("is not a parameter", "is not a section", "layers")):
         return []
+    stacked = [word for word in STACKED[1] if word in texts_of("base")]
+    if stacked and "h" not in names and not any(name.startswith("layers.") and name.endswith(".h") for name in names):
+        return [f"layers are missing: base = {shown(stacked[0])} needs them"]
     neither = not {*FITTED} & {*names}  # then both are fitted, and one message is about both
     for name in PARAMETERS:
         parameter = VOCABULARY[name].parameter
@@ -48,8 +52,9 @@ def missing_everywhere(names: Collection[str], texts_of: Callable[[str], Iterabl
         elif users:
             either = f" or {parameter.instead}" * bool(parameter.instead)
             messages.append(f"{name}{either} is missing: {selector} = {users} needs it")
-    if messages and "micro = " in messages[-1] and "micro" not in names:
-        messages[-1] += ' (without asperities: micro = "smooth")'
+    sticks = ", which w_adhesion wants" * ("w_adhesion" in names)
+    if messages and "micro = " in messages[-1] and (sticks or "micro" not in names):
+        messages[-1] += f' (without asperities: micro = "smooth"{sticks})'
     return messages
 
 

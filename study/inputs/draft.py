@@ -1,5 +1,6 @@
 """A draft of a grid: it reads the inputs without units and collects all mistakes."""
 
+import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -21,6 +22,7 @@ from .punch import shapes, sticking
 from .request import Input, Request
 from .sample import sampled, values_of_axis
 from .scene.layers import beyond, layers_in
+from .scene.names import INFINITE
 from .vocabulary import PARAMETERS, VOCABULARY
 
 #: Inputs that are names of objects -> a function of their values that makes the objects known.
@@ -78,7 +80,12 @@ class Draft:
             except ValueError as error:
                 self.errors.append(f"{name}: {error}")
                 return np.empty(len(raw))
+        raw = shapes.as_written(raw) if name in shapes.WORDS else raw
+        endless = INFINITE.get(name, ())
+        raw = [math.inf if isinstance(value, str) and value.lower() in endless else value for value in raw]
         array = as_array(sticking.row_of(name, self.request.sections), raw, name, self.errors, gaps)
+        if len(self.errors) > before and len(raw) == 1:
+            self.errors[-1] += sticking.hint(name, raw[0], self.request.sections)
         if distinct and len(self.errors) == before:
             self.errors += equal_values(name, array.tolist())
         return array

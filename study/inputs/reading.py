@@ -16,11 +16,11 @@ from typing import Any
 from ..terminal import on_one_line, shown
 from .definition import LARGE, MOST_VALUES, Definition, StudyError, refusal, settings
 from .draft import Draft
-from .grid import along, usual_block
+from .grid import usual_block
 from .identity import digest_of, law_versions
 from .laws import results_of
 from .punch import sticking
-from .punch.stresses import without_stresses
+from .punch.stresses import none_in
 from .request import MOST_MESSAGES, Request
 from .scene.layers import axes_in
 from .vocabulary import NUMERICS, absent, suggest
@@ -41,8 +41,6 @@ _PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
 LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MOST_PARTS}}}")
 TABLE = re.compile(r"^[ \t]*+\[\[|\{", re.MULTILINE)
 
-#: Inputs that decide whether there are stresses.
-_STRESSED = ("base", "micro", "shape", "w_adhesion")
 #: A value that begins with a word or ±, or with a number and then a word or ±. The e of "1e-6" is no word.
 _NO_QUOTES = re.compile(r"=[\s\[{]*+(?:[-+.\d][-+.\deE_]*+\s*+)?(?:[^\W\d_]|±)")
 
@@ -99,7 +97,7 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
     errors += [] if errors else sticking.rough_and_sticking(grid, scene and scene.unit)
     inputs = () if errors or scene is None or not scene.spreads else inputs_of(scene, grid)
     title, x, profiles, dtype, stresses = settings(tables, errors)
-    if stresses and not errors and (reason := without_stresses(*(along(grid, name) for name in _STRESSED))):
+    if stresses and not errors and (reason := none_in(grid)):
         errors.append(f"[output] stresses = true: {reason}")
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:

@@ -179,7 +179,9 @@ def attributes(name: str, rigid: bool = False) -> dict:
 def allowed(parameter: Parameter) -> str:
     """What the values of a parameter must be, as the end of a message: "must be > 0"."""
     if parameter.choices:
-        return "must be one of " + ", ".join(f'"{choice}"' for choice in parameter.choices)
+        words = [f'"{choice}"' for choice in parameter.choices if not choice.startswith("table:")]
+        words += ['or "table:FILE.csv"'] * (parameter.choices[0] in ("paraboloid", "uniform", "disc_cell"))
+        return "must be one of " + ", ".join(words)
     low, high = parameter.interval[1:-1].split(", ")
     if high == "inf":
         return f"must be {'>' if parameter.interval[0] == '(' else '>='} {low}"
@@ -190,11 +192,10 @@ def allowed(parameter: Parameter) -> str:
 def check(parameter: Parameter, value) -> str:
     """What is wrong with one value of a parameter: "" or a text such as "must be > 0"."""
     if parameter.choices:
-        table = value.removeprefix("Table:") if isinstance(value, str) and value.endswith(".csv") else ""
-        hint = f'; a table of your own is "table:{table}"' * bool(table)
-        return "" if isinstance(value, str) and value in parameter.choices else allowed(parameter) + hint
-    if not finite(value) and not (parameter.interval.endswith("inf]") and value == math.inf):
-        return f"must be a finite number, {allowed(parameter).removeprefix('must be ')}"
+        return "" if isinstance(value, str) and value in parameter.choices else allowed(parameter)
+    endless = parameter.interval.endswith("inf]")
+    if not finite(value) and not (endless and value == math.inf):
+        return f"must be a finite number, {allowed(parameter).removeprefix('must be ')}" + ', or "rigid"' * endless
     if parameter.whole and value != int(value):
         return "must be a whole number"
     inside = are_within(parameter, float(value)).all()  # float: a Decimal may trap a comparison

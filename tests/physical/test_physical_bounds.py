@@ -13,6 +13,7 @@ pytest.importorskip("pint")
 GIVEN = {"R": "5 mm", "E1": "210 GPa", "nu1": 0.3, "E2": "210 GPa", "nu2": 0.3, "h": "2 um", "micro": "smooth"}
 #: 1e-24 and 1e3 E2* R², E2* = 210 GPa/0.91.
 LOADS = r"must be in \[5.769e-18, 5.769e\+09\] N, which is \[1e-24, 1e3\] E2\* R\^2, E2\* = 230.77 GPa and R = 5 mm"
+LOADS += "; a pull needs w_adhesion, the work of adhesion"
 LENGTHS = r"which is \[1e-12, 1e6\] R"
 
 
@@ -38,7 +39,7 @@ def refusal(**change) -> str:
         ({"Nbar": "-1 µm⁻²", "Ra": "1 um"}, r"^Nbar = -1 µm⁻²: must be in \[4e-12, 4e\+10\] 1/µm², which is"),
         ({"P": xr.DataArray([2.0, -1.0], dims="q", attrs={"units": "N"})}, rf"^P\[1\] = -1 N: {LOADS}$"),
         ({"P": "-1 N", "h": "-1 um"}, "(?s)^h = -1 um.*\nP = -1 N"),
-        ({"P": "-1 N", "E2": "rigid"}, r"which is \[1e-24, 1e3\] E1\* R\^2, E1\* = 230.77 GPa and R = 5 mm$"),
+        ({"P": "-1 N", "E2": "rigid"}, r"which is \[1e-24, 1e3\] E1\* R\^2, E1\* = 230.77 GPa and R = 5 mm; a pull"),
         ({"E1": "200 mPa"}, "^E1 = 0.2 Pa: ratio of .* layer and half-space: n = 9.524e-13: must be 0 or in"),
         ({"E_punch": "1e-9 Pa"}, r"^E_punch = 1e-09 Pa: ratio of .* layer and punch, 0: rigid: m = .*: must be in"),
     ],

@@ -85,13 +85,25 @@ def test_tension_inside():
         ({"w_adhesion": 1e-6, "adhesion": "dmt", "shape": "sphere"}, "is for shape = .paraboloid."),
         ({"w_adhesion": 0.0, "P": -1e-5}, "P must be > 0 where w_adhesion is 0"),
         ({"w_adhesion": 1e-6, "scheme": "picard"}, "picard"),
+        ({"w_adhesion": 1e-6, "adhesion": "dlvo"}, 'must be one of "jkr", "dmt", "maugis"'),
+        ({"w_adhesion": 1e-6, "k_machine": "soft"}, 'k_machine = "soft": must be a finite number, >= 0, or "rigid"'),
+        ({"w_adhesion": 1e-6, "micro": "disc_cell"}, 'micro = "smooth", which w_adhesion wants'),
+        ({"D": -1e-3, "P": None}, "a pull needs w_adhesion"),
         ({"w_adhesion": -1e-6}, r"w_adhesion = -1e-06: must be in \[0, 1e3\]"),
         ({"P": -1e-5}, r"must be in \[1e-24, 1e3\]"),
     ],
 )
 def test_what_is_refused(given, message):
     with pytest.raises(study.StudyError, match=message):
-        study.solve(**{"P": 1e-5} | ALONE | given)
+        call = {"P": 1e-5} | ALONE | given
+        study.solve(**{name: value for name, value in call.items() if value is not None})
+
+
+def test_words_are_read_as_people_write_them():
+    call = ALONE | {"P": 0.0, "w_adhesion": 1e-6}
+    plain = study.solve(**call, adhesion="jkr", branch="stable", k_machine=np.inf)
+    for words in ({"adhesion": "JKR"}, {"branch": " Stable", "k_machine": "rigid"}):
+        assert study.solve(**call, **{"k_machine": np.inf} | words).equals(plain)
 
 
 def test_a_refusal_says_what_the_asperities_may_pull():

@@ -113,7 +113,7 @@ def test_a_table_of_any_convex_profile(tmp_path):
         ("r,f\n0.1,0\n1,1\n2,3\n", "must be 0 in the first row"),
         ("r,f\n0,0\n1,1\n", "3 to 1000 rows"),
         ("r [um],f [parsec]\n0,0\n1,1\n2,3\n", "must name a length"),
-        ("r,f\n0,0\n1,nan\n2,3\n", "not finite"),
+        ("r,f\n0,0\n1,nan\n2,3\n", "line 3: 1, nan: must be two numbers"),
         ("r,f\n0,0\n1,x\n2,3\n", "line 3: 1, x: must be two numbers"),
     ],
 )

@@ -198,6 +198,30 @@ def test_stresses_of_a_smooth_shape_and_what_has_none():
         study.first_yield(Y2=0.01, shape="Berkovich", **ALONE)
 
 
+@pytest.mark.parametrize(
+    ("tip", "at"), [({"shape": "cone", "half_angle": 70}, 0.0), ({"shape": "frustum", "flat_radius": 0.1}, 0.5)]
+)
+@pytest.mark.filterwarnings("error")
+def test_stresses_are_infinite_at_a_tip_and_at_a_corner(tip, at):
+    """Where the slope of the profile jumps the pressure is like a logarithm: without a layer, and in the layer alone.
+    Of an incompressible body the normal stresses are infinite alike, and their differences finite."""
+    tip = {"half_angle": 70} | tip
+    for layer in (ALONE, {"h": 0.3, "n": 3.0, "bonding": "bonded", "micro": "smooth"}):
+        contact = study.solve(a=0.2, **tip, **layer)
+        names = [f"{kind}{2 if layer is ALONE else 1}" for kind in ("mises", "tresca")]
+        largest = study.extremes(contact)
+        assert all(np.isposinf(largest[name]) and largest[f"{name}_r"] == at for name in names)
+        assert layer is ALONE or np.isfinite(largest.mises2)
+        fields = study.stresses(contact, r=[at, 0.9], z=[0.0, 0.2])
+        assert all(np.isposinf(fields[name].values[0, 0]) for name in ("mises", "tresca"))
+        assert all(np.isneginf(fields[name].values[0, 0]) for name in ("s1", "s2", "s3", "sz"))
+        assert np.isfinite(fields.mises.values[1:]).all() and np.isfinite(fields.s1.values[1:]).all()
+    title = study.plot_stresses(contact).axes[0].get_title(loc="left")
+    assert title.startswith("(a) layer: infinite at the cross")
+    rubber = study.extremes(study.solve(a=0.2, nu2=0.5, **tip, **ALONE))
+    assert np.isfinite(rubber.mises2)
+
+
 def test_fits_and_designs_take_shapes():
     """What was computed with 5 kPa is fitted as 5 kPa: tables of two unknowns are right to 5e-6 of P."""
     gel = {"body": "rigid", "nu1": 0.49, "h": "5 um", "bonding": "bonded", "micro": "smooth", "punch": "rigid"}

@@ -242,7 +242,13 @@ BAD = {
     "layered": ({"layers": PURE, "base": "layered"}, 'base = "layered" has one layer'),
     "three moduli": ({"layers": [PURE[0] | {"n": [1, 2, 3], "profile": "linear"}]}, "must be [top, bottom]"),
     "a profile": ({"layers": [PURE[0] | {"profile": "cubic"}]}, "must be one of"),
-    "nothing": ({"base": "stack"}, "is missing"),
+    "one modulus": ({"layers": [PURE[0] | {"profile": "linear"}]}, "layers.1.n = 2.0: of a graded layer must be [top"),
+    "no file": ({"layers": [{"h": 0.1, "profile": "table:no.csv"}]}, "layers.1: profile table:no.csv: cannot be read"),
+    "a table": ({"layers": [PURE[0] | {"profile": "cubic"}]}, 'or "table:FILE.csv"'),
+    "no layers": ({"layers": {}}, "layers = {}: must be a list of layers"),
+    "from 0": ({"layers": PURE, "layers.0.h": 0.1}, "layers count from 1 at the surface"),
+    "a ratio on a rigid base": ({"rigid_base": True, "h": 0.1, "n": 0.5}, "layers.1.n = 0.5: on a rigid base n is"),
+    "nothing": ({"base": "stack"}, 'layers are missing: base = "stack" needs them'),
     "a tuple": ({"layer": ("DLC a-C:H", "CrN"), "h": "1 um", **BALL}, "is a tuple: a list is an axis"),
 }
 

@@ -56,7 +56,7 @@ def plot_stresses(contact: xr.Dataset, mu: float = 0.0, sigma_res: float | str =
 def drawn(contact: xr.Dataset, mu: float, sigma_res: float | str, new: Callable[..., Figure]) -> Figure:
     """The figure of `plot_stresses`. `new` makes an empty figure."""
     contact, shown = of_one_contact(contact, mu, sigma_res)
-    largest = {name: float(shown.largest[NAMES[name]]) for name in NAMES if getattr(shown, name)}
+    largest = {name: _shown_most(shown, name) for name in NAMES if getattr(shown, name)}
     lines = {"surface": shown.surface} | ({"interface": shown.interface} if shown.interface else {})
     figure = new(figsize=(TWO_COLUMNS, 3.0 if len(lines) == 1 else 5.0), layout="constrained")
     left, right = figure.add_gridspec(1, 2, width_ratios=(1.2, 1))
@@ -65,7 +65,8 @@ def drawn(contact: xr.Dataset, mu: float, sigma_res: float | str, new: Callable[
     curves = right.subgridspec(len(lines), 1).subplots(sharex=True, squeeze=False)[:, 0]
     _draw_sections(sections, contact, shown, largest)
     for axes, (name, values) in zip(curves, lines.items(), strict=True):
-        units = Units.of(contact, max(np.abs(stress).max() for stress in values.values()), mu > 0)
+        finite = [np.abs(stress[np.isfinite(stress)]).max() for stress in values.values()]
+        units = Units.of(contact, max(finite), mu > 0)
         along(axes, name, values, shown, units)
     for letter, axes in zip("abcd", (*sections, *curves), strict=False):
         axes.set_title(f"({letter}) {axes.get_title(loc='left')}", loc="left", fontsize=8)
@@ -78,6 +79,12 @@ def drawn(contact: xr.Dataset, mu: float, sigma_res: float | str, new: Callable[
     return figure
 
 
+def _shown_most(shown: Stresses, name: str) -> float:
+    """The largest von Mises stress of the layer or the body, or of the section where it is infinite."""
+    largest = float(shown.largest[NAMES[name]])
+    return largest if np.isfinite(largest) else float(getattr(shown, name).mises.max())
+
+
 def _draw_sections(panels, contact: xr.Dataset, shown: Stresses, largest: dict[str, float]) -> None:
     """Layer and body, with one scale of colours or with two. largest : von Mises stress of each"""
     top = max(largest.values())
@@ -86,10 +93,11 @@ def _draw_sections(panels, contact: xr.Dataset, shown: Stresses, largest: dict[s
         region, Y = getattr(shown, name), shown.Y[name]
         units = Units.of(contact, top if one_scale else own_top, shown.r[0] < 0)
         filled = section(axes, region, top if one_scale else own_top, _BOTH if one_scale else _MAPS[name], units)
-        said = [f"{name}: largest {units.text(own_top)}"]
+        limit = f"largest {units.text(own_top)}" if np.isfinite(shown.largest[NAMES[name]]) else "infinite at the cross"
+        said = [f"{name}: {limit}"]
         if np.isfinite(Y):
             said.append(f"yields at {Units.of(contact, Y, units.sliding).text(Y)}")
-        if own_top > Y:
+        if shown.largest[NAMES[name]] > Y:
             outline(axes, region, Y, units)
         if name == "layer" and region.z[-1] < shown.h:
             said.append(f"interface at $z$ = {shown.h:.3g}$\\,a$")

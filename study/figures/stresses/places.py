@@ -63,6 +63,7 @@ def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tu
     inside = within[:-1] if whole else within  # the interface is on neither side
     fields = stresses(contact, r, np.concatenate([inside, below[1:] if h else below]), mu, sigma_res)
     mises = fields["mises"].values.T
+    mises = np.where(np.isfinite(mises), mises, mises[np.isfinite(mises)].max())  # at a sharp tip it is infinite
     above, under = (fields[f"mises_{side}"].values[None] for side in ("above", "below"))
     layer = np.concatenate([mises[: len(inside)], *([above] if whole else [])])
     body = np.concatenate([*([under] if h else []), mises[len(inside) :]])

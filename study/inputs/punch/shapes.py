@@ -13,6 +13,8 @@ from ...terminal import shown
 from ..grid import Grid, along
 from ..vocabulary import PARAMETERS, VOCABULARY, Entry, cases_with
 
+#: Inputs besides the shape that are words, of which capitals, blanks and hyphens do not matter.
+WORDS = ("tip", "adhesion", "branch")
 #: Bases that take the paraboloid alone, and nothing that sticks.
 THIN = ("thin_layer", "thin_stack")
 #: Angles of the punch: numbers of degrees.
@@ -43,7 +45,7 @@ def words_of(values: list) -> list:
 
     Raises ValueError for a table that cannot be used.
     """
-    words = [_plain(value) if isinstance(value, str) else value for value in values]
+    words = as_written(values)
     for word in {word for word in words if isinstance(word, str) and word.startswith(table.PREFIX)}:
         table.TABLES.pop(word, None)  # the file may have changed
         shapes.SHAPES.pop(word, None)
@@ -55,9 +57,16 @@ def words_of(values: list) -> list:
     return words
 
 
+def as_written(values: list) -> list:
+    """The values; words of them as the solver writes them: "jkr" of "JKR", "cube_corner" of "Cube corner"."""
+    return [_plain(value) if isinstance(value, str) else value for value in values]
+
+
 def _plain(word: str) -> str:
     """A word in small letters with "_" for gaps; the path of a table as it is."""
-    return word if word.startswith(table.PREFIX) else word.strip().lower().replace(" ", "_").replace("-", "_")
+    if word.lower().startswith(table.PREFIX):
+        return table.PREFIX + word[len(table.PREFIX) :]
+    return word.strip().lower().replace(" ", "_").replace("-", "_")
 
 
 def in_degrees(name: str, values: Any) -> Any:

@@ -11,7 +11,7 @@ from ...specimen.quantities import readable
 from ...terminal import shown
 from ..grid import Grid, along
 from ..laws import smooth_laws
-from ..vocabulary import VOCABULARY, names
+from ..vocabulary import VOCABULARY, finite, names
 from .shapes import THIN
 
 OF_ADHESION = names("adhesion")
@@ -26,6 +26,12 @@ def row_of(name: str, sections: Any) -> Parameter:
     """The row of a parameter in a call that gives `sections`: under adhesion load and depth may be 0 and negative."""
     row = VOCABULARY[name].parameter
     return row._replace(interval=_PULLED) if name in ("P", "D") and "w_adhesion" in sections else row
+
+
+def hint(name: str, value: Any, sections: Any) -> str:
+    """The end of a message about a load or depth that only a punch that sticks has; "" for others."""
+    pulls = name in ("P", "D") and "w_adhesion" not in sections and finite(value) and value <= 0
+    return "; a pull needs w_adhesion, the work of adhesion" * pulls
 
 
 def left_out(name: str, sections: Any) -> bool:
@@ -62,8 +68,6 @@ def mistakes(grid: Grid, sections: Any) -> list[str]:
         messages.append('base = "thin_layer" does not stick: w_adhesion > 0 needs base = "layered", or "auto"')
     if (maugis & (values("shape") == "flat")).any():
         messages.append('adhesion = "maugis" does not go with shape = "flat", whose edge is held: take "jkr"')
-    if (sticks & (values("scheme") == "picard")).any():
-        messages.append('scheme = "picard" is for asperities, and adhesion for smooth punches: leave the scheme out')
     return messages
 
 

@@ -5,7 +5,11 @@ import numpy as np
 from solver.parameters import STACKED
 from solver.shapes import PARABOLOID
 
+from ..grid import Grid, along
 from ..laws import smooth_laws
+
+#: Inputs that decide whether there are stresses.
+_DECIDE = ("base", "micro", "shape", "w_adhesion", "adhesion")
 
 
 def without_stresses(base, micro, shape=PARABOLOID, w_adhesion=0.0, adhesion="jkr", *, largest=False) -> str:
@@ -27,3 +31,8 @@ def without_stresses(base, micro, shape=PARABOLOID, w_adhesion=0.0, adhesion="jk
         ),
     )
     return next((f"there are {text}" for where, text in reasons if np.any(where)), "")
+
+
+def none_in(grid: Grid, *, largest: bool = True) -> str:
+    """The same of the cases of a grid."""
+    return without_stresses(*(along(grid, name) for name in _DECIDE), largest=largest)

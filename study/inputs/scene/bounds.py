@@ -12,7 +12,7 @@ from solver.parameters import ends
 from ...arrays import xarray_later as xr
 from ...specimen.quantities import multiple, quantity, readable, unit_in
 from ...terminal import on_one_line
-from ..punch.sticking import row_of
+from ..punch.sticking import hint, row_of
 from ..request import Input
 from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY, allowed
 from .scales import with_unit
@@ -69,7 +69,7 @@ def _message(scene: Scene, entry: Input, place: Place) -> str:
     units = ((modulus, readable(unit, "Pa")), ("R", readable(R, "m")))
     here = " and ".join(f"{symbol} = {text}" for symbol, text in units if symbol in scale)
     bounds = f"{allowed(parameter._replace(interval=interval))} {word}, which is {parameter.interval} {scale}, {here}"
-    return f"{label} = {on_one_line(str(text))}: {bounds}"
+    return f"{label} = {on_one_line(str(text))}: {bounds}{hint(name, _at(value, place), scene.values)}"
 
 
 def _written(entry: Input, index: list[int], value: float, unit: str) -> tuple[Any, str, float]:

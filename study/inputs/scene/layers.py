@@ -112,7 +112,7 @@ def flattened(table: dict, errors: list[str], rows: Any = (), elsewhere: Any = (
         others = {name: value for name, value in others.items() if name not in beside}
         stack = _of_list(table["layers"], errors)
     stack |= {_short(name): value for name, value in named.items()}
-    stack = _on_base(stack, table.get(RIGID, False), others, errors)
+    stack = _on_base(stack, table.get(RIGID, False), others | dict.fromkeys(elsewhere), errors)
     stack = {name: value for name, value in stack.items() if name not in elsewhere}
     count = max(layers.numbers_of((*stack, *elsewhere)), 1)
     if count > layers.MOST:
@@ -121,7 +121,7 @@ def flattened(table: dict, errors: list[str], rows: Any = (), elsewhere: Any = (
     try:
         layers.read_tables(stack)
     except ValueError as error:
-        errors.append(str(error))
+        errors.append(f"layers: {error}")
     layers.register(count)
     declare()
     return _with_base(others, errors, rows or []) | stack | {"sublayers": others.get("sublayers", 0)}
@@ -165,7 +165,7 @@ def _is_of_layers(name: Any) -> bool:
 def _dotted(table: dict) -> dict:
     """`layers.2.h` of TOML, a table of tables, as one name."""
     nested = table.get("layers")
-    if not isinstance(nested, Mapping):
+    if not isinstance(nested, Mapping) or not nested:
         return table
     flat = {name: value for name, value in table.items() if name != "layers"}
     for number, fields in nested.items():
@@ -194,7 +194,7 @@ def _of_list(stack: Any, errors: list[str]) -> dict:
         try:
             fields = layers.fields_of(layer, number)
         except ValueError as error:
-            errors.append(str(error))
+            errors.append(str(error) if str(error).startswith("layers") else f"layers.{number}: {error}")
             continue
         for field, value in fields.items():
             name = f"layers.{number}.{field}"
@@ -215,8 +215,9 @@ def _on_base(stack: dict, rigid: Any, others: dict, errors: list[str]) -> dict:
     if "E2" in others or "body" in others:
         errors.append(f'{RIGID} is for studies without units: give E2 = "rigid"')
         return stack
-    if stack.get("n", 1) not in (1, "1"):
-        errors.append(f"layers.1.n = {shown(stack['n'])}: on a rigid base n is E_j*/E1*, and that of the first layer 1")
+    n = (others | stack).get("n", 1)
+    if not isinstance(n, (int, float)) or n != 1:
+        errors.append(f"layers.1.n = {shown(n)}: on a rigid base n is E_j*/E1*, and that of the first layer 1")
     return stack | {"n": 0.0}
 
 

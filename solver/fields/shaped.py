@@ -20,7 +20,7 @@ _SHRINK, _TIMES, _TIP_TIMES = 0.4, 20, 30
 #: At a kink or a tip itself p may be infinite: it is taken at this part of the smallest panel beside it.
 _BESIDE = 0.1
 #: A slope jumps where this part of a radius changes it by this part of that at the edge.
-_APART, _JUMP = 1e-10, 1e-6
+_APART, _JUMP = 1e-14, 1e-3
 #: Radii at which the polynomials are compared with the pressure.
 _LOOKED_AT = np.sin(np.pi / 2 * (np.arange(40) + 0.37) / 40)
 

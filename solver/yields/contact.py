@@ -5,10 +5,13 @@ import numpy as np
 from ..fields.contact import are_infinite, bodies_of, have_fields, pressures
 from ..fields.shaped import corners
 from ..scaling import dimensionless
+from ..shapes import shaped
 from ..threads import one_blas_thread
 from .extremes import EXTREMES, coarsely, extremes
 from .loaded import Loaded
 
+#: A pressure that is largest at a radius of sqrt(1 - s²) is so in a ring that coarse grids do not see, if s is less.
+_AT_THE_EDGE = 0.5
 #: Cases whose coarse grids are in memory together: each has some 1,000 points and as many waves.
 _TOGETHER = 64
 #: Without a layer, and with one: stresses that are infinite below a sharp tip or corner, as sz = -p and sr =
@@ -66,4 +69,11 @@ def alike(scaled, a, pressure, mu, residual, punch=None):
         for some in np.array_split(index, -(-len(index) // _TOGETHER)):
             own = scaled.take(some) if punch is None else scaled.take(some).but(nu2=punch[some])
             layers, part = bodies_of(own, bare[some[0]]), pressure.take(some)
-            yield some, Loaded(layers, h[some], part, bool(bare[some[0]]), mu, residual[some])
+            ring = _ring(part) if len(some) == 1 and shaped(own)[0] else 0.0
+            yield some, Loaded(layers, h[some], part, bool(bare[some[0]]), mu, residual[some], ring)
+
+
+def _ring(pressure):
+    """How far inside the edge the pressure of one case is largest; 0 where it is not next to the edge."""
+    s = pressure.mesh.s[np.argmax(pressure.values[0])]
+    return s**2 / (1 + np.sqrt((1 - s) * (1 + s))) if s < _AT_THE_EDGE else 0.0

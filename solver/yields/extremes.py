@@ -42,6 +42,8 @@ _BEYOND = np.array([0.25, 0.5, 1, 1.5, 2, 3, 4.5, 6.5])
 _DEPTHS = np.array([0.06, 0.12, 0.2, 0.3, 0.4, 0.48, 0.6, 0.8, 1.1])
 _OF_OCTAVE = np.array([0.25, 0.4, 0.55, 0.7, 0.85, 1, 1.2, 1.4, 1.6])
 _BELOW = np.array([0, 0.05, 0.15, 0.3, 0.48, 0.65, 0.9, 1.3])
+#: And where the pressure is largest in a ring: how far inside the edge and how deep below it, in its own distance.
+_OF_RING, _BELOW_RING = np.array([-1, -0.4, 0, 0.3, 0.6, 1, 1.5, 2.2]), np.array([0.25, 0.5, 0.8, 1.2, 1.8, 2.7, 4, 6])
 #: No place is farther away than this, in a + h.
 _FARTHEST = 10.0
 
@@ -122,18 +124,21 @@ def regions(loaded):
     bending = 0.5 if loaded.bare else octave * max(1.0, np.cbrt(loaded.layers.n.max()))
     beyond = np.minimum(1 + bending * _BEYOND, far)
     thick = [] if loaded.bare else octave * np.array([0.25, 0.5, 0.75, 1]) * (octave > 1)
-    radii = np.unique(np.concatenate([_RADII, beyond[:5], thick]))
-    wide = np.unique(np.concatenate([_RADII, beyond, thick]))
+    ring, deep = (np.unique(loaded.ring * values) for values in (_OF_RING, _BELOW_RING))
+    radii = np.unique(np.concatenate([_RADII, beyond[:5], thick, 1 - ring]))
+    wide = np.unique(np.concatenate([_RADII, beyond, thick, 1 - ring]))
     surface = np.zeros((B, 1))
-    inner, outer = np.linspace(0, 1, 12), -np.sqrt(wide[wide >= 1] ** 2 - 1)[::-1]
+    inner = np.unique(np.concatenate([np.linspace(0, 1, 12), np.sqrt(np.maximum(ring * (2 - ring), 0.0))]))
+    outer = -np.sqrt(wide[wide >= 1] ** 2 - 1)[::-1]
     made = {
         "inside": Grid(inner, surface, (0.0, 1.0), np.zeros((B, 2)), loaded.bare, True),
         "outside": Grid(outer, surface, (-far, 0.0), np.zeros((B, 2)), loaded.bare, True),
     }
     if loaded.bare:
-        depths = np.tile(np.append(_DEPTHS, [1.5, 2.5]), (B, 1))
+        depths = np.tile(np.unique(np.concatenate([_DEPTHS, [1.5, 2.5], deep[deep > 0]])), (B, 1))
         return made | {"body": Grid(radii, depths, (0.0, far), np.tile([0.0, far], (B, 1)), True)}
-    depths = np.unique(np.concatenate([_DEPTHS[2 * octave > _DEPTHS], octave * _OF_OCTAVE]))
+    near = np.concatenate([_DEPTHS, deep[deep > 0]])
+    depths = np.unique(np.concatenate([near[2 * octave > near], octave * _OF_OCTAVE]))
     made["layer"] = Grid(radii, np.tile(depths, (B, 1)), (0.0, far), np.stack([0 * h, h], axis=1), False)
     made["above"] = Grid(wide, h[:, None], (0.0, far), np.stack([h, h], axis=1), False)
     if np.all(loaded.layers.n > 0):

@@ -13,17 +13,17 @@ from ..solve import solve
 from . import spots
 from .contact import of_contacts
 from .crossing import NUMBERS, first_crossing
+from .way import NARROWEST, ROUND, WIDEST, way_of
 
 #: No body yields where (a/R) E*/strength is below _NEVER, E* the larger of layer and body; sliding adds so much.
 _NEVER, _BY_FRICTION = 0.3, 4.0
 #: No asperity yields where (a/R) E/strength is below this times sqrt(Ra/R), for p0s < 0.46 E a/sqrt(R Ra).
 _NO_SPOT = 0.7
-#: Radii in R that are looked at.
-NARROWEST, WIDEST = 1e-8, 0.2
 
 
 def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slopes=False):
-    """:class:`~.crossing.Crossing` of the "layer", the "body", the "punch" or the "asperities"; `at` is a/R.
+    """:class:`~.crossing.Crossing` of the "layer", the "body", the "punch" or the "asperities"; `at` is a/R, less the
+    radius of a flat end. Under a sharp tip or corner what is touched yields under any load: all is 0.
 
     problem : B cases, whatever controls them
     strength : (B,), yield strength by von Mises, in the unit of E2; NaN: nothing is looked for
@@ -37,9 +37,11 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slope
     if body == "asperities":
         problem = problem.but(micro=np.where(problem.micro == "elastic_plastic", "disc_cell", problem.micro))
     at_radius = replace(problem, control="a", value=problem.R)
+    left = strength - np.where(problem.base == "half_space", 0.0, np.abs(residual))
+    way = way_of(problem, left / problem.E2, mu, _touched(problem, body, punch))
 
-    def stress(index, radius, coarse):
-        part = replace(at_radius.take(index), value=radius * problem.R[index])
+    def stress(index, at, coarse):
+        part = replace(at_radius.take(index), value=(way.flat[index] + at) * problem.R[index])
         solution = solve(part)
         if body == "asperities":
             value, r, z = spots.of_contacts(part, solution, mu, residual[index])
@@ -48,15 +50,23 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slope
             value, r, z = of_contacts(part, solution, mu, residual[index], (name,), nu, coarse)[name]
         return value / strength[index], r, z, solution
 
-    left = strength - np.where(problem.base == "half_space", 0.0, np.abs(residual))
-    start = _start(problem, body, left / problem.E2, mu)
-    start = np.where(left > 0, np.maximum(start, NARROWEST), np.nan)
-    made = first_crossing(stress, start, np.full(len(left), WIDEST), slopes)
-    rest = left <= 0  # the residual stress alone is as large as the strength
+    start, round_ = _start(problem, body, left / problem.E2, mu), np.isin(problem.shape, ROUND)
+    start = np.where(round_, np.maximum(start, NARROWEST), np.where(way.sharp, np.nan, way.start))
+    made = first_crossing(stress, np.where(left > 0, start, np.nan), np.where(round_, WIDEST, way.last), slopes)
+    # the residual stress alone is as large as the strength, or there is a tip or corner below which it is infinite
+    rest = (left <= 0) | way.sharp & (left > 0)
     made.crossed[rest], made.at[rest] = True, 0.0
     for number in NUMBERS:
-        made.numbers[number][rest] = 0.0
+        made.numbers[number][rest] = way.flat[rest] * problem.R[rest] if number == "a" else 0.0
     return made
+
+
+def _touched(problem, body, punch):
+    """(B,) bool: the punch touches the body, which is not incompressible; or it is the punch itself."""
+    bare = problem.base == "half_space"
+    if body == "punch":
+        return punch < 0.5
+    return np.where(bare, (body == "body") & (problem.nu2 < 0.5), (body == "layer") & (problem.nu1 < 0.5))
 
 
 def _start(problem, body, strength, mu):

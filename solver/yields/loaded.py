@@ -20,6 +20,7 @@ class Loaded(NamedTuple):
     pressure : :class:`~solver.fields.pressure.Pressure`
     bare : bool, without a layer
     mu : >= 0, friction; residual : (B,), the residual stress of the layer, in units of the pressure
+    ring : how far inside the edge the pressure is largest in a narrow ring, as next to a flat end, in a; 0: it is not
     """
 
     layers: TwoLayers
@@ -28,6 +29,7 @@ class Loaded(NamedTuple):
     bare: bool
     mu: float
     residual: np.ndarray
+    ring: float = 0.0
 
     @property
     def signs(self):

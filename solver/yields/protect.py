@@ -43,7 +43,7 @@ def protection(problem, strength, mu=0.0):
     bare, _, _, alone = largest(problem.but(base="half_space"), slice(None), False)
     thick = _THICK * (1 + mu) * np.sqrt(problem.value / strength)
     thin = np.clip(_THIN / problem.n, _THINNEST, _THICKEST) * alone.a
-    some = np.isfinite(bare) & (thin < thick)
+    some = ~np.isnan(bare) & (thin < thick)  # infinite under a sharp tip, until there is a layer
 
     def thinner(index, at, coarse):
         return largest(problem.take(index).but(h=thick[index] / at), index, coarse)
@@ -55,5 +55,5 @@ def protection(problem, strength, mu=0.0):
     safe = down.crossed & (bare < 1)
     up = first_crossing(thicker, np.where(safe, 1.0, np.nan), thick / thin) if safe.any() else Crossing.none(len(bare))
     never = ~down.crossed & ~down.unsolved & (bare < 1)
-    unsolved = down.unsolved | up.unsolved | ~np.isfinite(bare)
+    unsolved = down.unsolved | up.unsolved | np.isnan(bare)
     return Protection(np.where(never, 0.0, thick / down.at), thin * up.at, unsolved)

@@ -34,7 +34,7 @@ _FAR = 0.01
 #: Nothing is said of contacts wider than this, in R.
 _WIDEST = 0.2
 _THROUGH = "The layer is thin against the pitch: single spots press on the body through it, which is left out."
-_SHAPE = "Not looked at under this shape: study.extremes computes the stresses."
+_SHAPE = "Not looked at under this shape: study.extremes computes the stresses, study.first_yield the loads."
 _FILM = "The layer is so thin (h < 0.002 a) that its stresses take long: study.extremes computes them"
 
 

@@ -8,24 +8,25 @@ import xarray as xr
 
 from solver.yields.crossing import NUMBERS, Crossing
 from solver.yields.first import first_yield as crossing_of
+from solver.yields.way import ROUND, STEEPEST
 
 from ..again import Again, of_all_cases, refuse_without_stresses, strengths
 from ..fields import carried, friction, residual_stress, units_of
 from ..in_words import FarOutside
 from ..inputs.definition import StudyError
-from ..inputs.punch.shapes import ROUND
 from ..inputs.request import Request
 from ..inputs.vocabulary import CONTROLS
 from ..solving import solve
 from ..specimen.materials import Material
-from ..terminal import shown
 
 BODIES = {"layer": "_Y1", "body": "_Y2", "asperities": "_Ya", "punch": "_Y_punch"}
 """What may yield, in the order of the codes of `first_yield` -> the end of the names of its numbers."""
 FOUND = ("first_crossing", "none_up_to_0.2_R", "strength_not_known")
-"""Meanings of the values of found_Y1 and so on."""
+"""Meanings of the values of found_Y1 and so on; of other shapes than balls the second is another."""
+_FOUND_OF_SHAPES = (FOUND[0], f"none_up_to_a_slope_of_{STEEPEST}", FOUND[2])
 _LONG_NAMES = {"P": "load", "a": "contact radius", "D": "indentation depth", "p0": "nominal pressure in the centre"}
 _POWERS = {"P": (1, 2), "a": (0, 1), "D": (0, 1), "p0": (1, 0)}
+_SHARP = "0: below a sharp tip or corner the stress is infinite, so that it yields under any load"
 _UNITS = {(1, 2): ("N", "E2* R^2"), (0, 1): ("m", "R"), (1, 0): ("Pa", "E2*")}
 
 
@@ -43,8 +44,9 @@ def first_yield(
     """The load at which layer, body, asperities and punch first yield, by von Mises: docs/stresses.md.
 
     The largest stress need not grow with the load: what is found is the first load at which it exceeds the strength, up
-    to a = 0.2 R. Strengths that are not given are those of the materials that are named, of which a hardness is 2.84
-    yield strengths.
+    to a = 0.2 R, under other shapes than balls up to a slope of 0.4 at the edge. Under a sharp tip or corner what is
+    touched yields under any load: P_Y1 is 0. Strengths that are not given are those of the materials that are named, of
+    which a hardness is 2.84 yield strengths.
 
     Parameters
     ----------
@@ -59,9 +61,10 @@ def first_yield(
     xarray.Dataset : over the dimensions of the parameters: P_Y1, a_Y1, D_Y1, p0_Y1, the contact at which the layer
         first yields, and r_Y1, z_Y1, the place in units of a (r is x, behind the contact < 0, if mu > 0). The same of
         the body with Y2, of the asperities with Ya, of an elastic punch, a half-space under the same pressure, with
-        Y_punch. found_Y1 and so on: 0, it is the first crossing; 1, there is none up to a = 0.2 R; 2, the strength is
-        not known. Where it is not 0 the numbers are NaN, and P_Y1 has a `message`. P_Y1_spread and so on, of a strength
-        with a spread: what that alone makes. `first_yield`: what yields first, of those that are known
+        Y_punch. found_Y1 and so on: 0, it is the first crossing; 1, there is none up to a = 0.2 R, or up to that slope;
+        2, the strength is not known. Where it is not 0 the numbers are NaN, and P_Y1 has a `message`. P_Y1_spread and
+        so on, of a strength with a spread: what that alone makes. `first_yield`: what yields first, of those that are
+        known
 
     Raises
     ------
@@ -78,8 +81,8 @@ def first_yield(
     given = {"Y1": Y1, "Y2": Y2, "Y_punch": Y_punch, "hardness": hardness, "yield_strength": yield_strength}
     given = {name: value for name, value in given.items() if value is not None}
     refuse("first_yield", parameters, (*CONTROLS, "cases"), "it is what is looked for")
-    contact, again = contacts("first_yield", parameters | given, "a", 1e-3)
-    refuse_shapes(again, "first_yield")
+    name = "P" if "flat_radius" in parameters else "a"  # any value that a flat end allows
+    contact, again = contacts("first_yield", parameters | given, name, 1e-3)
     stress, _ = units = units_of(again)
     own, problem = own_materials(parameters), again.problem
     known, spreads = (strengths(contact, again, own, spread) for spread in (False, True))
@@ -102,7 +105,7 @@ def first_yield(
     first = np.where(np.isfinite(loads).any(axis=0), 1 + loads.argmin(axis=0), 0).astype(np.int8)
     about = _flags("what yields first", ("not_known", *BODIES))
     variables["first_yield"] = labelled(again, first, about)
-    return without_control(carried(contact, variables), "a")
+    return without_control(carried(contact, variables), name)
 
 
 def refuse(who: str, parameters: dict, names: tuple, reason: str) -> None:
@@ -118,22 +121,13 @@ def contacts(who: str, parameters: dict, name: str, value: float) -> tuple[xr.Da
         warnings.simplefilter("ignore")
         warnings.simplefilter("default", FarOutside)
         try:
-            contact = solve(**parameters, **{name: "1 um" if physical else value}, x=2, profiles=False)
+            any_ = ("1 nN" if name == "P" else "1 um") if physical else value
+            contact = solve(**parameters, **{name: any_}, x=2, profiles=False)
         except StudyError as error:
             raise StudyError(message.replace("solve: ", f"{who}: ", 1) for message in error.messages) from None
     again = Again.of(contact, who)
     refuse_without_stresses(again, who)
     return contact, again
-
-
-def refuse_shapes(again: Again, who: str) -> None:
-    """Raise StudyError for shapes under which stresses do not begin at 0 and grow with a/R, as under a ball."""
-    others = [word for word in np.unique(again.problem.shape).tolist() if word not in ROUND]
-    if others:
-        way = "study.extremes computes the stresses at a load"
-        raise StudyError(
-            [f"{who} looks for loads under paraboloids and spheres, not shape = {shown(others[0])}: {way}"]
-        )
 
 
 def own_materials(parameters: dict) -> dict[str, Material]:
@@ -166,9 +160,13 @@ def _variables(again: Again, units: tuple, body: str, end: str, crossing: Crossi
         made[f"{name}{end}"] = labelled(again, crossing.numbers[name] * stress**i * size**j, about)
     made[f"r{end}"] = labelled(again, crossing.r, {"long_name": f"radius of the place {where}, over a"})
     made[f"z{end}"] = labelled(again, crossing.z, {"long_name": f"depth of the place {where}, over a"})
-    made[f"found{end}"] = labelled(again, found, _flags(f"whether the load {where} was found", FOUND))
+    round_ = np.isin(again.problem.shape, ROUND)
+    words = FOUND if round_.all() else _FOUND_OF_SHAPES
+    made[f"found{end}"] = labelled(again, found, _flags(f"whether the load {where} was found", words))
     if found.any():
-        made[f"P{end}"].attrs["message"] = _message(body, found, crossing.unsolved)
+        made[f"P{end}"].attrs["message"] = _message(body, found, crossing.unsolved, round_.all())
+    if ((found == 0) & (crossing.numbers["P"] == 0) & ~round_).any():
+        made[f"P{end}"].attrs["comment"] = _SHARP
     return made
 
 
@@ -183,13 +181,14 @@ def _spreads(again: Again, units: tuple, body: str, end: str, crossing: Crossing
     return made
 
 
-def _message(body: str, found: np.ndarray, unsolved: np.ndarray) -> str:
+def _message(body: str, found: np.ndarray, unsolved: np.ndarray, round_: bool) -> str:
     """Why there is no load, with how many cases each reason has."""
+    farthest = "a = 0.2 R" if round_ else f"a slope of the shape of {STEEPEST}, or a = 0.2 R of balls"
     need = {"layer": "Y1", "body": "Y2", "punch": "Y_punch", "asperities": "hardness or yield_strength"}[body]
     reasons = {
         f"the strength of the {body} is not known: give {need}": found == 2,
-        "contacts on the way have no solution": (found == 1) & unsolved,
-        f"the {body} does not yield up to a = 0.2 R, or is rigid or not there": (found == 1) & ~unsolved,
+        "contacts on the way have no solution, or it yields at the least that is looked at": (found == 1) & unsolved,
+        f"the {body} does not yield up to {farthest}, or is rigid or not there": (found == 1) & ~unsolved,
     }
     parts = [f"{where.sum()} of {where.size} cases: {reason}" for reason, where in reasons.items() if where.any()]
     return "; ".join(parts)

@@ -15,13 +15,15 @@ from study.inputs.vocabulary import VOCABULARY
 
 PAGE = pages.read("docs/model.md")
 ROLES = ("control", "material", "roughness", "numerics", "result", "profile", "flag", "count", "derived")
-PRINTED = {"m^2": "m²", "1/m^2": "m⁻²", "1": ""}
+PRINTED = {"m^2": "m²", "1/m^2": "m⁻²", "J/m^2": "J/m²", "1": ""}
+#: Parameters that are no inputs of a user, or of a shape of a test.
+OF_TESTS = ("table_unit", "steepness")
 
 
-def rows(head: str) -> list[list[str]]:
-    """Cells of the table whose first line begins with `head`, as "value | name"."""
-    table = re.search(rf"^\| {re.escape(head)}.*\n\|[-|]+\|\n((?:\|.*\n)+)", PAGE, flags=re.MULTILINE)[1]
-    return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
+def rows(head: str, page: str = PAGE) -> list[list[str]]:
+    """Cells of the tables whose first line begins with `head`, as "value | name"."""
+    tables = re.findall(rf"^\| {re.escape(head)}.*\n\|[-|]+\|\n((?:\|.*\n)+)", page, flags=re.MULTILINE)
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in "".join(tables).splitlines()]
 
 
 def test_python_of_the_page_prints_what_stands_there(tmp_path):
@@ -29,10 +31,18 @@ def test_python_of_the_page_prints_what_stands_there(tmp_path):
     pages.check_examples("docs/model.md", tmp_path)
 
 
-def test_every_name_is_in_the_table_of_symbols_with_its_unit():
-    found = {name: row for row in rows("symbol") for name in re.findall(r"`(\w+)`", row[1])}
-    known = {name: entry for name, entry in VOCABULARY.items() if entry.role in ROLES}
-    assert set(found) == set(known) | {"x"}
+@pytest.mark.parametrize(
+    ("page", "roles"),
+    [
+        ("docs/model.md", ROLES),
+        ("docs/shapes.md", ("shape",)),
+        ("docs/adhesion.md", ("adhesion", "pull_off")),
+    ],
+)
+def test_every_name_is_in_a_table_of_symbols_with_its_unit(page, roles):
+    found = {name: row for row in rows("symbol", pages.read(page)) for name in re.findall(r"`(\w+)`", row[1])}
+    known = {name: entry for name, entry in VOCABULARY.items() if entry.role in roles and name not in OF_TESTS}
+    assert set(found) == set(known) | ({"x"} if page == "docs/model.md" else set())
     for name, entry in known.items():
         *_, scale, physical = found[name]
         plain = scale.strip("$").replace("^\\ast", "*").replace("E_2", "E2").replace("{-2}", "-2")

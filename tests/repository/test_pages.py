@@ -120,7 +120,7 @@ def test_commands_parse(page):
         parser().parse_args(["tcp://127.0.0.1:8786" if word == "ADDRESS" else word for word in command])
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/studies.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/studies.md", "docs/stacks.md"])
 def test_study_files_are_valid(page):
     definitions = [from_tables(tomllib.loads(text), "mine", text, page) for text in pages.blocks(page, "toml")]
     assert dict(definitions[0].grid.sizes) == {"bonding": 2, "h": 2, "n": 9, "P": 21}

@@ -94,7 +94,7 @@ def stresses(
         for name in ("sr", "st"):
             field[name] = field[name] + np.where(layer, residual[:, None, None] if not end else residual[:, None], 0.0)
         field |= invariants(*(field[name] for name in ("sr", "st", "sz", "trz")))._asdict()
-        tips = np.isneginf(field["sz"]) & np.expand_dims(compressible, tuple(range(1, field["sz"].ndim)))
+        tips = np.isinf(field["sz"]) & np.expand_dims(compressible, tuple(range(1, field["sz"].ndim)))
         for name in ("mises", "tresca"):  # a difference of infinite stresses
             field[name] = np.where(tips, np.inf, field[name])
         for name, long_name in _LONG_NAMES.items():

@@ -120,10 +120,17 @@ def test_commands_parse(page):
         parser().parse_args(["tcp://127.0.0.1:8786" if word == "ADDRESS" else word for word in command])
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/studies.md", "docs/stacks.md"])
-def test_study_files_are_valid(page):
+@pytest.mark.parametrize(
+    ("page", "sizes"),
+    [
+        ("README.md", {"bonding": 2, "h": 2, "n": 9, "P": 21}),
+        ("docs/studies.md", {"bonding": 2, "h": 2, "n": 9, "P": 21}),
+        ("docs/stacks.md", {"layers.2.h in SI": 3}),
+    ],
+)
+def test_study_files_are_valid(page, sizes):
     definitions = [from_tables(tomllib.loads(text), "mine", text, page) for text in pages.blocks(page, "toml")]
-    assert dict(definitions[0].grid.sizes) == {"bonding": 2, "h": 2, "n": 9, "P": 21}
+    assert dict(definitions[0].grid.sizes) == sizes
 
 
 def test_the_table_of_real_systems_has_their_numbers_of_cases():

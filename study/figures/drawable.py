@@ -5,6 +5,7 @@ from math import prod
 from numbers import Real
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
 from ..files.results_file import open_results
@@ -69,3 +70,8 @@ def _reason(name: str, variable: xr.Variable) -> str:
     if kind in "UOT" and (name == "validity" or name.endswith("_spread")):
         return "has texts: they are not drawn"
     return f"has {_NOT_DRAWN[kind]}: they are not drawn" if kind in _NOT_DRAWN else ""
+
+
+def why_none(y: str, values: xr.DataArray) -> str:
+    """Why no case has a number to draw."""
+    return f"{y} is infinite" if np.isinf(values).any() else "status says what became of each"

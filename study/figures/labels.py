@@ -28,14 +28,14 @@ def plain_symbol(name: str) -> str:
 
 
 def mathtext(plain: str) -> str:
-    """A symbol for matplotlib: "pmax" has an index, p_max, as E1 and Ra have; "N̄" a bar."""
+    """A symbol for matplotlib: "pmax" has an index, p_max, as E1, Ra and hl2 have; "N̄" a bar."""
 
     def with_index(match: re.Match) -> str:
         letter, index = match.groups()
         word = r"\max" if index == "max" else rf"\mathrm{{{index}}}"
         return f"{letter}_{index}" if len(index) == 1 else f"{letter}_{{{word}}}"
 
-    indexed = re.sub(r"([^\W\d_])_?([a-z]+|\d)", with_index, plain)
+    indexed = re.sub(r"([^\W\d_])_?([a-z]+\d*|\d)", with_index, plain)
     barred = re.sub("(.)\u0304", r"\\bar \1", indexed)
     return re.sub(r" (?![A-Za-z])", "", "".join(GREEK.get(letter, letter) for letter in barred))
 
@@ -111,8 +111,8 @@ def legend_texts(dataset: xr.Dataset, hue: str) -> tuple[str, list[str]]:
 def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
     """What is stated above a figure: `value_text` of each input that has one value in all the datasets.
 
-    Inputs that no case uses are left out, and so are axes, which the figure shows, and names of models and materials. A
-    rigid base, which has no modulus, is stated in words.
+    Inputs that no case uses are left out, and so are axes, which the figure shows, and names of models and materials,
+    but the shape of the punch. A rigid base, which has no modulus, is stated in words.
     """
     datasets = list(datasets)
     contacts = [dataset for dataset in datasets if "base" in dataset.coords]
@@ -122,9 +122,10 @@ def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
         values = _values(datasets, name)
         if name in of_some and len(values) == 1:
             (value,) = values
-            if name == "bonding" or not isinstance(value, str):
+            if name in ("bonding", "shape") or not isinstance(value, str):
                 array = next(dataset[name] for dataset in datasets if name in dataset)
-                texts.append(value_text(name, array, value) + (rf" ${UNITS[name]}$" if name in UNITS else ""))
+                more = rf" ${UNITS[name]}$" if name in UNITS else " punch" * (name == "shape")
+                texts.append(value_text(name, array, value) + more)
     return texts
 
 

@@ -16,7 +16,7 @@ from ..data.derived import QUANTITIES
 from ..inputs.definition import StudyError
 from ..inputs.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
-from .drawable import check_size, drawable
+from .drawable import check_size, drawable, why_none
 from .fits.picture import fits
 from .labels import axis_label, legend_texts, multiple, name_of, stated, with_units, wrapped
 from .registry import Columns, joined
@@ -78,9 +78,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     contacts = contacts.squeeze([dim for dim, size in contacts.sizes.items() if size == 1 and dim not in (x, hue)])
     pair = xr.broadcast(contacts[x], contacts[y])
     if not np.logical_and(*(np.isfinite(array.values) for array in pair)).any():
-        infinite = [name for name, array in zip((x, y), pair, strict=True) if np.isinf(array.values).any()]
-        way_out = f"{infinite[0]} is infinite" if infinite else "status says what became of each"
-        raise StudyError([f"nothing to draw: no case has numbers for {x} and {y}; {way_out}"])
+        raise StudyError([f"nothing to draw: no case has numbers for {x} and {y}; {why_none(y, pair[1])}"])
     if "validity" in contacts and not {*contacts["validity"].dims} <= {*pair[1].dims}:
         contacts = contacts.drop_vars("validity")
     dims = [dim for dim in pair[1].dims if pair[1].sizes[dim] > 1 or dim in (x, hue)]

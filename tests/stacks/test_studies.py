@@ -241,7 +241,6 @@ BAD = {
     "a rigid word": ({"layers": PURE, "rigid_base": "yes"}, "must be true or false"),
     "layered": ({"layers": PURE, "base": "layered"}, 'base = "layered" has one layer'),
     "three moduli": ({"layers": [PURE[0] | {"n": [1, 2, 3], "profile": "linear"}]}, "must be [top, bottom]"),
-    "a profile": ({"layers": [PURE[0] | {"profile": "cubic"}]}, "must be one of"),
     "one modulus": ({"layers": [PURE[0] | {"profile": "linear"}]}, "layers.1.n = 2.0: of a graded layer must be [top"),
     "no file": ({"layers": [{"h": 0.1, "profile": "table:no.csv"}]}, "layers.1: profile table:no.csv: cannot be read"),
     "a table": ({"layers": [PURE[0] | {"profile": "cubic"}]}, 'or "table:FILE.csv"'),

@@ -49,14 +49,14 @@ def declare() -> None:
     for number in range(1, count + 1):
         for field, words in _WORDS.items():
             name = name_of(number, field)
-            symbol = f"{_SYMBOLS[field]}{number}" if field in _SYMBOLS else ""
+            symbol = f"{_SYMBOLS[field]}l{number}" if field in _SYMBOLS else ""  # ν2 is that of the body
             if name in SOLVER_PARAMETERS and name not in VOCABULARY:
                 powers = layers.LAYER[field].powers
                 VOCABULARY[name] = Entry(name, "material", words.format(number), symbol, powers)
             if name in SOLVER_PARAMETERS and name not in PARAMETERS:
                 PARAMETERS.append(name)
             if field.startswith("E1") and name not in SCENE:
-                SCENE[name] = Entry(name, "scene", words.format(number), f"E1,{number}", (1, 0))
+                SCENE[name] = Entry(name, "scene", words.format(number), f"El{number}", (1, 0))
         if number > 1:
             BODIES[name_of(number, "material")] = tuple(name_of(number, field) for field in ("E1", "nu", "n"))
     if count and "sublayers" not in PARAMETERS:

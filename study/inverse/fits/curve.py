@@ -4,9 +4,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...inputs.punch.shapes import ANGLES
-from .model import HERTZ, is_ratio
-from .sticking import Direct, moved_by
+from .model import HERTZ
+from .sticking.branch import branch
+from .sticking.labels import Points
+from .sticking.ladder import Ladder
 from .tables import STEP, WIDE, Places, Table
 
 _TILES = 4  # along ln u: from the largest depth down, more than _REACH
@@ -17,17 +18,19 @@ _REACH = np.log(800.0)  # below 1/800 of twice the range of x the curve goes on 
 class Curve:
     """B curves of n points. Their unknowns are the inputs of the model, then D0/wide, P0/high and tilt wide/high.
 
-    table : of the model; of one that sticks, what solves it
+    table : of the model
     x : (B, n), SI
     wide, high : (B,) the units of x and y of each curve
     shifts : which of "D0", "P0", "tilt" are unknown
+    points : of a curve that sticks, what says which points are in contact; None: all depths are
     """
 
-    table: Table | Direct
+    table: Table | Ladder
     x: np.ndarray
     wide: np.ndarray
     high: np.ndarray
     shifts: tuple[str, ...]
+    points: Points | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -35,7 +38,8 @@ class Curve:
 
     def take(self, index: np.ndarray) -> "Curve":
         """Some of the curves."""
-        return replace(self, x=self.x[index], wide=self.wide[index], high=self.high[index])
+        points = self.points and self.points.take(index)
+        return replace(self, x=self.x[index], wide=self.wide[index], high=self.high[index], points=points)
 
     def values(self, p: np.ndarray) -> dict[str, np.ndarray]:
         """Input -> its SI values (B, 1)."""
@@ -67,8 +71,8 @@ class Curve:
         The third value has its derivatives by the inputs `moved` of the model, (moved, B, n), if `moved` is true.
         """
         model, values = self.table.model, self.values(p)
-        if isinstance(self.table, Direct):
-            return self._direct(self.table, p, values, moved)
+        if isinstance(self.table, Ladder):
+            return self._sticking(self.table, p, values, moved)
         depth = self.x - (p[:, [self.names.index("D0")]] * self.wide[:, None] if "D0" in self.shifts else 0.0)
         inside = depth > 0
         depth = np.where(inside, depth, 1e-12 * self.wide[:, None])
@@ -94,21 +98,24 @@ class Curve:
         others = [F * places.read(rows[1 + i])[0] for i in range(len(model.moved))] if moved else []
         return F, by, np.array(others)
 
-    def _direct(self, direct: Direct, p: np.ndarray, values: dict, moved: bool) -> tuple[np.ndarray, dict, np.ndarray]:
-        """`contact` of what sticks: by differences of solved curves."""
-        model, high = direct.model, self.high[:, None]
-        depth = self.x - (p[:, [self.names.index("D0")]] * self.wide[:, None] if "D0" in self.shifts else 0.0)
-        P, slope = direct.contact(values, depth)
-
-        def by(name: str) -> np.ndarray:
-            value = values.get(name, model.value(name))
-            other, change = moved_by(value, is_ratio(name))
-            if name in ANGLES and name in model.unknowns:
-                change = model.coordinate(name, other) - model.coordinate(name, value)
-            return (direct.contact(values | {name: other}, depth)[0] - P) / change / high
-
-        others = [by(name) for name in model.moved] if moved else []
-        return P / high, {"x": slope / high} | {name: by(name) for name in model.unknowns}, np.array(others)
+    def _sticking(self, ladder: Ladder, p: np.ndarray, values: dict, moved: bool) -> tuple[np.ndarray, dict, np.ndarray]:
+        """`contact` of what sticks; 0 at points that are not in contact."""
+        model, parts = ladder.model, ladder.parts
+        shift = {name: p[:, [self.names.index(name)]] for name in self.shifts}
+        depth = self.x - shift.get("D0", 0.0) * self.wide[:, None]
+        made = branch(ladder.rows(values, depth.max(axis=1), moved), depth)
+        by = {"x": made.slope}
+        rows = dict(zip((*ladder.axes, *(model.moved if moved else ())), made.by_rows, strict=True))
+        for name in (*model.unknowns, *(model.moved if moved else ())):
+            factors = parts.by(name, values)
+            by[name] = rows.get(name, 0.0) + sum(factors[i] * made.by_parts[i] for i in range(4))
+        contact, scale = np.ones(depth.shape, bool), self.high[:, None]
+        if self.points is not None:
+            base = shift.get("P0", 0.0) + shift.get("tilt", 0.0) * self.x / self.wide[:, None]
+            contact = self.points.in_contact(made.P / scale, base)
+        by = {name: np.where(contact, column, 0.0) / scale for name, column in by.items()}
+        others = [by[name] for name in model.moved] if moved else []
+        return np.where(contact, made.P, 0.0) / scale, by, np.array(others)
 
     def _log_slope(self, name, values, power, of_u, slope, by_axis, places):
         """d ln F by the coordinate of an input."""

@@ -1,0 +1,124 @@
+"""A table of the :class:`.parts.Parts` of a model over the contact radius, made where it is needed.
+
+Tiles lie on a fixed lattice, so that the numbers of a curve do not depend on which other curves there are. Along x, the
+logarithm of the radius, a tile has _LATTICE points with values and slopes, between which a cubic is drawn; along the
+coordinates of unknown inputs it has Chebyshev points.
+"""
+
+from functools import partial
+
+import numpy as np
+
+from ..model import Model
+from ..tables import WIDE, Chebyshev, width
+from .parts import Parts
+
+_LATTICE = 16
+STEP = WIDE / _LATTICE
+#: Tiles of a curve from that of its largest radius down, and tiles below, to which the parts go on as powers.
+_TILES, _BELOW = 4, 2
+#: Points of the lattice of a curve.
+LENGTH = (_TILES + _BELOW) * _LATTICE
+#: Chebyshev points of a tile along each coordinate, of tables with one, two and more coordinates. Parts between them
+#: are off by 1e-6 at most (tests/inverse/fits/test_sticking.py).
+_POINTS = {0: 1, 1: 10, 2: 8, 3: 6}
+#: So many tiles up or down the largest radius of a curve is searched.
+_FAR = 16
+
+
+class Ladder:
+    """Tiles of a model, made on demand. Not for several threads."""
+
+    def __init__(self, model: Model):
+        self.model, self.parts = model, Parts.of(model)
+        self.axes = self.parts.axes
+        self.chebyshev = Chebyshev(_POINTS[min(len(self.axes), 3)])
+        self.tiles: dict[tuple, np.ndarray] = {}
+
+    def make(self, place: tuple[int, ...], moved: bool) -> np.ndarray:
+        """A tile: 8 logarithms and slopes, or their derivatives by the inputs `moved` of the model, (1 or moved, 8,
+        _LATTICE, C) at C points of the other coordinates."""
+        grid = np.meshgrid(*([self.chebyshev.t] * len(self.axes)), indexing="ij")
+        values = {}
+        for name, number, t in zip(self.axes, place[1:], grid, strict=True):
+            values[name] = self.model.of_coordinate(name, (number + 0.5 + t.ravel() / 2) * width(name))
+        values = self.model.within(values)
+        x = place[0] * WIDE + STEP * np.arange(_LATTICE)
+        ways = [partial(self.parts.moved, name) for name in self.model.moved] if moved else [self.parts.logarithms]
+        return np.ascontiguousarray(np.moveaxis(np.array([way(values, x) for way in ways]), 2, 3))
+
+    def _stack(self, place: tuple[int, ...], count: int, moved: bool) -> np.ndarray:
+        """Tiles one after another along x."""
+        several = [(moved, place[0] + k, *place[1:]) for k in range(count)]
+        for key in several:
+            if key not in self.tiles:
+                self.tiles[key] = self.make(key[1:], moved)
+        return np.concatenate([self.tiles[key] for key in several], axis=2)
+
+    def read(self, places: np.ndarray, weights: np.ndarray, count: int, moved: bool = False) -> np.ndarray:
+        """Rows (W, B, 8, count * _LATTICE) of B curves, `count` tiles up from the tiles `places` (B, 1 + axes).
+
+        weights : (W, B, C), of the points of a tile
+        moved : whether derivatives by the inputs `moved` of the model are added, (W + moved, ...)
+        """
+        W, B, more = len(weights), len(places), len(self.model.moved) if moved else 0
+        out = np.empty((W + more, B, 8, count * _LATTICE))
+        for place in map(tuple, np.unique(places, axis=0).tolist()):
+            here = np.flatnonzero((places == place).all(axis=1))
+            # einsum, not BLAS: the sums of a curve do not depend on how many others stand here
+            out[:W, here] = np.einsum("wbc,ilc->wbil", weights[:, here], self._stack(place, count, False)[0])
+            if more:
+                stack = self._stack(place, count, True)
+                out[W:, here] = np.einsum("bc,kilc->kbil", weights[0, here], stack)
+        return out
+
+    def rows(self, values: dict, deepest: np.ndarray, moved: bool = False) -> np.ndarray:
+        """Rows (1 + axes + moved, B, 8, LENGTH) of B curves: the logarithms of the parts, with their factors, and slopes; their derivatives by the coordinates of unknown inputs
+        and, without those of the factors, by the inputs `moved` of the model.
+
+        values : unknown input -> (B, 1)
+        deepest : (B,) in m; the lattice reaches beyond it
+        """
+        B = len(deepest)
+        c = np.array([self.model.coordinate(name, values[name])[:, 0] for name in self.axes]).reshape(-1, B).T
+        wide = np.array([width(name) for name in self.axes])
+        places = np.floor(c / wide).astype(int)
+        weights = self.chebyshev.weights(2 * (c / wide - places) - 1, 2 / wide)
+        factors = np.broadcast_to(self.parts.factors(values).reshape(4, -1), (4, B)).T
+        last = self._last(places, weights, factors, deepest)
+        whole = self.read(np.column_stack([last - _TILES + 1, places]), weights, _TILES, moved)
+        whole[0, :, :4] += factors[:, :, None]
+        below = STEP * np.arange(-_BELOW * _LATTICE, 0)
+        first = whole[..., :4, :1] + whole[..., 4:, :1] * below, np.broadcast_to(
+            whole[..., 4:, :1], (*whole.shape[:2], 4, len(below))
+        )
+        whole = np.concatenate([np.concatenate(first, axis=2), whole], axis=3)
+        return whole
+
+    def _last(self, places: np.ndarray, weights: np.ndarray, factors: np.ndarray, deepest: np.ndarray) -> np.ndarray:
+        """The tile (B,) in which each curve reaches its largest depth: at its end the depth is larger and rises."""
+        last = np.floor(np.log(np.maximum(np.sqrt(deepest / self._depth()), 1e-9)) / WIDE).astype(int)
+        up, down = np.ones(len(last), bool), np.ones(len(last), bool)
+        for step in range(2 * _FAR):
+            left = np.flatnonzero(up if step < _FAR else down & ~up)
+            if not len(left):
+                continue
+            tile = last[left] - (0 if step < _FAR else 1)
+            rows = self.read(np.column_stack([tile, places[left]]), weights[:1, left], 1)[0, :, :, -1]
+            f = np.exp(rows[:, :4] + factors[left])
+            depth, slope = f[:, 1] - f[:, 3], f[:, 1] * rows[:, 5] - f[:, 3] * rows[:, 7]
+            beyond = (depth > deepest[left]) & (slope > 0)
+            if step < _FAR:
+                on = ~beyond & np.isfinite(depth)
+                last[left[on]] += 1
+                up[left[~on]] = False
+                down[left[on]] = False  # it was looked for from below
+            else:
+                last[left[beyond]] -= 1
+                down[left[~beyond]] = False
+        return last
+
+    def _depth(self) -> float:
+        """The depth in m of a paraboloid whose radius of contact in a half-space is the unit of radii: D = a²/R."""
+        scene = self.model.scene
+        return float(np.mean(scene.values.get(self.parts.length, scene.R)) ** 2 / np.mean(scene.R))

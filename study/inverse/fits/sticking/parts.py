@@ -2,8 +2,8 @@
 
 P = P₀ - pull_P and D = D₀ - pull_D, :mod:`solver.smooth_contact.adhesion.apart`. P₀ and pull_P have the modulus E of
 what is touched as a factor. Under :mod:`~solver.smooth_contact.adhesion.jkr` both pulls go with the root of w/E, and
-under a paraboloid lengths act through a/h alone. So w and k_machine are no coordinates of a table, and often E, h and
-R are not.
+under a paraboloid or a cone lengths act through a/h alone. So w and k_machine are no coordinates of a table, and often
+E, h, R and half_angle are not.
 """
 
 from typing import Any, NamedTuple
@@ -19,8 +19,11 @@ from ....inputs.vocabulary import PARAMETERS
 from ..model import Model, is_ratio
 
 #: Powers of E, w, of the length that is the unit of a, and of R in P₀, D₀, pull_P and pull_D.
-_USUAL = {"E": (1, 0, 0.5, -0.5), "w": (0, 0, 0.5, 0.5), "length": (0, 0, 0, 0), "R": (0, 0, 0, 0)}
+_USUAL = {"E": (1, 0, 0.5, -0.5), "w": (0, 0, 0.5, 0.5)}
+_USUAL |= {name: (0, 0, 0, 0) for name in ("length", "R", "cotangent")}
 _SIMILAR = {"length": (3, 2, 1.5, 0.5), "R": (-1, -1, 0, 0)}
+#: Of a cone with the cotangent of its half angle, which has no length.
+_CONE = {"length": (2, 1, 1.5, 0.5), "cotangent": (1, 1, 0, 0)}
 _DMT = {"E": (1, 0, 0, 0), "w": (0, 0, 1, 0)}
 _DMT_SIMILAR = {"length": (3, 2, 0, 0), "R": (-1, -1, 1, 0)}
 #: SI powers of the modulus and of R in these parts.
@@ -34,7 +37,7 @@ _MOVE = 1e-4
 class Parts(NamedTuple):
     """How the parts of a model depend on its inputs.
 
-    powers : name of a factor, "E", "w", "length", "R" -> its power (4,) in each part
+    powers : name of a factor, "E", "w", "length", "R", "cotangent" -> its power (4,) in each part
     axes : unknown inputs on which they depend apart from these factors
     length : the input that is the unit of the radius: "h" or "R"
     """
@@ -50,12 +53,13 @@ class Parts(NamedTuple):
         law = numbers.get("adhesion", "jkr")
         powers = _USUAL | (_DMT if law == "dmt" else {})
         left_out = {"k_machine"} | ({"w_adhesion"} if law != "maugis" else set())
-        similar = numbers.get("shape", PARABOLOID) == PARABOLOID and law != "maugis"
+        shape = numbers.get("shape", PARABOLOID)
+        similar = shape in (PARABOLOID, "cone") and law != "maugis"
         similar &= numbers.get("base", "layered") in ("layered", "half_space", "auto")
         length = "h" if "h" in values and similar and numbers.get("base", "layered") != "half_space" else "R"
         if similar:
-            powers = powers | (_DMT_SIMILAR if law == "dmt" else _SIMILAR)
-            left_out |= {"h", "R"}
+            powers = powers | (_DMT_SIMILAR if law == "dmt" else _CONE if shape == "cone" else _SIMILAR)
+            left_out |= {"h", "R", "half_angle"}
         moduli = {name for name in values if name.rpartition(".")[2].startswith("E")} - {model.modulus}
         if law != "maugis" and all(np.all(np.isinf(values[name])) for name in moduli):
             left_out.add(model.modulus)
@@ -67,6 +71,9 @@ class Parts(NamedTuple):
         every = self.model.scene.values | {"R": self.model.scene.R} | values
         numbers = {"E": self.model.touched(values), "w": every["w_adhesion"], "length": every[self.length]}
         numbers["R"] = every["R"]
+        if self.powers["cotangent"].any():
+            angle = values.get("half_angle", self.model.scene.parameters["half_angle"])
+            numbers["cotangent"] = 1 / np.tan(np.radians(angle))
         shape = np.broadcast_shapes(*(np.shape(value) for value in numbers.values()))
         total = np.zeros((4, *shape))
         for name, value in numbers.items():
@@ -82,7 +89,7 @@ class Parts(NamedTuple):
         if name == nu:
             ratio = values.get(nu, self.model.value(nu))
             return self.powers["E"].reshape(4, *[1] * np.ndim(ratio)) * (2 * ratio / (1 - ratio**2))
-        total = total + self.powers["w"] * (name == "w_adhesion")
+        total = total + self.powers["w"] * (name == "w_adhesion") - self.powers["cotangent"] * (name == "half_angle")
         return total + self.powers["length"] * (name == self.length) + self.powers["R"] * (name == "R")
 
     def logarithms(self, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:

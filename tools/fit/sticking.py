@@ -1,0 +1,144 @@
+"""How right are fits of curves that stick, and how fast? `python tools/fit/sticking.py [CURVES [FREE ...]]`, FREE of w,
+contact, h: what is unknown beside E1 and w_adhesion; some five minutes with 210 curves.
+
+Curves P(D) of paraboloids, spheres, to 0.2 R deep, and cones: on half-spaces, and on gels of h = 0.1, 0.5 and 3 R on a
+rigid base and on one of E2* = 3 E1*. A third of the curves are approaches, 0 before the surfaces meet, the others go
+back to pull-off and beyond. The pull-off load is 1 to 100 % of the largest load, 80 points have noise of 0.5 to 5 % of
+it, and contact point and baseline are off. Exact loads are those of `solver.solve`. The call of `study.fit` has a
+w_adhesion a factor of up to 3 off and no value of E1. Printed are, for each shape and in all:
+
+- covered: of how many converged curves the 95 % intervals of E1, and of w_adhesion, have the true one, with one
+  standard deviation of that share;
+- far: converged curves that are more than five spreads and 1 % off, which should not be;
+- statuses, and the processor time of a curve in its batch; of one curve alone.
+"""
+
+import os
+import sys
+import time
+import warnings
+
+os.environ |= {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL")}
+
+import numpy as np
+
+import study
+from solver import Problem, solve
+from study.work import engine
+
+POINTS, E1, R, NU = 80, 5e3, 5e-6, 0.45
+SHAPES = {"paraboloid": {}, "sphere": {"shape": "sphere"}, "cone": {"shape": "cone", "half_angle": 70.0}}
+#: A base -> its numbers for the solver at a thickness of h R, and for `study.fit`.
+BASES = {"half_space": (0.0,), "rigid": (0.1, 0.5, 3.0), "compliant": (0.1, 0.5, 3.0)}
+SOFTER = 3.0  # E2*/E1* of the compliant base
+CENTER = np.array([0.0])
+KINDS = {"w": {"contact_point": False}, "contact": {}, "h": {}}
+
+
+def scene(base: str, h: float) -> tuple[dict, dict]:
+    """Numbers for the solver in units R = E1* = 1, and inputs of `study.fit`."""
+    if base == "half_space":
+        return {"base": base}, {"base": base, "nu2": NU, "punch": "rigid"}
+    numbers = {"base": "layered", "h": h, "n": 0.0 if base == "rigid" else 1 / SOFTER, "nu1": NU, "nu2": NU}
+    inputs = {"nu1": NU, "h": f"{h * R!r} m", "E2": "rigid", "punch": "rigid", "bonding": "bonded"}
+    if base == "compliant":
+        inputs |= {"E2": f"{SOFTER * E1!r} Pa", "nu2": NU}
+    return numbers | {"bonding": "bonded"}, inputs
+
+
+def curves(numbers: dict, shape: dict, share: np.ndarray, noise: np.ndarray, random: np.random.Generator) -> tuple:
+    """Depths and loads (curves, POINTS) in units R = E1* = 1, with noise, and the works of adhesion: pull-off is at
+    `share` of the largest load, and the standard deviation `noise` of it."""
+    unit = SOFTER if numbers.get("n") else 1.0  # of E2*, the unit of the solver, in E1*
+    deep = 0.2 if shape.get("shape") != "cone" else 0.3
+    about = {**numbers, **shape, "micro": "smooth"}
+    w, deepest = 1e-3 * share, np.full(len(share), deep)
+    for _ in range(8):  # the pull-off load goes with a power of w near 1
+        ends = solve(Problem.of(D=deepest, w_adhesion=w / unit, **about), CENTER)
+        w = w * (share * ends.P / -ends.P_off) ** 0.7
+        w = np.where(np.isfinite(w), w, 1e-3 * share * random.uniform(0.01, 1))
+    approach = random.random(len(share)) < 1 / 3
+    span = deepest - ends.D_off
+    first = np.where(approach, -0.3 * deepest, ends.D_off - 0.25 * span)
+    D = first[:, None] + (deepest - first)[:, None] * np.linspace(0, 1, POINTS)
+    flat = D.ravel()
+    loads = solve(Problem.of(D=flat, w_adhesion=np.repeat(w / unit, POINTS), **about), CENTER)
+    assert np.isin(loads.status, (0, 11)).all(), np.unique(loads.status)
+    P = np.nan_to_num(loads.P).reshape(D.shape) * unit
+    P = np.where(approach[:, None] & (D < 0), 0.0, P)
+    largest = P.max(axis=1, keepdims=True)
+    return D, P + noise[:, None] * largest * random.standard_normal(P.shape), w
+
+
+def fitted(kind: str, count: int) -> dict[str, np.ndarray]:
+    """What came out of `count` curves of each scene, over the curves."""
+    rows: dict[str, list] = {}
+    random, engine.START = np.random.default_rng(7), np.inf
+    for name, shape in SHAPES.items():
+        for base, thicknesses in BASES.items():
+            for h in thicknesses:
+                numbers, inputs = scene(base, h)
+                share = 10 ** random.uniform(-2, 0, count)
+                noise = 10 ** random.uniform(np.log10(0.005), np.log10(0.05), count)
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    D, P, w = curves(numbers, shape, share, noise, random)
+                D0, P0 = (random.uniform(-0.05, 0.05, (count, 1)) * A[:, -1:] for A in (D, P))
+                D0 = 0 * D0 if kind == "w" else D0
+                Es = E1 / (1 - NU**2)
+                modulus = "E2" if base == "half_space" else "E1"
+                free = [modulus, "w_adhesion", *(["h"] if kind == "h" and h else [])]
+                inputs |= {"micro": "smooth", **shape} | ({} if name == "cone" else {"R": f"{R!r} m"})
+                if kind == "h" and h:
+                    inputs |= {"h": f"{float(h * R * 3 ** random.uniform(-1, 1))!r} m"}
+                middle = np.exp(np.log(w).mean())
+                bounds = {w.min() / 3: 0, w.max() * 3: 0, middle: 0}
+                free = {key: None for key in free} | {
+                    "w_adhesion": tuple(f"{float(v * Es * R)!r} J/m^2" for v in (min(bounds), max(bounds)))
+                }
+                begun = time.process_time()
+                fit = study.fit(
+                    {"D": (R * (D + D0), "m"), "P": (Es * R**2 * (P + P0), "N")}, free=free, progress=False,
+                    **KINDS[kind], **inputs, w_adhesion=f"{float(middle * Es * R)!r} J/m^2",
+                )  # fmt: skip
+                seconds = (time.process_time() - begun) / count
+                truth = {modulus: np.full(count, E1), "w_adhesion": w * Es * R}
+                for number, (key, value) in enumerate(truth.items()):
+                    about = {"value": fit[key].values, "low": fit[f"{key}_low"].values}
+                    about |= {"high": fit[f"{key}_high"].values, "spread": fit[f"{key}_spread"].values, "true": value}
+                    for column, values in about.items():
+                        rows.setdefault(f"{'Ew'[number]} {column}", []).append(values)
+                for column, values in (("status", fit.fit_status.values), ("shape", np.full(count, name)),
+                    ("base", np.full(count, base)), ("h", np.full(count, h)), ("share", share), ("noise", noise),
+                    ("seconds", np.full(count, seconds))):  # fmt: skip
+                    rows.setdefault(column, []).append(values)
+                names = fit.fit_status.attrs["flag_meanings"].split()
+    return {key: np.concatenate(values) for key, values in rows.items()} | {"names": np.array(names)}
+
+
+def report(kind: str, count: int) -> dict[str, np.ndarray]:
+    rows = fitted(kind, count)
+    good = rows["status"] == 0
+    for name in (*SHAPES, "all"):
+        here = (rows["shape"] == name) | (name == "all")
+        words = []
+        for letter in "Ew":
+            low, high, true = (rows[f"{letter} {column}"][here & good] for column in ("low", "high", "true"))
+            share = ((low <= true) & (true <= high)).mean()
+            words.append(f"{letter} {100 * share:.1f} ± {100 * np.sqrt(share * (1 - share) / (here & good).sum()):.1f}")
+        far = np.zeros(len(good), bool)
+        for letter in "Ew":
+            off = np.abs(rows[f"{letter} value"] - rows[f"{letter} true"])
+            far |= (off > 5 * rows[f"{letter} spread"]) & (off > 0.01 * rows[f"{letter} true"])
+        counts = np.bincount(rows["status"][here].astype(int), minlength=7)
+        said = ", ".join(f"{word} {number}" for word, number in zip(rows["names"], counts, strict=False) if number)
+        print(f"{kind:7} {name:10} covered {' %, '.join(words)} %; far {(far & here & good).sum()}", end="; ")
+        print(f"{said}; {rows['seconds'][here].mean():.2f} s a curve", flush=True)
+    return rows
+
+
+if __name__ == "__main__":
+    number = int(sys.argv[1]) if sys.argv[1:] else 210
+    scenes = len(SHAPES) * sum(map(len, BASES.values()))
+    for part in sys.argv[2:] or [*KINDS]:
+        report(part, -(-number // scenes))

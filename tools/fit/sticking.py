@@ -1,7 +1,7 @@
 """How right are fits of curves that stick, and how fast? `python tools/fit/sticking.py [CURVES [FREE ...]]`, FREE of w,
 contact, h: what is unknown beside E1 and w_adhesion; some five minutes with 210 curves.
 
-Curves P(D) of paraboloids, spheres, to 0.2 R deep, and cones: on half-spaces, and on gels of h = 0.1, 0.5 and 3 R on a
+Curves P(D) of paraboloids, spheres and cones, to 0.2 R deep, at most h/2: on half-spaces, and on gels of h = 0.1, 0.5 and 3 R on a
 rigid base and on one of E2* = 3 E1*. A third of the curves are approaches, 0 before the surfaces meet, the others go
 back to pull-off and beyond. The pull-off load is 1 to 100 % of the largest load, 80 points have noise of 0.5 to 5 % of
 it, and contact point and baseline are off. Exact loads are those of `solver.solve`. The call of `study.fit` has a
@@ -50,13 +50,17 @@ def curves(numbers: dict, shape: dict, share: np.ndarray, noise: np.ndarray, ran
     """Depths and loads (curves, POINTS) in units R = E1* = 1, with noise, and the works of adhesion: pull-off is at
     `share` of the largest load, and the standard deviation `noise` of it."""
     unit = SOFTER if numbers.get("n") else 1.0  # of E2*, the unit of the solver, in E1*
-    deep = 0.2 if shape.get("shape") != "cone" else 0.3
+    deep = min(0.2, numbers.get("h", 1.0) / 2)
     about = {**numbers, **shape, "micro": "smooth"}
-    w, deepest = 1e-3 * share, np.full(len(share), deep)
-    for _ in range(8):  # the pull-off load goes with a power of w near 1
+    deepest, low, high = np.full(len(share), deep), np.full(len(share), -16.0), np.full(len(share), 3.0)  # of ln w
+    for _ in range(14):
+        w = np.exp((low + high) / 2)
         ends = solve(Problem.of(D=deepest, w_adhesion=w / unit, **about), CENTER)
-        w = w * (share * ends.P / -ends.P_off) ** 0.7
-        w = np.where(np.isfinite(w), w, 1e-3 * share * random.uniform(0.01, 1))
+        too_much = ~(ends.P > -ends.P_off / share)  # also where all loads are pulls
+        low, high = np.where(too_much, low, np.log(w)), np.where(too_much, np.log(w), high)
+    w = np.exp(low)
+    ends = solve(Problem.of(D=deepest, w_adhesion=w / unit, **about), CENTER)
+    assert (np.abs(-ends.P_off / ends.P / share - 1) < 0.05).all()
     approach = random.random(len(share)) < 1 / 3
     span = deepest - ends.D_off
     first = np.where(approach, -0.3 * deepest, ends.D_off - 0.25 * span)

@@ -43,15 +43,15 @@ class Chebyshev:
         slopes = -part / away / total + values * (part / away).sum(axis=1, keepdims=True) / total
         return values, slopes
 
-    def weights(self, s: np.ndarray, by: np.ndarray) -> np.ndarray:
-        """Weights of the values at the points of a tile, (1 + axes, B, C): of the polynomial at s (B, axes), and of its
-        derivatives by coordinates of which s goes `by` (axes,) as fast."""
-        B, axes = s.shape
-        values, slopes = (part.reshape(B, axes, self.points) for part in self.lagrange(s.ravel()))
-        factors = [
-            [slopes[:, i] * by[i] if i == j else values[:, i] for i in range(axes)] for j in range(-1, axes)
-        ]
-        return np.array([_products(factor, B) for factor in factors])
+
+def weights_of(axes: list[Chebyshev], s: np.ndarray, by: np.ndarray) -> np.ndarray:
+    """Weights of the values at the points of a tile, (1 + axes, B, C): of the polynomial at s (B, axes), and of its
+    derivatives by coordinates of which s goes `by` (axes,) as fast."""
+    both = [axis.lagrange(column) for axis, column in zip(axes, s.T, strict=True)]
+    factors = [
+        [slopes * by[i] if i == j else values for i, (values, slopes) in enumerate(both)] for j in range(-1, len(both))
+    ]
+    return np.array([_products(factor, len(s)) for factor in factors])
 
 
 class Table:
@@ -61,6 +61,7 @@ class Table:
         self.model, self.tiles, self.stacks = model, {}, {}
         axes = 1 + len(model.axes)
         self.chebyshev = Chebyshev(_POINTS[min(axes, 4)])
+        self.axes = [self.chebyshev] * len(model.axes)
         lattice = (np.arange(_LATTICE) / _LATTICE * WIDE - WIDE / 2) / (WIDE / 2 + _MARGIN)
         self.along_u = self.chebyshev.lagrange(lattice)[0]
 
@@ -116,7 +117,7 @@ class Table:
         B, names = len(coordinates), self.model.axes
         wide = np.array([width(name) for name in names])
         places = np.floor(coordinates / wide).astype(int)
-        weights = self.chebyshev.weights(2 * (coordinates / wide - places) - 1, 2 / wide)
+        weights = weights_of(self.axes, 2 * (coordinates / wide - places) - 1, 2 / wide)
         key = np.column_stack([first, places])
         several = [tuple(place) for place in np.unique(key, axis=0).tolist()]
         rows = np.empty((1 + len(self.model.moved), B, count * _LATTICE))

@@ -10,8 +10,8 @@ from functools import partial
 import numpy as np
 
 from ..model import Model
-from ..tables import WIDE, Chebyshev, width
-from .parts import Parts
+from ..tables import WIDE, Chebyshev, weights_of, width
+from .parts import Parts, is_modulus
 
 _LATTICE = 16
 STEP = WIDE / _LATTICE
@@ -19,9 +19,11 @@ STEP = WIDE / _LATTICE
 _TILES, _BELOW = 4, 2
 #: Points of the lattice of a curve.
 LENGTH = (_TILES + _BELOW) * _LATTICE
-#: Chebyshev points of a tile along each coordinate, of tables with one, two and more coordinates. Parts between them
-#: are off by 1e-6 at most (tests/inverse/fits/test_sticking.py).
-_POINTS = {0: 1, 1: 10, 2: 8, 3: 6}
+#: Chebyshev points of a tile along each coordinate, of tables with one, two and more coordinates; and along that of a
+#: modulus, whose tiles are wider, as what a tile costs is hardly a matter of its points. Parts between them are off by
+#: 1e-6 at most (tests/inverse/fits/test_sticking.py).
+_POINTS, _OF_MODULI = {1: 10, 2: 8, 3: 6}, {1: 18, 2: 16, 3: 12}
+_WIDE = np.log(1000.0)
 #: So many tiles up or down the largest radius of a curve is searched.
 _FAR = 16
 
@@ -32,16 +34,18 @@ class Ladder:
     def __init__(self, model: Model):
         self.model, self.parts = model, Parts.of(model)
         self.axes = self.parts.axes
-        self.chebyshev = Chebyshev(_POINTS[min(len(self.axes), 3)])
+        count, moduli = min(len(self.axes), 3), [is_modulus(name) for name in self.axes]
+        self.points = [Chebyshev((_OF_MODULI if modulus else _POINTS)[count]) for modulus in moduli]
+        self.wide = np.array([_WIDE if modulus else width(name) for name, modulus in zip(self.axes, moduli, strict=True)])
         self.tiles: dict[tuple, np.ndarray] = {}
 
     def make(self, place: tuple[int, ...], moved: bool) -> np.ndarray:
         """A tile: 8 logarithms and slopes, or their derivatives by the inputs `moved` of the model, (1 or moved, 8,
         _LATTICE, C) at C points of the other coordinates."""
-        grid = np.meshgrid(*([self.chebyshev.t] * len(self.axes)), indexing="ij")
+        grid = np.meshgrid(*(axis.t for axis in self.points), indexing="ij")
         values = {}
-        for name, number, t in zip(self.axes, place[1:], grid, strict=True):
-            values[name] = self.model.of_coordinate(name, (number + 0.5 + t.ravel() / 2) * width(name))
+        for name, number, wide, t in zip(self.axes, place[1:], self.wide, grid, strict=True):
+            values[name] = self.model.of_coordinate(name, (number + 0.5 + t.ravel() / 2) * wide)
         values = self.model.within(values)
         x = place[0] * WIDE + STEP * np.arange(_LATTICE)
         ways = [partial(self.parts.moved, name) for name in self.model.moved] if moved else [self.parts.logarithms]
@@ -81,9 +85,8 @@ class Ladder:
         """
         B = len(deepest)
         c = np.array([self.model.coordinate(name, values[name])[:, 0] for name in self.axes]).reshape(-1, B).T
-        wide = np.array([width(name) for name in self.axes])
-        places = np.floor(c / wide).astype(int)
-        weights = self.chebyshev.weights(2 * (c / wide - places) - 1, 2 / wide)
+        places = np.floor(c / self.wide).astype(int)
+        weights = weights_of(self.points, 2 * (c / self.wide - places) - 1, 2 / self.wide)
         factors = np.broadcast_to(self.parts.factors(values).reshape(4, -1), (4, B)).T
         last = self._last(places, weights, factors, deepest)
         whole = self.read(np.column_stack([last - _TILES + 1, places]), weights, _TILES, moved)

@@ -34,6 +34,11 @@ _NOTHING = -700.0
 _MOVE = 1e-4
 
 
+def is_modulus(name: str) -> bool:
+    """Whether an input is a Young's modulus, of any body or layer."""
+    return name.rpartition(".")[2].startswith("E")
+
+
 class Parts(NamedTuple):
     """How the parts of a model depend on its inputs.
 
@@ -60,7 +65,7 @@ class Parts(NamedTuple):
         if similar:
             powers = powers | (_DMT_SIMILAR if law == "dmt" else _CONE if shape == "cone" else _SIMILAR)
             left_out |= {"h", "R", "half_angle"}
-        moduli = {name for name in values if name.rpartition(".")[2].startswith("E")} - {model.modulus}
+        moduli = {name for name in values if is_modulus(name)} - {model.modulus}
         if law != "maugis" and all(np.all(np.isinf(values[name])) for name in moduli):
             left_out.add(model.modulus)
         axes = tuple(name for name in model.unknowns if name not in left_out)

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ...in_words.fits import NAMES_OF_SHIFTS
+from ...inputs.scene.layers import moduli_of
 from ...inputs.vocabulary import NOT_RUN, ROWS
 from ...solving import solve
 from .asked import Asked
@@ -138,7 +139,8 @@ def _contacts(question: Asked, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
         for name, (v, unit) in columns.items()
     }
     arrays |= {"E2": "rigid"} if np.isinf(np.asarray(columns.get("E2", (0.0,))[0])).all() else {}
-    others = {*scene.parameters} - {*arrays, "n", "m", "P", "a", "D"}  # those without units
+    # those without units; ratios follow from moduli
+    others = {*scene.parameters} - {*arrays, "n", "m", "P", "a", "D", *(ratio for _, _, ratio in moduli_of(scene.values))}
     arrays |= {name: scene.parameters[name] for name in others if ROWS[name].unit == "1"}
     if "R1" in arrays:
         del arrays["R"]

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...inputs.punch.shapes import ANGLES
 from .model import HERTZ
 from .sticking.branch import branch
 from .sticking.labels import Points
@@ -108,6 +109,9 @@ class Curve:
         rows = dict(zip((*ladder.axes, *(model.moved if moved else ())), made.by_rows, strict=True))
         for name in (*model.unknowns, *(model.moved if moved else ())):
             factors = parts.by(name, values)
+            if name in ANGLES and name not in model.unknowns:  # by its logarithm, not that of its tangent
+                angle = np.radians(model.value(name))
+                factors = factors * (2 * angle / np.sin(2 * angle))
             by[name] = rows.get(name, 0.0) + sum(factors[i] * made.by_parts[i] for i in range(4))
         contact, scale = np.ones(depth.shape, bool), self.high[:, None]
         if self.points is not None:

@@ -5,27 +5,29 @@ logarithm of the radius, a tile has _LATTICE points with values and slopes, betw
 coordinates of unknown inputs it has Chebyshev points.
 """
 
-from functools import partial
-
 import numpy as np
 
-from ..model import Model
+from ..model import Model, is_ratio
 from ..tables import WIDE, Chebyshev, weights_of, width
 from .parts import Parts, is_modulus
 
 _LATTICE = 16
 STEP = WIDE / _LATTICE
 #: Tiles of a curve from that of its largest radius down, and tiles below, to which the parts go on as powers.
-_TILES, _BELOW = 4, 2
+_TILES, _BELOW = 3, 3
 #: Points of the lattice of a curve.
 LENGTH = (_TILES + _BELOW) * _LATTICE
-#: Chebyshev points of a tile along each coordinate, of tables with one, two and more coordinates; and along that of a
-#: modulus, whose tiles are wider, as what a tile costs is hardly a matter of its points. Parts between them are off by
-#: 1e-6 at most (tests/inverse/fits/test_sticking.py).
-_POINTS, _OF_MODULI = {1: 10, 2: 8, 3: 6}, {1: 18, 2: 16, 3: 12}
-_WIDE = np.log(1000.0)
+#: Chebyshev points of a tile along each coordinate, of tables with one, two and more coordinates, and its width: of
+#: moduli, whose tiles are wide, as what a tile costs is hardly a matter of its points; and of other inputs. Loads are
+#: off by some 2e-5 of the largest (tests/inverse/fits/test_sticking.py).
+_OF_MODULI, _POINTS = {1: 18, 2: 16, 3: 12}, {1: 10, 2: 7, 3: 5}
+_WIDE_MODULUS, _WIDE = np.log(1000.0), np.log(4.0)
 #: So many tiles up or down the largest radius of a curve is searched.
 _FAR = 16
+
+
+def _width(name: str) -> float:
+    return _WIDE_MODULUS if is_modulus(name) else width(name) if is_ratio(name) else _WIDE
 
 
 class Ladder:
@@ -36,7 +38,7 @@ class Ladder:
         self.axes = self.parts.axes
         count, moduli = min(len(self.axes), 3), [is_modulus(name) for name in self.axes]
         self.points = [Chebyshev((_OF_MODULI if modulus else _POINTS)[count]) for modulus in moduli]
-        self.wide = np.array([_WIDE if modulus else width(name) for name, modulus in zip(self.axes, moduli, strict=True)])
+        self.wide = np.array([_width(name) for name in self.axes])
         self.tiles: dict[tuple, np.ndarray] = {}
 
     def make(self, place: tuple[int, ...], moved: bool) -> np.ndarray:
@@ -48,16 +50,20 @@ class Ladder:
             values[name] = self.model.of_coordinate(name, (number + 0.5 + t.ravel() / 2) * wide)
         values = self.model.within(values)
         x = place[0] * WIDE + STEP * np.arange(_LATTICE)
-        ways = [partial(self.parts.moved, name) for name in self.model.moved] if moved else [self.parts.logarithms]
-        return np.ascontiguousarray(np.moveaxis(np.array([way(values, x) for way in ways]), 2, 3))
+        if not moved:
+            return np.ascontiguousarray(np.swapaxes(self.parts.logarithms(values, x), 1, 2))[None]
+        still = np.swapaxes(self._tile(place, False)[0], 1, 2)
+        changes = [self.parts.moved(name, values, x, still) for name in self.model.moved]
+        return np.ascontiguousarray(np.swapaxes(np.array(changes), 2, 3))
+
+    def _tile(self, place: tuple[int, ...], moved: bool) -> np.ndarray:
+        if (moved, *place) not in self.tiles:
+            self.tiles[moved, *place] = self.make(place, moved)
+        return self.tiles[moved, *place]
 
     def _stack(self, place: tuple[int, ...], count: int, moved: bool) -> np.ndarray:
         """Tiles one after another along x."""
-        several = [(moved, place[0] + k, *place[1:]) for k in range(count)]
-        for key in several:
-            if key not in self.tiles:
-                self.tiles[key] = self.make(key[1:], moved)
-        return np.concatenate([self.tiles[key] for key in several], axis=2)
+        return np.concatenate([self._tile((place[0] + k, *place[1:]), moved) for k in range(count)], axis=2)
 
     def read(self, places: np.ndarray, weights: np.ndarray, count: int, moved: bool = False) -> np.ndarray:
         """Rows (W, B, 8, count * _LATTICE) of B curves, `count` tiles up from the tiles `places` (B, 1 + axes).
@@ -83,6 +89,13 @@ class Ladder:
         values : unknown input -> (B, 1)
         deepest : (B,) in m; the lattice reaches beyond it
         """
+        both = np.column_stack([*(value[:, 0] for value in values.values()), deepest])
+        _, first, same = np.unique(both, axis=0, return_index=True, return_inverse=True)
+        alone = {name: value[first] for name, value in values.items()}
+        return self._rows(alone, deepest[first], moved)[:, same.ravel()]
+
+    def _rows(self, values: dict, deepest: np.ndarray, moved: bool) -> np.ndarray:
+        """`rows` of curves of which no two are the same."""
         B = len(deepest)
         c = np.array([self.model.coordinate(name, values[name])[:, 0] for name in self.axes]).reshape(-1, B).T
         places = np.floor(c / self.wide).astype(int)

@@ -31,7 +31,7 @@ _OF_PARTS = ((1, 2), (0, 1), (1, 2), (0, 1))
 #: In place of the logarithm of 0, such as of pull_D under "dmt".
 _NOTHING = -700.0
 #: By how much inputs are moved for derivatives by their logarithms (ratios: by themselves).
-_MOVE = 1e-4
+_MOVE = 1e-5
 
 
 def is_modulus(name: str) -> bool:
@@ -120,15 +120,13 @@ class Parts(NamedTuple):
             out[4 + i] = np.where(nothing, 0.0, made.slopes[i] / positive)
         return out
 
-    def moved(self, name: str, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:
-        """Derivatives of `logarithms` by the coordinate of an input that is not unknown."""
+    def moved(self, name: str, values: dict[str, np.ndarray], x: np.ndarray, still: np.ndarray) -> np.ndarray:
+        """Derivatives of `logarithms`, which are `still` (8, C, m), by the coordinate of an input that is not unknown."""
         if name in ("k_machine", "w_adhesion") and name not in self.axes_of_law:
-            return np.zeros((8, len(next(iter(values.values()), np.zeros(1))), len(x)))
-        count = len(next(iter(values.values()), np.zeros(1)))
-        value = np.full(count, self.model.value(name))
-        by = _MOVE * (1.0 if is_ratio(name) else value)
-        more, less = (self.logarithms(values | {name: value + sign * by}, x) for sign in (1, -1))
-        return (more - less) / (2 * _MOVE)
+            return 0 * still
+        value = np.full(still.shape[1], self.model.value(name))
+        by = _MOVE * (-1.0 if is_ratio(name) else value)  # a ratio of 0.5 does not rise
+        return (self.logarithms(values | {name: value + by}, x) - still) / (-_MOVE if is_ratio(name) else _MOVE)
 
     @property
     def axes_of_law(self) -> tuple[str, ...]:

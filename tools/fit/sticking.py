@@ -32,6 +32,7 @@ SHAPES = {"paraboloid": {}, "sphere": {"shape": "sphere"}, "cone": {"shape": "co
 BASES = {"half_space": (0.0,), "rigid": (0.1, 0.5, 3.0), "compliant": (0.1, 0.5, 3.0)}
 SOFTER = 3.0  # E2*/E1* of the compliant base
 CENTER = np.array([0.0])
+DRAWS = 5  # of noise, for each curve that is solved
 KINDS = {"w": {"contact_point": False}, "contact": {}, "h": {}}
 
 
@@ -46,9 +47,9 @@ def scene(base: str, h: float) -> tuple[dict, dict]:
     return numbers | {"bonding": "bonded"}, inputs
 
 
-def curves(numbers: dict, shape: dict, share: np.ndarray, noise: np.ndarray, random: np.random.Generator) -> tuple:
-    """Depths and loads (curves, POINTS) in units R = E1* = 1, with noise, and the works of adhesion: pull-off is at
-    `share` of the largest load, and the standard deviation `noise` of it."""
+def curves(numbers: dict, shape: dict, share: np.ndarray, random: np.random.Generator) -> tuple:
+    """Depths and loads (curves, POINTS) in units R = E1* = 1, and the works of adhesion: pull-off is at `share` of the
+    largest load."""
     unit = SOFTER if numbers.get("n") else 1.0  # of E2*, the unit of the solver, in E1*
     deep = min(0.2, numbers.get("h", 1.0) / 2)
     about = {**numbers, **shape, "micro": "smooth"}
@@ -70,8 +71,7 @@ def curves(numbers: dict, shape: dict, share: np.ndarray, noise: np.ndarray, ran
     assert np.isin(loads.status, (0, 11)).all(), np.unique(loads.status)
     P = np.nan_to_num(loads.P).reshape(D.shape) * unit
     P = np.where(approach[:, None] & (D < 0), 0.0, P)
-    largest = P.max(axis=1, keepdims=True)
-    return D, P + noise[:, None] * largest * random.standard_normal(P.shape), w
+    return D, P, w
 
 
 def fitted(kind: str, count: int) -> dict[str, np.ndarray]:
@@ -82,11 +82,13 @@ def fitted(kind: str, count: int) -> dict[str, np.ndarray]:
         for base, thicknesses in BASES.items():
             for h in thicknesses:
                 numbers, inputs = scene(base, h)
-                share = 10 ** random.uniform(-2, 0, count)
-                noise = 10 ** random.uniform(np.log10(0.005), np.log10(0.05), count)
+                share = 10 ** random.uniform(-2, 0, count // DRAWS)
                 with warnings.catch_warnings():
                     warnings.simplefilter("ignore")
-                    D, P, w = curves(numbers, shape, share, noise, random)
+                    D, P, w = curves(numbers, shape, share, random)
+                share, D, P, w = (np.repeat(A, DRAWS, axis=0) for A in (share, D, P, w))
+                noise = 10 ** random.uniform(np.log10(0.005), np.log10(0.05), len(w))
+                P = P + (noise * P.max(axis=1))[:, None] * random.standard_normal(P.shape)
                 D0, P0 = (random.uniform(-0.05, 0.05, (count, 1)) * A[:, -1:] for A in (D, P))
                 D0 = 0 * D0 if kind == "w" else D0
                 Es = E1 / (1 - NU**2)
@@ -145,4 +147,4 @@ if __name__ == "__main__":
     number = int(sys.argv[1]) if sys.argv[1:] else 210
     scenes = len(SHAPES) * sum(map(len, BASES.values()))
     for part in sys.argv[2:] or [*KINDS]:
-        report(part, -(-number // scenes))
+        report(part, DRAWS * max(1, round(number / scenes / DRAWS)))

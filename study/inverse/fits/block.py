@@ -53,7 +53,8 @@ def fit_block(
     curve = Curve(table, x, wide, top, asked.shifts)
     with np.errstate(divide="ignore", invalid="ignore"):
         w = np.where(there, 1.0 if sigma is None else top[:, None] / np.where(there, sigma, 1.0), 0.0)
-    count, k = there.sum(axis=1), len(curve.names)
+    # of what sticks, the point above which the others are in contact counts like an unknown
+    count, k = there.sum(axis=1) - model.sticks, len(curve.names)
     starts, low, high = starts_of(asked, curve, there, y, top, least)
     data = Data(np.where(there, y, 0.0) / top[:, None], w, low, high, *_no_prior(low), asked.loss == "huber")
     if model.sticks:

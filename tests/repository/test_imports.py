@@ -29,7 +29,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives", "fields"),
-        *("in_words", "files", "store", "work", "carried", "lazy", "solving", "inverse", "yields", "figures", "api"),
+        *("in_words", "files", "store", "work", "carried", "lazy", "solving", "inverse", "adhesion", "yields", "figures", "api"),
         *("catalogue", "explorer", "commands", "__main__"),
     ),
 }

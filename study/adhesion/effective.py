@@ -23,9 +23,9 @@ def effective_work(scan: Scan, *, form: Any = "plane", periodic: bool = False, *
 
         w_eff = w - (E/4) ∫ q C(q)/L(qh) d²q,
 
-    with the spectrum C of the heights of a map, and E and L of what touches, of a layer or stack and the punch together.
-    It says what `w_adhesion` of a smooth punch stands for a rough one whose asperities are flat. Waves shorter than two
-    steps of the scan are not in it: it is the most that may be left.
+    with the spectrum C of the heights of a map, and E and L of what touches, of a layer or stack and the punch. It says
+    what `w_adhesion` of a smooth punch stands for a rough one whose asperities are flat. Waves shorter than two steps
+    of the scan are not in it: it is the most that may be left.
 
     Parameters
     ----------

@@ -1,11 +1,13 @@
 """How right are fits of curves that stick, and how fast? `python tools/fit/sticking.py [CURVES [FREE ...]]`, FREE of w,
 contact, h: what is unknown beside E1 and w_adhesion; some five minutes with 210 curves.
 
-Curves P(D) of paraboloids, spheres and cones, to 0.2 R deep, at most h/2: on half-spaces, and on gels of h = 0.1, 0.5 and 3 R on a
-rigid base and on one of E2* = 3 E1*. A third of the curves are approaches, 0 before the surfaces meet, the others go
-back to pull-off and beyond. The pull-off load is 1 to 100 % of the largest load, 80 points have noise of 0.5 to 5 % of
-it, and contact point and baseline are off. Exact loads are those of `solver.solve`. The call of `study.fit` has a
-w_adhesion a factor of up to 3 off and no value of E1. Printed are, for each shape and in all:
+Curves P(D) of paraboloids, spheres and cones, to 0.2 R deep, at most h/2: on half-spaces, and on gels of h = 0.1, 0.5
+and 3 R on a rigid base and on one of E2* = 3 E1*. A third of the curves are approaches, 0 before the surfaces meet, the
+others go back to pull-off and beyond. The pull-off load is 1 to 100 % of the largest load, 80 points have noise of 0.5
+to 5 % of it, and contact point (not of the part w) and baseline are off. Exact loads are those of `solver.solve`, each
+with five draws of noise. The call of `study.fit` has bounds of w_adhesion that are three times wider than the works of
+its curves, and no value of E1; of the part h it has a thickness a factor of up to 3 off. Printed are, for each shape
+and in all:
 
 - covered: of how many converged curves the 95 % intervals of E1, and of w_adhesion, have the true one, with one
   standard deviation of that share;
@@ -57,7 +59,7 @@ def curves(numbers: dict, shape: dict, share: np.ndarray, random: np.random.Gene
     for _ in range(14):
         w = np.exp((low + high) / 2)
         ends = solve(Problem.of(D=deepest, w_adhesion=w / unit, **about), CENTER)
-        too_much = ~(ends.P > -ends.P_off / share)  # also where all loads are pulls
+        too_much = ~(-ends.P_off / share < ends.P)  # also where all loads are pulls
         low, high = np.where(too_much, low, np.log(w)), np.where(too_much, np.log(w), high)
     w = np.exp(low)
     ends = solve(Problem.of(D=deepest, w_adhesion=w / unit, **about), CENTER)
@@ -75,70 +77,65 @@ def curves(numbers: dict, shape: dict, share: np.ndarray, random: np.random.Gene
 
 
 def fitted(kind: str, count: int) -> dict[str, np.ndarray]:
-    """What came out of `count` curves of each scene, over the curves."""
-    rows: dict[str, list] = {}
+    """What comes out of `count` curves of each scene, over the curves."""
+    rows: list[dict] = []
     random, engine.START = np.random.default_rng(7), np.inf
     for name, shape in SHAPES.items():
-        for base, thicknesses in BASES.items():
-            for h in thicknesses:
-                numbers, inputs = scene(base, h)
-                share = 10 ** random.uniform(-2, 0, count // DRAWS)
-                with warnings.catch_warnings():
-                    warnings.simplefilter("ignore")
-                    D, P, w = curves(numbers, shape, share, random)
-                share, D, P, w = (np.repeat(A, DRAWS, axis=0) for A in (share, D, P, w))
-                noise = 10 ** random.uniform(np.log10(0.005), np.log10(0.05), len(w))
-                P = P + (noise * P.max(axis=1))[:, None] * random.standard_normal(P.shape)
-                D0, P0 = (random.uniform(-0.05, 0.05, (count, 1)) * A[:, -1:] for A in (D, P))
-                D0 = 0 * D0 if kind == "w" else D0
-                Es = E1 / (1 - NU**2)
-                modulus = "E2" if base == "half_space" else "E1"
-                free = [modulus, "w_adhesion", *(["h"] if kind == "h" and h else [])]
-                inputs |= {"micro": "smooth", **shape} | ({} if name == "cone" else {"R": f"{R!r} m"})
-                if kind == "h" and h:
-                    inputs |= {"h": f"{float(h * R * 3 ** random.uniform(-1, 1))!r} m"}
-                middle = np.exp(np.log(w).mean())
-                bounds = {w.min() / 3: 0, w.max() * 3: 0, middle: 0}
-                free = {key: None for key in free} | {
-                    "w_adhesion": tuple(f"{float(v * Es * R)!r} J/m^2" for v in (min(bounds), max(bounds)))
-                }
-                begun = time.process_time()
-                fit = study.fit(
-                    {"D": (R * (D + D0), "m"), "P": (Es * R**2 * (P + P0), "N")}, free=free, progress=False,
-                    **KINDS[kind], **inputs, w_adhesion=f"{float(middle * Es * R)!r} J/m^2",
-                )  # fmt: skip
-                seconds = (time.process_time() - begun) / count
-                truth = {modulus: np.full(count, E1), "w_adhesion": w * Es * R}
-                for number, (key, value) in enumerate(truth.items()):
-                    about = {"value": fit[key].values, "low": fit[f"{key}_low"].values}
-                    about |= {"high": fit[f"{key}_high"].values, "spread": fit[f"{key}_spread"].values, "true": value}
-                    for column, values in about.items():
-                        rows.setdefault(f"{'Ew'[number]} {column}", []).append(values)
-                for column, values in (("status", fit.fit_status.values), ("shape", np.full(count, name)),
-                    ("base", np.full(count, base)), ("h", np.full(count, h)), ("share", share), ("noise", noise),
-                    ("seconds", np.full(count, seconds))):  # fmt: skip
-                    rows.setdefault(column, []).append(values)
-                names = fit.fit_status.attrs["flag_meanings"].split()
-    return {key: np.concatenate(values) for key, values in rows.items()} | {"names": np.array(names)}
+        for base, h in ((base, h) for base, thicknesses in BASES.items() for h in thicknesses):
+            numbers, inputs = scene(base, h)
+            share = 10 ** random.uniform(-2, 0, count // DRAWS)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                D, P, w = curves(numbers, shape, share, random)
+            share, D, P, w = (np.repeat(A, DRAWS, axis=0) for A in (share, D, P, w))
+            noise = 10 ** random.uniform(np.log10(0.005), np.log10(0.05), len(w))
+            P = P + (noise * P.max(axis=1))[:, None] * random.standard_normal(P.shape)
+            D0, P0 = (random.uniform(-0.05, 0.05, (count, 1)) * A[:, -1:] for A in (D, P))
+            inputs |= {"micro": "smooth", **shape} | ({} if name == "cone" else {"R": f"{R!r} m"})
+            if kind == "h" and h:
+                inputs |= {"h": f"{float(h * R * 3 ** random.uniform(-1, 1))!r} m"}
+            row = of_scene(kind, inputs, (R * (D + D0 * (kind != "w")), P + P0, w))
+            rows.append(row | {"shape": np.full(count, name), "share": share, "noise": noise})
+    return {key: np.concatenate([row[key] for row in rows]) for key in rows[0]}
+
+
+def of_scene(kind: str, inputs: dict, data: tuple) -> dict[str, np.ndarray]:
+    """What `study.fit` says of depths in m and loads and works of adhesion in units R = E1* = 1, and what is true."""
+    D, P, w = data
+    unit = E1 / (1 - NU**2)
+    low, middle, high = (
+        f"{float(v * unit * R)!r} J/m^2" for v in (w.min() / 3, np.sqrt(w.min() * w.max()), 3 * w.max())
+    )
+    modulus = "E2" if inputs.get("base") == "half_space" else "E1"
+    free = {modulus: None, "w_adhesion": (low, high)} | ({"h": None} if kind == "h" and "h" in inputs else {})
+    begun = time.process_time()
+    measured = {"D": (D, "m"), "P": (unit * R**2 * P, "N")}
+    fit = study.fit(measured, free=free, progress=False, w_adhesion=middle, **KINDS[kind], **inputs)
+    row = {
+        "seconds": np.full(len(w), (time.process_time() - begun) / len(w)),
+        "status": study.decode(fit.fit_status).values,
+    }
+    for letter, name, true in (("E", modulus, np.full(len(w), E1)), ("w", "w_adhesion", w * unit * R)):
+        row |= {f"{letter} {end}": fit[f"{name}_{end}"].values for end in ("low", "high", "spread")}
+        row |= {f"{letter} value": fit[name].values, f"{letter} true": true}
+    return row
 
 
 def report(kind: str, count: int) -> dict[str, np.ndarray]:
     rows = fitted(kind, count)
-    good = rows["status"] == 0
     for name in (*SHAPES, "all"):
         here = (rows["shape"] == name) | (name == "all")
-        words = []
+        words, far, good = [], np.zeros(len(here), bool), here & (rows["status"] == "converged")
         for letter in "Ew":
-            low, high, true = (rows[f"{letter} {column}"][here & good] for column in ("low", "high", "true"))
-            share = ((low <= true) & (true <= high)).mean()
-            words.append(f"{letter} {100 * share:.1f} ± {100 * np.sqrt(share * (1 - share) / (here & good).sum()):.1f}")
-        far = np.zeros(len(good), bool)
-        for letter in "Ew":
-            off = np.abs(rows[f"{letter} value"] - rows[f"{letter} true"])
-            far |= (off > 5 * rows[f"{letter} spread"]) & (off > 0.01 * rows[f"{letter} true"])
-        counts = np.bincount(rows["status"][here].astype(int), minlength=7)
-        said = ", ".join(f"{word} {number}" for word, number in zip(rows["names"], counts, strict=False) if number)
-        print(f"{kind:7} {name:10} covered {' %, '.join(words)} %; far {(far & here & good).sum()}", end="; ")
+            value, low, high, spread, true = (
+                rows[f"{letter} {end}"] for end in ("value", "low", "high", "spread", "true")
+            )
+            share = ((low <= true) & (true <= high))[good].mean()
+            words.append(f"{letter} {100 * share:.1f} ± {100 * np.sqrt(share * (1 - share) / good.sum()):.1f} %")
+            far |= good & (np.abs(value - true) > np.maximum(5 * spread, 0.01 * true))
+        counts = dict(zip(*np.unique(rows["status"][here], return_counts=True), strict=True))
+        said = ", ".join(f"{word} {number}" for word, number in counts.items())
+        print(f"{kind:7} {name:10} covered {', '.join(words)}; far {far.sum()}", end="; ")
         print(f"{said}; {rows['seconds'][here].mean():.2f} s a curve", flush=True)
     return rows
 
@@ -146,5 +143,5 @@ def report(kind: str, count: int) -> dict[str, np.ndarray]:
 if __name__ == "__main__":
     number = int(sys.argv[1]) if sys.argv[1:] else 210
     scenes = len(SHAPES) * sum(map(len, BASES.values()))
-    for part in sys.argv[2:] or [*KINDS]:
+    for part in sys.argv[2:] or KINDS:
         report(part, DRAWS * max(1, round(number / scenes / DRAWS)))

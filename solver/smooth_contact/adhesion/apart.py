@@ -31,9 +31,9 @@ class Apart(NamedTuple):
 
 
 def apart(problem, x):
-    """:class:`Apart` of B contacts with w > 0, of one base, shape and law of adhesion, in units R = E2* = 1, at x (B, m).
+    """:class:`Apart` of B contacts with w > 0, of one base, shape and law of adhesion, in units R = E2* = 1.
 
-    The load, depth or radius of the problem do not count.
+    x : (B, m), at which radii; the load, depth or radius of the problem do not count
     """
     if not is_graded(problem).any():
         return _apart(problem, x)

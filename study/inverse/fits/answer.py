@@ -140,7 +140,15 @@ def _contacts(question: Asked, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
     }
     arrays |= {"E2": "rigid"} if np.isinf(np.asarray(columns.get("E2", (0.0,))[0])).all() else {}
     # those without units; ratios follow from moduli
-    others = {*scene.parameters} - {*arrays, "n", "m", "P", "a", "D", *(ratio for _, _, ratio in moduli_of(scene.values))}
+    others = {*scene.parameters} - {
+        *arrays,
+        "n",
+        "m",
+        "P",
+        "a",
+        "D",
+        *(ratio for _, _, ratio in moduli_of(scene.values)),
+    }
     arrays |= {name: scene.parameters[name] for name in others if ROWS[name].unit == "1"}
     if "R1" in arrays:
         del arrays["R"]

@@ -66,7 +66,9 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     priors = tuple(name for name in parameters if _has_prior(name, parameters[name]) and name not in names)
     unknowns = (*names, *priors)
     if "k_machine" in unknowns:
-        errors.append("free: k_machine: where a punch comes off is read from the points, so they do not say what held it")
+        errors.append(
+            "free: k_machine: where a punch comes off is read from the points, so they do not say what held it"
+        )
     errors += [f"free: {a} and {b}: {_ALIKE_WORDS}" for a, b in _ALIKE if a in unknowns and b in unknowns]
     if not names and not errors:
         errors.append('free: name at least one input, such as free=["E1"]')

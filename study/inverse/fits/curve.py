@@ -99,7 +99,9 @@ class Curve:
         others = [F * places.read(rows[1 + i])[0] for i in range(len(model.moved))] if moved else []
         return F, by, np.array(others)
 
-    def _sticking(self, ladder: Ladder, p: np.ndarray, values: dict, moved: bool) -> tuple[np.ndarray, dict, np.ndarray]:
+    def _sticking(
+        self, ladder: Ladder, p: np.ndarray, values: dict, moved: bool
+    ) -> tuple[np.ndarray, dict, np.ndarray]:
         """`contact` of what sticks; 0 at points that are not in contact."""
         model, parts = ladder.model, ladder.parts
         shift = {name: p[:, [self.names.index(name)]] for name in self.shifts}

@@ -18,7 +18,9 @@ _WORKS, _OTHERS, _WAYS, _BEST = 6, 3, (0.02, 0.06, 0.15, 0.3, 0.6, 1.0), 3
 _HERTZ = {("D", "P"): 4 / 3, ("P", "a"): 0.75 ** (1 / 3), ("a", "dP_dD"): 2.0}
 
 
-def starts_of(asked: Asked, curve: Curve, there: np.ndarray, y: np.ndarray, top: np.ndarray, least: np.ndarray) -> tuple:
+def starts_of(
+    asked: Asked, curve: Curve, there: np.ndarray, y: np.ndarray, top: np.ndarray, least: np.ndarray
+) -> tuple:
     """A list of unknowns (B, k), at each of which a search begins, and their bounds (B, k)."""
     model, names, B = asked.model, curve.names, len(y)
     power = HERTZ[model.x, model.y][0]
@@ -136,5 +138,3 @@ def _contact_points(asked: Asked, curve: Curve, there: np.ndarray, y: np.ndarray
             D0[b] = np.clip((x10 - part * x50) / (1 - part), xs[0], xs[-1] - 1e-3 * curve.wide[b])
         deepest[b], load[b] = xs[-1] - D0[b], max(high, 1e-300)
     return D0, P0, deepest, load, half
-
-

@@ -74,7 +74,9 @@ class Table:
         model, names = self.model, self.model.axes
         middle = (np.array(place) + 0.5) * [WIDE, *map(width, names)]
         half = [WIDE / 2 + _MARGIN, *(width(name) / 2 for name in names)]
-        parts = np.stack([grid.ravel() for grid in np.meshgrid(*([self.chebyshev.t] * len(half)), indexing="ij")], axis=-1)
+        parts = np.stack(
+            [grid.ravel() for grid in np.meshgrid(*([self.chebyshev.t] * len(half)), indexing="ij")], axis=-1
+        )
         u, *coordinates = (middle + half * parts).T
         values = {name: model.of_coordinate(name, c) for name, c in zip(names, coordinates, strict=True)}
         values = model.within(values)

@@ -17,6 +17,7 @@ from study.inverse.fits.sticking.ladder import Ladder
 GEL = {"R": "5 um", "punch": "rigid", "nu1": 0.45, "E2": "20 kPa", "nu2": 0.45, "h": "3 um", "bonding": "bonded"}
 GEL |= {"micro": "smooth"}
 SPHERE, CONE = GEL | {"shape": "sphere"}, GEL | {"shape": "cone", "half_angle": 70.0, "R": None}
+BARE = {"R": "5 um", "nu2": 0.45, "base": "half_space", "micro": "smooth"}
 TRUE = {"E1": "5 kPa", "w_adhesion": "0.4 mJ/m^2"}
 #: Depths in m from beyond pull-off to 0.2 R.
 DEPTHS = np.linspace(-0.5e-6, 1e-6, 40)
@@ -53,7 +54,7 @@ def curve_of(inputs, free, **options):
     return curve, np.array([[*p, *np.zeros(len(question.shifts))]])
 
 
-@pytest.mark.parametrize("inputs", [GEL, SPHERE, CONE, GEL | {"adhesion": "dmt"}], ids="gel sphere cone dmt".split())
+@pytest.mark.parametrize("inputs", [GEL, SPHERE, CONE, GEL | {"adhesion": "dmt"}], ids=["gel", "sphere", "cone", "dmt"])
 def test_the_table_has_the_loads_of_the_solver(inputs):
     """To 3e-5 of the range of loads, where there is a contact."""
     curve, p = curve_of(inputs | TRUE, ["E1", "w_adhesion", "h"])
@@ -65,13 +66,13 @@ def test_the_table_has_the_loads_of_the_solver(inputs):
     assert_allclose((curve.contact(p)[0][0] * 1e-8)[there], P[there], rtol=0, atol=3e-5 * np.ptp(P))
 
 
-@pytest.mark.parametrize("inputs", [GEL, SPHERE, CONE], ids="gel sphere cone".split())
+@pytest.mark.parametrize("inputs", [GEL, SPHERE, CONE], ids=["gel", "sphere", "cone"])
 def test_derivatives_are_those_of_differences(inputs):
     """On the branch and in the ramp beyond its end, by all unknowns and the contact point."""
     free = ["E1", "w_adhesion", "half_angle" if "half_angle" in inputs else "h"]
     curve, p = curve_of(inputs | TRUE, free)
     made = branch(curve.table.rows(curve.values(p), DEPTHS[None].max(axis=1)), DEPTHS[None])
-    inside, J = DEPTHS > made.D_off[0] + 5e-9, curve(p)[1][0]
+    inside, J = made.D_off[0] + 5e-9 < DEPTHS, curve(p)[1][0]
     assert 5 < inside.sum() < 40
     for i in range(p.shape[1]):
         more, less = p.copy(), p.copy()
@@ -85,7 +86,7 @@ def test_points_are_in_contact_above_the_depth_that_fits_best():
     curve, p = curve_of(GEL | TRUE, ["E1", "w_adhesion"])
     P = curve.contact(p)[0]
     for first in (-0.1e-6, 0.0, 0.2e-6):
-        off = DEPTHS < first
+        off = first > DEPTHS
         y = np.where(off, 0.0, P)
         order = np.random.default_rng(0).permutation(len(DEPTHS))
         points = Points.of(DEPTHS[None, order], y[:, order], np.ones(y.shape), 3, False)
@@ -101,7 +102,7 @@ CASES = {
     "machine": (GEL | {"k_machine": "0.01 N/m"}, {"E1": 5e3, "w_adhesion": 4e-4}),
     "stack": (STACK, {"w_adhesion": 4e-4}),
     "dmt": (GEL | {"adhesion": "dmt"}, {"E1": 5e3, "w_adhesion": 4e-4}),
-    "half-space": ({"R": "5 um", "nu2": 0.45, "base": "half_space", "micro": "smooth"}, {"E2": 5e3, "w_adhesion": 4e-4}),
+    "half-space": (BARE, {"E2": 5e3, "w_adhesion": 4e-4}),
 }  # fmt: skip
 UNITS = {"E1": "Pa", "E2": "Pa", "h": "m", "w_adhesion": "J/m^2", "half_angle": "deg"}
 
@@ -125,11 +126,11 @@ def test_the_truth_comes_back(name):
 
 def test_the_bits_of_a_curve_do_not_depend_on_its_company():
     P = loads(DEPTHS, **GEL | TRUE)
-    noise = 0.02 * P.max() * np.random.default_rng(3).standard_normal((10, len(P)))
-    curves = P * np.linspace(0.5, 2, 10)[:, None] + noise
+    noise = 0.02 * P.max() * np.random.default_rng(3).standard_normal((9, len(P)))
+    curves = P * np.linspace(0.5, 2, 9)[:, None] + noise
     about = GEL | {"w_adhesion": "1 mJ/m^2"}
     together = fitted(DEPTHS, curves, ["E1", "w_adhesion"], **about, intervals="fisher")
-    for i in (0, 9):
+    for i in (0, 8):
         alone = fitted(DEPTHS, curves[i], ["E1", "w_adhesion"], **about, intervals="fisher")
         for name in ("E1", "w_adhesion", "D0", "w_adhesion_low", "fit_status", "D_valid"):
             assert alone[name].values[0] == together[name].values[i], name

@@ -83,8 +83,9 @@ class Ladder:
         return out
 
     def rows(self, values: dict, deepest: np.ndarray, moved: bool = False) -> np.ndarray:
-        """Rows (1 + axes + moved, B, 8, LENGTH) of B curves: the logarithms of the parts, with their factors, and slopes; their derivatives by the coordinates of unknown inputs
-        and, without those of the factors, by the inputs `moved` of the model.
+        """Rows (1 + axes + moved, B, 8, LENGTH) of B curves: the logarithms of the parts, with their factors, and
+        slopes; their derivatives by the coordinates of unknown inputs and, without those of the factors, by the inputs
+        `moved`.
 
         values : unknown input -> (B, 1)
         deepest : (B,) in m; the lattice reaches beyond it
@@ -105,11 +106,11 @@ class Ladder:
         whole = self.read(np.column_stack([last - _TILES + 1, places]), weights, _TILES, moved)
         whole[0, :, :4] += factors[:, :, None]
         below = STEP * np.arange(-_BELOW * _LATTICE, 0)
-        first = whole[..., :4, :1] + whole[..., 4:, :1] * below, np.broadcast_to(
-            whole[..., 4:, :1], (*whole.shape[:2], 4, len(below))
+        first = (
+            whole[..., :4, :1] + whole[..., 4:, :1] * below,
+            np.broadcast_to(whole[..., 4:, :1], (*whole.shape[:2], 4, len(below))),
         )
-        whole = np.concatenate([np.concatenate(first, axis=2), whole], axis=3)
-        return whole
+        return np.concatenate([np.concatenate(first, axis=2), whole], axis=3)
 
     def _last(self, places: np.ndarray, weights: np.ndarray, factors: np.ndarray, deepest: np.ndarray) -> np.ndarray:
         """The tile (B,) in which each curve reaches its largest depth: at its end the depth is larger and rises."""

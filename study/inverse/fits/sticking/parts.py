@@ -20,7 +20,7 @@ from ..model import Model, is_ratio
 
 #: Powers of E, w, of the length that is the unit of a, and of R in P₀, D₀, pull_P and pull_D.
 _USUAL = {"E": (1, 0, 0.5, -0.5), "w": (0, 0, 0.5, 0.5)}
-_USUAL |= {name: (0, 0, 0, 0) for name in ("length", "R", "cotangent")}
+_USUAL |= dict.fromkeys(("length", "R", "cotangent"), (0, 0, 0, 0))
 _SIMILAR = {"length": (3, 2, 1.5, 0.5), "R": (-1, -1, 0, 0)}
 #: Of a cone with the cotangent of its half angle, which has no length.
 _CONE = {"length": (2, 1, 1.5, 0.5), "cotangent": (1, 1, 0, 0)}
@@ -121,7 +121,8 @@ class Parts(NamedTuple):
         return out
 
     def moved(self, name: str, values: dict[str, np.ndarray], x: np.ndarray, still: np.ndarray) -> np.ndarray:
-        """Derivatives of `logarithms`, which are `still` (8, C, m), by the coordinate of an input that is not unknown."""
+        """Derivatives of `logarithms`, which are `still` (8, C, m), by the logarithm of an input that is not unknown;
+        by a ratio itself."""
         if name in ("k_machine", "w_adhesion") and name not in self.axes_of_law:
             return 0 * still
         value = np.full(still.shape[1], self.model.value(name))

@@ -163,8 +163,9 @@ def _numbers() -> set[str]:
 
 
 def _has_prior(name: str, value: Any) -> bool:
-    """Whether ± stands in the call: of R, Poisson ratios and names of materials it is taken over, not fitted."""
-    if name == "R" or name in BODIES or is_ratio(name) or name in CONTROLS:
+    """Whether ± stands in the call: of R, Poisson ratios and names of materials it is taken over, not fitted; that of
+    k_machine changes no curve."""
+    if name in ("R", "k_machine") or name in BODIES or is_ratio(name) or name in CONTROLS:
         return False
     spread = getattr(value, "std_dev", None) or getattr(getattr(value, "magnitude", None), "std_dev", None)
     return bool(spread) or (

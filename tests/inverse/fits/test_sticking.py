@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 import pytest
-from measured_curves import status
+from measured_curves import solved, status
 from numpy.testing import assert_allclose
 
 import study
@@ -122,6 +122,13 @@ def test_the_truth_comes_back(name):
         assert_allclose(fit[key], value, rtol=1e-4)
     assert_allclose(fit.D0, 1e-7, rtol=0, atol=1e-11)
     assert_allclose(fit.residual, 0, rtol=0, atol=2e-5 * P.max())
+
+
+def test_a_half_angle_without_adhesion():
+    P = solved("D", "P", DEPTHS, **{name: value for name, value in CONE.items() if value}, E1="5 kPa")
+    fit = fitted(DEPTHS, P, {"half_angle": ("55 deg", "80 deg")}, **CONE, E1="5 kPa", intervals="fisher")
+    assert status(fit) == ["converged"]
+    assert_allclose(fit.half_angle, 70, rtol=1e-5)
 
 
 def test_the_bits_of_a_curve_do_not_depend_on_its_company():

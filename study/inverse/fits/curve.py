@@ -102,26 +102,28 @@ class Curve:
     def _sticking(
         self, ladder: Ladder, p: np.ndarray, values: dict, moved: bool
     ) -> tuple[np.ndarray, dict, np.ndarray]:
-        """`contact` of what sticks; 0 at points that are not in contact."""
+        """`contact` of what sticks; without adhesion at points that do not stick."""
         model, parts = ladder.model, ladder.parts
         shift = {name: p[:, [self.names.index(name)]] for name in self.shifts}
         depth = self.x - shift.get("D0", 0.0) * self.wide[:, None]
         made = branch(ladder.rows(values, depth.max(axis=1), moved), depth)
-        by = {"x": made.slope}
-        rows = dict(zip((*ladder.axes, *(model.moved if moved else ())), made.by_rows, strict=True))
+        base = shift.get("P0", 0.0) + shift.get("tilt", 0.0) * self.x / self.wide[:, None]
+        high, contact = self.high[:, None], np.ones(depth.shape, bool)
+        if self.points is not None:
+            contact = self.points.in_contact(made.sticks.P / high, made.free.P / high, base)
+        P, slope, by_rows, by_parts = (
+            np.where(contact, *pair) / high for pair in zip(made.sticks, made.free, strict=True)
+        )
+        by = {"x": slope}
+        rows = dict(zip((*ladder.axes, *(model.moved if moved else ())), by_rows, strict=True))
         for name in (*model.unknowns, *(model.moved if moved else ())):
             factors = parts.by(name, values)
             if name in ANGLES and name not in model.unknowns:  # by its logarithm, not that of its tangent
                 angle = np.radians(model.value(name))
                 factors = factors * (2 * angle / np.sin(2 * angle))
-            by[name] = rows.get(name, 0.0) + sum(factors[i] * made.by_parts[i] for i in range(4))
-        contact, scale = np.ones(depth.shape, bool), self.high[:, None]
-        if self.points is not None:
-            base = shift.get("P0", 0.0) + shift.get("tilt", 0.0) * self.x / self.wide[:, None]
-            contact = self.points.in_contact(made.P / scale, base)
-        by = {name: np.where(contact, column, 0.0) / scale for name, column in by.items()}
+            by[name] = rows.get(name, 0.0) + sum(factors[i] * by_parts[i] for i in range(4))
         others = [by[name] for name in model.moved] if moved else []
-        return np.where(contact, made.P, 0.0) / scale, by, np.array(others)
+        return P, by, np.array(others)
 
     def _log_slope(self, name, values, power, of_u, slope, by_axis, places):
         """d ln F by the coordinate of an input."""

@@ -18,16 +18,23 @@ _NEWTON, _TURN = 5, 12  # steps of the searches for a depth and for the turn
 _STEEP = 0.02
 
 
-class Branch(NamedTuple):
+class Loads(NamedTuple):
     """Loads P (B, n) in N, and dP/dD, at depths; derivatives of P by unknown inputs (axes, B, n) and by others
-    (moved, B, n), those by the four parts (4, B, n), and where the branch ends, (B,)."""
+    (moved, B, n), and those by the logarithms of the four parts (4, B, n)."""
 
     P: np.ndarray
     slope: np.ndarray
     by_rows: np.ndarray
     by_parts: np.ndarray
+
+
+class Branch(NamedTuple):
+    """Loads of the contacts that stick, and of those that do not, 0 above the surface; and the end of the branch,
+    (B,)."""
+
+    sticks: Loads
+    free: Loads
     D_off: np.ndarray
-    P_off: np.ndarray
 
 
 class _Cells:
@@ -74,7 +81,7 @@ def branch(rows: np.ndarray, depth: np.ndarray) -> Branch:
         rising = np.where(np.isnan(D), np.inf, D)
         rising[np.arange(LENGTH) <= turn[:, None]] = -np.inf
         cell = np.clip((rising[:, None, :] <= depth[:, :, None]).sum(axis=2) - 1, turn[:, None], LENGTH - 2)
-        return _loads(rows, depth, cell, (turn, t_off, D_off, P_off, pull))
+        return Branch(_loads(rows, depth, cell, (turn, t_off, D_off, P_off, pull)), _free(rows, depth), D_off)
 
 
 def _turn(c: list) -> np.ndarray:
@@ -92,8 +99,32 @@ def _turn(c: list) -> np.ndarray:
     return t
 
 
-def _loads(rows: np.ndarray, depth: np.ndarray, cell: np.ndarray, off: tuple) -> Branch:
-    """The branch at depths in the cells (B, n); those beyond its end, `off`, are at the end."""
+def _free(rows: np.ndarray, depth: np.ndarray) -> Loads:
+    """Loads at depths without adhesion."""
+    wanted = np.log(np.maximum(depth, 0.0))
+    cell = np.clip((rows[0][:, None, 1] <= wanted[:, :, None]).sum(axis=2) - 1, 0, LENGTH - 2)
+    cells = _Cells(cell)
+    of_load, of_depth, t = cells.of(rows[0], 0), cells.of(rows[0], 1), np.full(depth.shape, 0.5)
+    for _ in range(_NEWTON):
+        step = (_value(of_depth, t) - wanted) / (_slope(of_depth, t) * STEP)
+        t = np.clip(t - np.where(np.isfinite(step), step, 0.0), 0.0, 1.0)
+    P = np.where(depth > 0, np.exp(_value(of_load, t)), 0.0)
+    growth = _slope(of_load, t) / _slope(of_depth, t)  # d ln P/d ln D
+    slope = np.where(depth > 0, P * growth / np.where(depth > 0, depth, 1.0), 0.0)
+    of_parts = np.stack([P, -growth * P, 0 * P, 0 * P])
+    return Loads(P, slope, _by_rows(rows, cells, t, of_parts), of_parts)
+
+
+def _by_rows(rows: np.ndarray, cells: _Cells, t: np.ndarray, of_parts: np.ndarray) -> np.ndarray:
+    """Derivatives (others, B, n) by what the rows behind the first are derivatives by."""
+    others = np.empty((len(rows) - 1, *t.shape))
+    for k, row in enumerate(rows[1:]):
+        others[k] = sum(_value(cells.of(row, i), t) * of_parts[i] for i in range(4))
+    return others
+
+
+def _loads(rows: np.ndarray, depth: np.ndarray, cell: np.ndarray, off: tuple) -> Loads:
+    """Loads on the branch at depths in the cells (B, n); those beyond its end, `off`, are at the end."""
     turn, t_off, D_off, P_off, pull = off
     cells = _Cells(cell)
     of_load, of_depth = ([cells.of(rows[0], i), cells.of(rows[0], i + 2)] for i in (0, 1))
@@ -116,10 +147,7 @@ def _loads(rows: np.ndarray, depth: np.ndarray, cell: np.ndarray, off: tuple) ->
     falls = np.where(part > 0, (P_off / ramp)[:, None], 0.0)
     slope, part = np.where(beyond, falls, slope), np.where(beyond, part, 1.0)
     of_parts = np.stack([part * of_P[0], -slope * of_D[0], -part * of_P[1], slope * of_D[1]])
-    others = np.empty((len(rows) - 1, *depth.shape))
-    for k, row in enumerate(rows[1:]):
-        others[k] = sum(_value(cells.of(row, i), t) * of_parts[i] for i in range(4))
-    return Branch(np.where(np.isfinite(D), part * P, np.nan), slope, others, of_parts, D_off, P_off)
+    return Loads(np.where(np.isfinite(D), part * P, np.nan), slope, _by_rows(rows, cells, t, of_parts), of_parts)
 
 
 def planned(model: Model, values: dict[str, np.ndarray], depth: np.ndarray) -> np.ndarray:
@@ -128,5 +156,5 @@ def planned(model: Model, values: dict[str, np.ndarray], depth: np.ndarray) -> n
     for number, row in enumerate(depth):
         x = np.where(np.isfinite(row), row, np.nanmax(row))[None]
         made = branch(ladder.rows(values, x.max(axis=1)), x)
-        out[number] = np.where(np.isfinite(row), np.where(x[0] < made.D_off, 0.0, made.P[0]), np.nan)
+        out[number] = np.where(np.isfinite(row), np.where(x[0] < made.D_off, 0.0, made.sticks.P[0]), np.nan)
     return out

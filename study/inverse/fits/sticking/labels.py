@@ -1,8 +1,9 @@
-"""Which points of a curve are in contact: read from the points, not from the model.
+"""Which points of a curve stick: read from the points, not from the model.
 
 A punch comes off where the depth, or what holds it, turns, but also before; and on approach it touches only at depth 0.
-So for any unknowns all points below some depth are off and those above are in contact, with the split that fits best.
-The sum of squares is then a continuous function of the unknowns, and a point has no say in where the branch ends.
+So for any unknowns all points above some depth stick and those below do not, with the split that fits best. What does
+not stick has the load without adhesion: 0 above the surface, and below it what presses there. The sum of squares is
+then a continuous function of the unknowns, and a point has no say in where the branch ends.
 """
 
 from typing import NamedTuple
@@ -34,11 +35,10 @@ class Points(NamedTuple):
     def take(self, index: np.ndarray) -> "Points":
         return Points(*(array[index] for array in self))
 
-    def in_contact(self, load: np.ndarray, base: np.ndarray) -> np.ndarray:
-        """(B, n) bool for loads (B, n) of the contact and the baseline (B, n) under it."""
+    def in_contact(self, load: np.ndarray, free: np.ndarray, base: np.ndarray) -> np.ndarray:
+        """(B, n) bool, the points that stick, for loads (B, n) with and without adhesion, and the baseline under both."""
         rows = np.arange(len(load))[:, None]
-        off = self.w * (self.y - base)
-        on = off - self.w * load
+        on, off = (self.w * (self.y - base - part) for part in (load, free))
         more = np.where(self.robust[:, None], np.abs(on) - np.abs(off), on**2 - off**2)
         # what is saved by the first m points, m = 0 ... n, being off
         saved = np.concatenate([np.zeros((len(load), 1)), np.cumsum(more[rows, self.order], axis=1)], axis=1)

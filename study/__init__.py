@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import catalogue
+    from .adhesion.effective import effective_work
     from .api import Study, load
     from .data import derived, units
     from .data.dataset import decode
@@ -50,6 +51,7 @@ __all__ = [
     "derived",
     "design",
     "drawing",
+    "effective_work",
     "extremes",
     "feasible",
     "figure",
@@ -82,6 +84,7 @@ _HOME = {
     "design": "inverse.design",
     "feasible": "inverse.design_choice",
     "front": "inverse.design_choice",
+    "effective_work": "adhesion.effective",
     "first_yield": "yields.first",
     "h_protect": "yields.protect",
     "fit": "inverse.fit",

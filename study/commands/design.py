@@ -18,7 +18,7 @@ from .ending import INTERRUPTED
 from .point import as_numbers, described, number, number_or_text, parameters_of
 
 _RANGE = re.compile(r"\s*\.\.\s*")
-_RESULTS = ("p0", "p_max", "Ar_An", "dP_dD")  # which are never inputs
+_RESULTS = ("p0", "p_max", "Ar_An", "dP_dD", "P_off")  # which are never inputs
 
 
 def items(options) -> list[list[str]]:
@@ -46,7 +46,7 @@ def design(options, texts: list[str]) -> int:
 def asked(parameters: dict[str, Any]) -> tuple[dict, dict, dict]:
     """The target, the input that is looked for, "LOW .. HIGH", and the other inputs. Raises StudyError.
 
-    The target is p0, p_max, Ar_An or dP_dD; without these the first of P, a and D, where it is not the only one.
+    The target is p0, p_max, Ar_An, dP_dD or P_off; without these the first of P, a and D, where it is not the only one.
     """
     ranges = {name: value for name, value in parameters.items() if isinstance(value, str) and ".." in value}
     if len(ranges) != 1:

@@ -36,7 +36,8 @@ def design(
 
     Parameters
     ----------
-    targets : one wanted result and its value, {"p_max": "180 MPa"}: a, P, D, p0, p_max, Ar_An or dP_dD
+    targets : one wanted result and its value, {"p_max": "180 MPa"}: a, P, D, p0, p_max, Ar_An or dP_dD;
+        or P_off, the load at pull-off, < 0, of what sticks: its ± is not known, NaN
     by : one input that is a number, and two bounds, {"h": ("1 um", "1 mm")}; also P, a or D, which controls then
     progress : whether a call of more than two seconds says how far it is; None: in a notebook or on a terminal
     cases, same_piece, correlations, parameters : as of `study.solve`, without the target and the input of `by`

@@ -12,6 +12,7 @@ import xarray as xr
 from ..data.dataset import not_run, parts
 from ..data.si import dataset_of
 from ..data.spreads import spreads_of
+from ..derivatives import QUANTITIES
 from ..inputs.grid import along
 from ..inputs.vocabulary import NOT_RUN
 from ..terminal import counted
@@ -31,7 +32,7 @@ Piece = tuple[np.ndarray, Curves, np.ndarray]
 class Change(NamedTuple):
     """How the wanted result changes, over the cases and their solutions.
 
-    spread : its standard deviation; by_input : |d ln result/d ln input|
+    spread : its standard deviation, NaN of a result without derivatives; by_input : |d ln result/d ln input|
     shares : input with a spread -> part of the variance that it makes; {} where they are correlated
     """
 
@@ -106,6 +107,9 @@ def solved(want: Wanted, t: np.ndarray, stream: TextIO | None = None) -> tuple[x
     _each(f"solving {counted(len(index), 'contact')}", blocks, lambda i: solve_into(arrays, definition, i), stream)
     made = parts(definition, arrays, "study.design")
     contacts, scene = dataset_of(definition, made.settings_apart()), definition.scene
+    if want.target not in QUANTITIES:
+        unknown = np.full(t.shape, np.nan)
+        return contacts, Change(unknown, unknown, {})
     if not made.by_input:
         still = np.where(np.isfinite(t), 0.0, np.nan)
         return contacts, Change(still, still, {})

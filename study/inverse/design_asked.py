@@ -14,6 +14,8 @@ from ..specimen.quantities import has_unit
 from ..terminal import shown
 from .design_cases import Wanted
 
+#: Results that can be wanted: those with derivatives, and the load at pull-off, which has none.
+TARGETS = (*QUANTITIES, "P_off")
 _EXAMPLE = 'such as {"p_max": "180 MPa"}'
 _BOUNDS = 'such as by={"h": ("1 um", "1 mm")}'
 
@@ -45,8 +47,8 @@ def _target(targets: Any) -> tuple[str, Any]:
         many = f"{len(targets)} targets" if isinstance(targets, dict) else shown(targets)
         raise StudyError([f"design: {many}: give exactly one wanted result with its value, {_EXAMPLE}"])
     ((target, value),) = targets.items()
-    if target not in QUANTITIES:
-        raise StudyError([f"design: {shown(target)} is no result that can be wanted{suggest(str(target), QUANTITIES)}"])
+    if target not in TARGETS:
+        raise StudyError([f"design: {shown(target)} is no result that can be wanted{suggest(str(target), TARGETS)}"])
     return target, plain(value)
 
 
@@ -97,6 +99,12 @@ def _level(target: str, value: Any, definition: Definition) -> float:
         raise StudyError([f"{said}: must be one finite number"])
     else:
         level = float(value)
+    if target == "P_off":
+        if not level < 0:
+            raise StudyError([f"{said}: must be < 0, a pull"])
+        if "w_adhesion" not in {*definition.grid.values, *(definition.scene.values if definition.scene else ())}:
+            raise StudyError([f"{said}: nothing sticks: give w_adhesion, or look for it"])
+        return level
     limits = "must be in (0, 1]" if target == "Ar_An" else "must be > 0"
     if not 0 < level <= (1 if target == "Ar_An" else math.inf):
         raise StudyError([f"{said}: {limits}"])

@@ -9,6 +9,7 @@ import xarray as xr
 
 from solver import Problem, solve
 from solver.laws.trial import going_on
+from solver.status import Status
 
 from ..data.units import with_unit
 from ..inputs.definition import Definition
@@ -20,6 +21,8 @@ from ..inputs.scene.scene import Scene, over
 from ..inputs.vocabulary import PARAMETERS, VOCABULARY
 from ..work.cases import compute, parcel
 
+#: A contact that is pulled off has the load of that too.
+_WITH_PULL_OFF = (Status.CONVERGED, Status.PULLED_OFF)
 BLOCK = 8000  # cases that are solved at a time, at most
 
 
@@ -91,7 +94,8 @@ class Wanted:
             others |= _fits(others["Nbar"], others["Ra"])
         with going_on():
             solution = solve(Problem.of(**{key: others[key] for key in PARAMETERS if key in others}))
-        numbers = np.where(solution.status == 0, getattr(solution, self.target), np.nan)
+        solved = np.isin(solution.status, _WITH_PULL_OFF) if self.target == "P_off" else solution.status == 0
+        numbers = np.where(solved, getattr(solution, self.target), np.nan)
         return with_unit(numbers, VOCABULARY[self.target].powers, unit, R)
 
     def at(self, t: np.ndarray) -> Definition:

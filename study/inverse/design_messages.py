@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..data.dataset import decode
-from ..derivatives import sensitivities
+from ..derivatives import QUANTITIES, sensitivities
 from ..inputs.scene.names import is_ratio
 from ..inputs.vocabulary import NOT_RUN, ROWS, VOCABULARY
 from ..specimen.quantities import readable
@@ -94,7 +94,7 @@ def _none(want: Wanted, answer: Answer, row: int) -> str:
 def _helps(want: Wanted, answer: Answer) -> dict[int, str]:
     """Case without a solution -> which input would move the result most, where it is nearest to what is wanted."""
     lacking = np.isin(answer.status, (2, 3))
-    if not lacking.any():
+    if not lacking.any() or want.target not in QUANTITIES:
         return {}
     nearest = np.where(answer.status == 2, answer.reach[:, 1], answer.reach[:, 3])
     contacts, _ = solved(want, np.where(lacking, nearest, np.nan)[:, None])

@@ -24,8 +24,10 @@ from .fits.block import FitStatus
 from .fits.model import HERTZ, Model
 from .fits.parts import Part, fit_part, forget
 from .fits.said import said
+from .fits.sticking.branch import planned
 
-_BLOCK, _PART = 64, 64  # curves at a time, and their points are filled up to a multiple of this
+#: Curves at a time, of what sticks too, and their points are filled up to a multiple of this.
+_BLOCK, _STICKING, _PART = 64, 8, 64
 _calls = count()
 _ENDS = ((np.min, np.inf), (np.max, -np.inf))
 
@@ -108,7 +110,8 @@ def fit(
     there = np.isfinite(X) & np.isfinite(Y)
     status = np.where(_usable(X, Y, there, unknowns, "D0" in question.shifts), -1, FitStatus.INVALID_INPUT)
     rows: dict[int, tuple] = {}
-    blocks = list(_blocks(there, status < 0, _stiffness(X, Y, question) if X.size else np.zeros(len(X))))
+    most = _STICKING if question.model.sticks else _BLOCK
+    blocks = list(_blocks(there, status < 0, _stiffness(X, Y, question) if X.size else np.zeros(len(X)), most))
     with Progress("fit", int((status < 0).sum()), screen_of(progress), passing=True) as told:
         try:
             for index, fits in _fits(question, blocks, (X, Y, S), there):
@@ -177,6 +180,8 @@ def _planned(question: Asked, X: np.ndarray) -> np.ndarray:
     """The curve of the assumed values."""
     model = question.model
     values = {name: np.full(1, model.value(name)) for name in model.unknowns}
+    if model.sticks:
+        return planned(model, {name: value[:, None] for name, value in values.items()}, X)
     with np.errstate(all="ignore"):
         flat = np.where(X > 0, X, np.nan).ravel()
         y = np.zeros(flat.shape)
@@ -202,16 +207,16 @@ def _stiffness(X: np.ndarray, Y: np.ndarray, question: Asked) -> np.ndarray:
         return (np.nanmax(Y, axis=1) - np.nanmin(Y, axis=1)) ** (1 / e) / np.nanmax(np.abs(X), axis=1) ** (q / e)
 
 
-def _blocks(there: np.ndarray, usable: np.ndarray, stiffness: np.ndarray) -> Iterator[tuple]:
-    """For each block its curves, the same filled up to _BLOCK by the last one, and its number of points. Curves that
+def _blocks(there: np.ndarray, usable: np.ndarray, stiffness: np.ndarray, most: int) -> Iterator[tuple]:
+    """For each block its curves, the same filled up to `most` by the last one, and its number of points. Curves that
     are alike come together: they share tiles."""
     size = -(-there.sum(axis=1) // _PART) * _PART
     for points in np.unique(size[usable]):
         same = np.flatnonzero((size == points) & usable)
         same = same[np.argsort(stiffness[same], kind="stable")]
-        for begin in range(0, len(same), _BLOCK):
-            index = same[begin : begin + _BLOCK]
-            yield index, np.concatenate([index, np.repeat(index[-1:], _BLOCK - len(index))]), points
+        for begin in range(0, len(same), most):
+            index = same[begin : begin + most]
+            yield index, np.concatenate([index, np.repeat(index[-1:], most - len(index))]), points
 
 
 def _packed(A: np.ndarray, there: np.ndarray, index: np.ndarray, points: int) -> np.ndarray:

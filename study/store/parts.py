@@ -25,9 +25,9 @@ from .blocks import Store, count_statuses
 #: A study of more cases is kept in parts: a smaller one takes some 100 bytes of memory a case, for its keys. So is one
 #: of more numbers, whose single file would have more than 4 GB.
 CASES, NUMBERS = 4_000_000, LARGE
-#: Bytes of the numbers of a part, at most: 500,000 cases without profiles, 97,000 with 33 points. 1e8 cases without
-#: profiles are then 200 files.
-PART = 64_000_000
+#: Bytes of the numbers of a part, at most: 1,000,000 cases without profiles, 194,000 with 33 points. 1e8 cases without
+#: profiles are then 100 files, fewer than the 128 that xarray keeps open at a time.
+PART = 128_000_000
 #: Usual blocks in a part, at most: of cases that take long a part has fewer.
 BLOCKS = 64
 

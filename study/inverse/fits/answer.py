@@ -7,11 +7,14 @@ import numpy as np
 import xarray as xr
 
 from ...in_words.fits import NAMES_OF_SHIFTS
+from ...inputs.scene.layers import moduli_of
 from ...inputs.vocabulary import NOT_RUN, ROWS
 from ...solving import solve
 from .asked import Asked
 from .block import FitStatus
 
+#: At most so many curves that stick have all places solved at once.
+_FEW = 8
 _HALVINGS = 4  # of the depth, to the place where the first assumption fails: it is right to 1/16
 
 
@@ -93,10 +96,15 @@ def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndar
         flags[good], about = contacts["validity"].values, contacts["validity"].attrs
         broken = np.flatnonzero(flags != 0)
         holds, fails = np.zeros(len(broken), int), np.full(len(broken), 2**_HALVINGS)  # in parts of the depth
+        # one contact that sticks costs as much as many
+        at_once = _all_parts(question, value[broken], (deepest - D0)[broken]) if 0 < len(broken) <= _FEW else None
         for _ in range(_HALVINGS if len(broken) else 0):
             part = (holds + fails) // 2
             x = part / 2**_HALVINGS * (deepest - D0)[broken]
-            good_there = _contacts(question, value[broken], x)["validity"].values == 0
+            if at_once is None:
+                good_there = _contacts(question, value[broken], x)["validity"].values == 0
+            else:
+                good_there = at_once[np.arange(len(broken)), part]
             holds, fails = np.where(good_there, part, holds), np.where(good_there, fails, part)
         x = holds / 2**_HALVINGS * (deepest - D0)[broken]
         valid[broken] = np.where(holds > 0, D0[broken] + x, -np.inf)
@@ -105,6 +113,16 @@ def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndar
         f"{model.x}_valid": ("curve", valid, {"units": ROWS[model.x].unit}),
     }
     return xr.Dataset(variables)
+
+
+def _all_parts(question: Asked, value: np.ndarray, x: np.ndarray) -> np.ndarray | None:
+    """(M, 1 + parts) bool: no assumption is violated at a part of the depths x (M,); of contacts that stick."""
+    if not question.model.sticks:
+        return None
+    parts = np.arange(1, 2**_HALVINGS)
+    every = np.repeat(value, len(parts), axis=0), (x[:, None] * parts / 2**_HALVINGS).ravel()
+    good = _contacts(question, *every)["validity"].values == 0
+    return np.pad(good.reshape(len(x), -1), ((0, 0), (1, 0)))
 
 
 def _contacts(question: Asked, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
@@ -121,7 +139,16 @@ def _contacts(question: Asked, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
         for name, (v, unit) in columns.items()
     }
     arrays |= {"E2": "rigid"} if np.isinf(np.asarray(columns.get("E2", (0.0,))[0])).all() else {}
-    others = {*scene.parameters} - {*arrays, "n", "m", "P", "a", "D"}  # those without units
+    # those without units; ratios follow from moduli
+    others = {*scene.parameters} - {
+        *arrays,
+        "n",
+        "m",
+        "P",
+        "a",
+        "D",
+        *(ratio for _, _, ratio in moduli_of(scene.values)),
+    }
     arrays |= {name: scene.parameters[name] for name in others if ROWS[name].unit == "1"}
     if "R1" in arrays:
         del arrays["R"]

@@ -65,6 +65,10 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     errors += [f"fit: leave out {name}: curves have it" for name in CONTROLS if parameters.get(name) is not None]
     priors = tuple(name for name in parameters if _has_prior(name, parameters[name]) and name not in names)
     unknowns = (*names, *priors)
+    if "k_machine" in unknowns:
+        errors.append(
+            "free: k_machine: where a punch comes off is read from the points, so they do not say what held it"
+        )
     errors += [f"free: {a} and {b}: {_ALIKE_WORDS}" for a, b in _ALIKE if a in unknowns and b in unknowns]
     if not names and not errors:
         errors.append('free: name at least one input, such as free=["E1"]')
@@ -98,7 +102,12 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     if model.sticks and (x, y) != ("D", "P"):
         way = 'of what sticks the load over the depth is fitted: x = "D", y = "P"'
         raise StudyError([f"x = {shown(x)}, y = {shown(y)}: {way}"])
+    if model.sticks and scene.parameters.get("shape") == "flat":
+        way = "its load is a straight line down to pull-off: w_adhesion follows from P_off by `design`"
+        raise StudyError([f'fit: shape = "flat" with w_adhesion: {way}'])
     absent = [name for name in unknowns if name not in scene.values and name not in scene.parameters]
+    if model.sticks and scene.parameters.get("adhesion") != "maugis":
+        absent += [name for name in unknowns if name in ("sigma0", "z0")]
     if absent:
         raise StudyError([f"free: {name} does not act in this contact" for name in absent])
     for name in names:
@@ -154,8 +163,9 @@ def _numbers() -> set[str]:
 
 
 def _has_prior(name: str, value: Any) -> bool:
-    """Whether ± stands in the call: of R, Poisson ratios and names of materials it is taken over, not fitted."""
-    if name == "R" or name in BODIES or is_ratio(name) or name in CONTROLS:
+    """Whether ± stands in the call: of R, Poisson ratios and names of materials it is taken over, not fitted; that of
+    k_machine changes no curve."""
+    if name in ("R", "k_machine") or name in BODIES or is_ratio(name) or name in CONTROLS:
         return False
     spread = getattr(value, "std_dev", None) or getattr(getattr(value, "magnitude", None), "std_dev", None)
     return bool(spread) or (

@@ -1,27 +1,24 @@
 """Fits of the curves of one block: starts, least squares, intervals, status."""
 
-from dataclasses import replace
 from enum import IntEnum
 from typing import Any
 
 import numpy as np
 from scipy import stats
 
-from .asked import DECADE, Asked
+from .asked import Asked
 from .curve import Curve
 from .intervals import covariance_of, profiles
 from .least_squares import SURE, Data, Fit, minimise
-from .model import HERTZ, is_ratio
-from .sticking import Direct
+from .starts import best_of, starts_of
+from .sticking.labels import Points
+from .sticking.ladder import Ladder
 from .tables import Table
 
 _ROUGHLY = (
     1e-4  # how sure a search from one of several starts is, some 0.03 of a spread; the best one goes on to the end
 )
-_STARTS = 6  # across the bounds of a second unknown input
 _SURE = 0.999  # level of the F test that there is a contact
-#: y = _HERTZ x^q E^e R^r of a rigid ball on a half-space.
-_HERTZ = {("D", "P"): 4 / 3, ("P", "a"): 0.75 ** (1 / 3), ("a", "dP_dD"): 2.0}
 _SAME = 1e-3  # minima whose unknowns differ by less than this part of a spread are one
 
 
@@ -38,7 +35,7 @@ class FitStatus(IntEnum):
 
 
 def fit_block(
-    asked: Asked, table: Table | Direct, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
+    asked: Asked, table: Table | Ladder, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
 ) -> dict[str, Any]:
     """Fit curves (B, n), NaN where there is no point. Every curve has more points than unknowns.
 
@@ -56,9 +53,13 @@ def fit_block(
     curve = Curve(table, x, wide, top, asked.shifts)
     with np.errstate(divide="ignore", invalid="ignore"):
         w = np.where(there, 1.0 if sigma is None else top[:, None] / np.where(there, sigma, 1.0), 0.0)
-    count, k = there.sum(axis=1), len(curve.names)
-    starts, low, high = _starts(asked, curve, there, y, top, least)
+    # of what sticks, the point above which the others are in contact counts like an unknown
+    count, k = there.sum(axis=1) - model.sticks, len(curve.names)
+    starts, low, high = starts_of(asked, curve, there, y, top, least)
     data = Data(np.where(there, y, 0.0) / top[:, None], w, low, high, *_no_prior(low), asked.loss == "huber")
+    if model.sticks:
+        curve.points = Points.of(x, data.y, data.w, k, data.huber)
+        starts = best_of(curve, data, starts)
     variance = np.ones(len(x))
     if asked.priors:
         columns = [model.unknowns.index(name) for name in asked.priors]
@@ -120,86 +121,6 @@ def fit_block(
 
 def _no_prior(low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.zeros(low.shape), np.zeros(low.shape)
-
-
-def _starts(asked: Asked, curve: Curve, there: np.ndarray, y: np.ndarray, top: np.ndarray, least: np.ndarray) -> tuple:
-    """A list of unknowns (B, k), at each of which a search begins, and their bounds (B, k)."""
-    model, names, B = asked.model, curve.names, len(y)
-    power = HERTZ[model.x, model.y][0]
-    D0, P0, depth, load = _contact_points(asked, curve, there, y, power[0])
-    E = np.clip(load / (_HERTZ[model.x, model.y] * depth ** power[0] * model.scene.R ** power[2]), 1e-300, None) ** (
-        1 / power[1]
-    )
-    nu = {"E1": "nu1", "E2": "nu2"}[model.modulus]
-    hertz = np.log(E * (1 - float(model.scene.values.get(nu, 0.3)) ** 2))
-    p, low, high = (np.zeros((B, len(names))) for _ in range(3))
-    for i, name in enumerate(names):
-        if name == "D0":  # within the points, and as far before them
-            p[:, i] = D0 / curve.wide
-            low[:, i], high[:, i] = least / curve.wide - 1.0, least / curve.wide + 0.999
-        elif name in ("P0", "tilt"):
-            p[:, i] = P0 / top if name == "P0" else 0.0
-            low[:, i], high[:, i] = p[:, i] - 1e3, p[:, i] + 1e3
-        elif name in asked.bounds:
-            low[:, i], high[:, i] = model.coordinate(name, np.array(asked.bounds[name]))
-            p[:, i] = (low[:, i] + high[:, i]) / 2
-        elif name in asked.priors:
-            center, sd = asked.priors[name]
-            p[:, i], low[:, i], high[:, i] = center, center - 10 * sd, center + 10 * sd
-            high[:, i] = np.minimum(high[:, i], 0.5) if is_ratio(name) else high[:, i]
-        else:
-            p[:, i], low[:, i], high[:, i] = hertz, hertz - 3 * DECADE, hertz + 3 * DECADE
-    scanned = [i for i, name in enumerate(model.unknowns) if name in asked.free and name != model.modulus][:1]
-    places = [(j + 0.5) / _STARTS for j in range(_STARTS)] if scanned else [0.5]
-    starts = []
-    for place in places:
-        start = p.copy()
-        for i in scanned:
-            start[:, i] = low[:, i] + place * (high[:, i] - low[:, i])
-        starts.append(_with_modulus(asked, curve, start, low, high, D0 + depth, load))
-    return starts, low, high
-
-
-def _with_modulus(asked, curve, p, low, high, x, load):
-    """The unknowns p with that modulus, if it is unknown, which brings the curve through the deepest point: by Newton's
-    steps in logarithms."""
-    model = asked.model
-    if model.modulus not in model.unknowns:
-        return p
-    i = model.unknowns.index(model.modulus)
-    alone = replace(curve, x=x[:, None])
-    wanted = np.log(np.maximum(load / curve.high, 1e-300))
-    p = p.copy()
-    p[:, i] = np.clip(p[:, i], low[:, i], high[:, i])
-    for _ in range(12):
-        F, by, _ = alone.contact(p)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            step = (wanted - np.log(F[:, 0])) / np.maximum(np.abs(by[model.modulus][:, 0] / F[:, 0]), 0.03)
-        step *= np.sign(HERTZ[model.x, model.y][0][1])
-        p[:, i] = np.clip(p[:, i] + np.clip(np.nan_to_num(step), -2.0, 2.0), low[:, i], high[:, i])
-    return p
-
-
-def _contact_points(asked: Asked, curve: Curve, there: np.ndarray, y: np.ndarray, q: float) -> tuple:
-    """First values (B,) of D0 and P0, and the depth and load of the deepest point above them.
-
-    P0 is the mean of the first tenth of the points. D0 follows from the depths at 10 and 50 % of the load, as if the
-    load rose with the power q of the depth.
-    """
-    B = len(y)
-    D0, P0, deepest, load = np.zeros(B), np.zeros(B), np.zeros(B), np.zeros(B)
-    part = 0.2 ** (1 / q)
-    for b in range(B):
-        order = np.argsort(curve.x[b][there[b]], kind="stable")
-        xs, ys = curve.x[b][there[b]][order], y[b][there[b]][order]
-        tenth = max(1, len(xs) // 10)
-        P0[b] = ys[:tenth].mean() if "P0" in asked.shifts else 0.0
-        high = np.sort(ys)[-max(1, len(ys) // 50) :].mean() - P0[b]
-        if "D0" in asked.shifts:
-            x10, x50 = (xs[max(np.flatnonzero(ys - P0[b] < share * high), default=0)] for share in (0.1, 0.5))
-            D0[b] = np.clip((x10 - part * x50) / (1 - part), xs[0], xs[-1] - 1e-3 * curve.wide[b])
-        deepest[b], load[b] = xs[-1] - D0[b], max(high, 1e-300)
-    return D0, P0, deepest, load
 
 
 def _no_contact(curve: Curve, data: Data, best: Fit, count: np.ndarray, k: int) -> np.ndarray:

@@ -5,8 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...inputs.punch.shapes import ANGLES
-from .model import HERTZ, is_ratio
-from .sticking import Direct, moved_by
+from .model import HERTZ
+from .sticking.branch import branch
+from .sticking.labels import Points
+from .sticking.ladder import Ladder
 from .tables import STEP, WIDE, Places, Table
 
 _TILES = 4  # along ln u: from the largest depth down, more than _REACH
@@ -17,17 +19,19 @@ _REACH = np.log(800.0)  # below 1/800 of twice the range of x the curve goes on 
 class Curve:
     """B curves of n points. Their unknowns are the inputs of the model, then D0/wide, P0/high and tilt wide/high.
 
-    table : of the model; of one that sticks, what solves it
+    table : of the model
     x : (B, n), SI
     wide, high : (B,) the units of x and y of each curve
     shifts : which of "D0", "P0", "tilt" are unknown
+    points : of a curve that sticks, what says which points are in contact; None: all depths are
     """
 
-    table: Table | Direct
+    table: Table | Ladder
     x: np.ndarray
     wide: np.ndarray
     high: np.ndarray
     shifts: tuple[str, ...]
+    points: Points | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -35,7 +39,8 @@ class Curve:
 
     def take(self, index: np.ndarray) -> "Curve":
         """Some of the curves."""
-        return replace(self, x=self.x[index], wide=self.wide[index], high=self.high[index])
+        points = self.points and self.points.take(index)
+        return replace(self, x=self.x[index], wide=self.wide[index], high=self.high[index], points=points)
 
     def values(self, p: np.ndarray) -> dict[str, np.ndarray]:
         """Input -> its SI values (B, 1)."""
@@ -67,8 +72,8 @@ class Curve:
         The third value has its derivatives by the inputs `moved` of the model, (moved, B, n), if `moved` is true.
         """
         model, values = self.table.model, self.values(p)
-        if isinstance(self.table, Direct):
-            return self._direct(self.table, p, values, moved)
+        if isinstance(self.table, Ladder):
+            return self._sticking(self.table, p, values, moved)
         depth = self.x - (p[:, [self.names.index("D0")]] * self.wide[:, None] if "D0" in self.shifts else 0.0)
         inside = depth > 0
         depth = np.where(inside, depth, 1e-12 * self.wide[:, None])
@@ -94,21 +99,31 @@ class Curve:
         others = [F * places.read(rows[1 + i])[0] for i in range(len(model.moved))] if moved else []
         return F, by, np.array(others)
 
-    def _direct(self, direct: Direct, p: np.ndarray, values: dict, moved: bool) -> tuple[np.ndarray, dict, np.ndarray]:
-        """`contact` of what sticks: by differences of solved curves."""
-        model, high = direct.model, self.high[:, None]
-        depth = self.x - (p[:, [self.names.index("D0")]] * self.wide[:, None] if "D0" in self.shifts else 0.0)
-        P, slope = direct.contact(values, depth)
-
-        def by(name: str) -> np.ndarray:
-            value = values.get(name, model.value(name))
-            other, change = moved_by(value, is_ratio(name))
-            if name in ANGLES and name in model.unknowns:
-                change = model.coordinate(name, other) - model.coordinate(name, value)
-            return (direct.contact(values | {name: other}, depth)[0] - P) / change / high
-
-        others = [by(name) for name in model.moved] if moved else []
-        return P / high, {"x": slope / high} | {name: by(name) for name in model.unknowns}, np.array(others)
+    def _sticking(
+        self, ladder: Ladder, p: np.ndarray, values: dict, moved: bool
+    ) -> tuple[np.ndarray, dict, np.ndarray]:
+        """`contact` of what sticks; without adhesion at points that do not stick."""
+        model, parts = ladder.model, ladder.parts
+        shift = {name: p[:, [self.names.index(name)]] for name in self.shifts}
+        depth = self.x - shift.get("D0", 0.0) * self.wide[:, None]
+        made = branch(ladder.rows(values, depth.max(axis=1), moved), depth)
+        base = shift.get("P0", 0.0) + shift.get("tilt", 0.0) * self.x / self.wide[:, None]
+        high, contact = self.high[:, None], np.ones(depth.shape, bool)
+        if self.points is not None:
+            contact = self.points.in_contact(made.sticks.P / high, made.free.P / high, base)
+        P, slope, by_rows, by_parts = (
+            np.where(contact, *pair) / high for pair in zip(made.sticks, made.free, strict=True)
+        )
+        by = {"x": slope}
+        rows = dict(zip((*ladder.axes, *(model.moved if moved else ())), by_rows, strict=True))
+        for name in (*model.unknowns, *(model.moved if moved else ())):
+            factors = parts.by(name, values)
+            if name in ANGLES and name not in model.unknowns:  # by its logarithm, not that of its tangent
+                angle = np.radians(model.value(name))
+                factors = factors * (2 * angle / np.sin(2 * angle))
+            by[name] = rows.get(name, 0.0) + sum(factors[i] * by_parts[i] for i in range(4))
+        others = [by[name] for name in model.moved] if moved else []
+        return P, by, np.array(others)
 
     def _log_slope(self, name, values, power, of_u, slope, by_axis, places):
         """d ln F by the coordinate of an input."""

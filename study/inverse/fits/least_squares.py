@@ -69,8 +69,8 @@ def minimise(
     """
     held = np.zeros(p.shape, bool) if held is None else held
     model, J = curve(p)
-    fit = Fit(p.copy(), np.zeros(len(p)), model, J, *_weighed(data, p, model)[:1], np.zeros(len(p), bool))
-    fit.cost[:] = _weighed(data, p, model)[1]
+    fit = Fit(p.copy(), np.zeros(len(p)), model, J, *weighed(data, p, model)[:1], np.zeros(len(p), bool))
+    fit.cost[:] = weighed(data, p, model)[1]
     count = np.maximum((data.w > 0).sum(axis=1), 1)
     left, damping = np.flatnonzero(np.isfinite(fit.cost)), np.full(len(p), 1e-3)
     fit.ended[~np.isfinite(fit.cost)] = True
@@ -87,7 +87,7 @@ def minimise(
         # The new cost is by Huber's limit of the old residuals, so that the two can be compared. By a limit of its own
         # it could fall merely because the limit does
         limit = huber_limit(data.take(rows), fit.model[rows])
-        weights, cost = _weighed(data.take(rows), new, new_model, limit)
+        weights, cost = weighed(data.take(rows), new, new_model, limit)
         once = slice(0, len(left))
         better = (cost <= fit.cost[rows])[once]
         small = np.abs(new - fit.p[rows])[once].max(axis=1) < _CLOSE
@@ -99,7 +99,7 @@ def minimise(
         for array, value in zip(fit[:5], (new, cost, new_model, new_J, weights), strict=True):
             array[take] = value[once][better]
         if data.huber:  # the limit of the new residuals, for the next step
-            fit.weights[take], fit.cost[take] = _weighed(data.take(take), fit.p[take], fit.model[take])
+            fit.weights[take], fit.cost[take] = weighed(data.take(take), fit.p[take], fit.model[take])
         damping[left] = np.where(better, np.maximum(damping[left] * 0.1, 1e-14), damping[left] * 8)
         fit.ended[left[done]] = True
         left = left[~done]
@@ -127,7 +127,7 @@ def normal(data: Data, p: np.ndarray, model: np.ndarray, J: np.ndarray, weights:
     return A, slope
 
 
-def _weighed(
+def weighed(
     data: Data, p: np.ndarray, model: np.ndarray, limit: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Weights of the squares of the residuals, and the cost; infinite where the model has no value.

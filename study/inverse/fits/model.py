@@ -74,8 +74,8 @@ class Model:
 
     @property
     def sticks(self) -> bool:
-        """Whether a work of adhesion is among the inputs."""
-        return "w_adhesion" in self.scene.values
+        """Whether a work of adhesion above 0 is among the inputs."""
+        return "w_adhesion" in self.unknowns or bool(np.any(self.scene.values.get("w_adhesion", 0.0) > 0))
 
     @property
     def scales_only(self) -> bool:
@@ -129,10 +129,11 @@ class Model:
     def hertz(self, values: dict[str, Any], x: Any, power: tuple) -> Any:
         """x^q E^e R^r, with E the reduced modulus of what is touched."""
         q, e, r = power
-        E, R = self._touched(values), values.get("R", self.scene.R)
+        E, R = self.touched(values), values.get("R", self.scene.R)
         return x**q * E**e * R**r
 
-    def _touched(self, values: dict[str, Any]) -> Any:
+    def touched(self, values: dict[str, Any]) -> Any:
+        """The reduced modulus in Pa of what is touched."""
         nu = {"E1": "nu1", "E2": "nu2"}[self.modulus]
         E = values.get(self.modulus, self.scene.values[self.modulus])
         return E / (1 - values.get(nu, self.scene.values.get(nu, 0.3)) ** 2)
@@ -149,7 +150,7 @@ class Model:
             return 0.0
         _, (_, h, R, E) = HERTZ[self.x, self.y]
         thickness = values.get("h", self.scene.values.get("h", 1.0))
-        return h * np.log(thickness) + R * np.log(values.get("R", self.scene.R)) + E * np.log(self._touched(values))
+        return h * np.log(thickness) + R * np.log(values.get("R", self.scene.R)) + E * np.log(self.touched(values))
 
     def scene_of(self, values: dict[str, Any]) -> Scene:
         """The scene with other values of inputs, and its numbers for the solver."""

@@ -6,11 +6,11 @@ import numpy as np
 
 from .asked import Asked
 from .block import fit_block
-from .sticking import Direct
+from .sticking.ladder import Ladder
 from .tables import Table
 
 #: Call -> its table. Several, for calls in several threads; worker processes end after a while, and their tables.
-_tables: dict[str, Table | Direct] = {}
+_tables: dict[str, Table | Ladder] = {}
 _MOST = 8
 
 
@@ -34,7 +34,7 @@ def fit_part(part: Part) -> dict[str, Any]:
         for oldest in list(_tables)[: max(0, len(_tables) - _MOST + 1)]:
             forget(oldest)
         model = part.question.model
-        table = _tables[part.call] = Direct(model) if model.sticks else Table(model)
+        table = _tables[part.call] = Ladder(model) if model.sticks else Table(model)
     with np.errstate(all="ignore"):
         return fit_block(part.question, table, part.x, part.y, part.sigma)
 

@@ -25,28 +25,45 @@ def width(name: str) -> float:
     return _WIDE_RATIO if is_ratio(name) else WIDE
 
 
+class Chebyshev:
+    """Polynomials through so many Chebyshev points of the first kind, `t`, along each of several coordinates."""
+
+    def __init__(self, points: int):
+        angles = np.pi * (np.arange(points) + 0.5) / points
+        self.points, self.t = points, np.cos(angles)
+        self.of_points = (-1.0) ** np.arange(points) * np.sin(angles)
+
+    def lagrange(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Lagrange polynomials of the points at s (B,), and their derivatives: (B, points) each."""
+        away = s[:, None] - self.t
+        away = np.where(np.abs(away) < 1e-13, 1e-13, away)
+        part = self.of_points / away
+        total = part.sum(axis=1, keepdims=True)
+        values = part / total
+        slopes = -part / away / total + values * (part / away).sum(axis=1, keepdims=True) / total
+        return values, slopes
+
+
+def weights_of(axes: list[Chebyshev], s: np.ndarray, by: np.ndarray) -> np.ndarray:
+    """Weights of the values at the points of a tile, (1 + axes, B, C): of the polynomial at s (B, axes), and of its
+    derivatives by coordinates of which s goes `by` (axes,) as fast."""
+    both = [axis.lagrange(column) for axis, column in zip(axes, s.T, strict=True)]
+    factors = [
+        [slopes * by[i] if i == j else values for i, (values, slopes) in enumerate(both)] for j in range(-1, len(both))
+    ]
+    return np.array([_products(factor, len(s)) for factor in factors])
+
+
 class Table:
     """Tiles of a model, made on demand. Not for several threads."""
 
     def __init__(self, model: Model):
         self.model, self.tiles, self.stacks = model, {}, {}
         axes = 1 + len(model.axes)
-        self.points = _POINTS[min(axes, 4)]
-        t = np.cos(np.pi * (np.arange(self.points) + 0.5) / self.points)  # Chebyshev points of the first kind
-        self.t = t
-        self.weights = (-1.0) ** np.arange(self.points) * np.sin(np.pi * (np.arange(self.points) + 0.5) / self.points)
+        self.chebyshev = Chebyshev(_POINTS[min(axes, 4)])
+        self.axes = [self.chebyshev] * len(model.axes)
         lattice = (np.arange(_LATTICE) / _LATTICE * WIDE - WIDE / 2) / (WIDE / 2 + _MARGIN)
-        self.along_u = self.lagrange(lattice)[0]
-
-    def lagrange(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Lagrange polynomials of the Chebyshev points at s (B,), and their derivatives: (B, points) each."""
-        away = s[:, None] - self.t
-        away = np.where(np.abs(away) < 1e-13, 1e-13, away)
-        part = self.weights / away
-        total = part.sum(axis=1, keepdims=True)
-        values = part / total
-        slopes = -part / away / total + values * (part / away).sum(axis=1, keepdims=True) / total
-        return values, slopes
+        self.along_u = self.chebyshev.lagrange(lattice)[0]
 
     def make(self, place: tuple[int, ...]) -> None:
         """Solve the contacts of a tile. It holds g and its derivatives by the inputs `moved` of the model, (1 + moved,
@@ -57,7 +74,9 @@ class Table:
         model, names = self.model, self.model.axes
         middle = (np.array(place) + 0.5) * [WIDE, *map(width, names)]
         half = [WIDE / 2 + _MARGIN, *(width(name) / 2 for name in names)]
-        parts = np.stack([grid.ravel() for grid in np.meshgrid(*([self.t] * len(half)), indexing="ij")], axis=-1)
+        parts = np.stack(
+            [grid.ravel() for grid in np.meshgrid(*([self.chebyshev.t] * len(half)), indexing="ij")], axis=-1
+        )
         u, *coordinates = (middle + half * parts).T
         values = {name: model.of_coordinate(name, c) for name, c in zip(names, coordinates, strict=True)}
         values = model.within(values)
@@ -70,7 +89,7 @@ class Table:
                 by = _MOVE * (1.0 if is_ratio(name) else value)
                 ends = [np.log(model.solved(values | {name: value + sign * by}, x)) for sign in (1, -1)]
                 rows.append((ends[0] - ends[1]) / (2 * _MOVE))
-        g = np.array(rows).reshape(len(rows), self.points, -1)
+        g = np.array(rows).reshape(len(rows), self.chebyshev.points, -1)
         self.tiles[place] = np.einsum("lp,rpc->rlc", self.along_u, g)
 
     def _stack(self, place: tuple[int, ...], count: int) -> np.ndarray:
@@ -100,13 +119,7 @@ class Table:
         B, names = len(coordinates), self.model.axes
         wide = np.array([width(name) for name in names])
         places = np.floor(coordinates / wide).astype(int)
-        values, slopes = self.lagrange((2 * (coordinates / wide - places) - 1).ravel())
-        values, slopes = (part.reshape(B, len(names), self.points) for part in (values, slopes))
-        factors = [
-            [slopes[:, i] * 2 / wide[i] if i == j else values[:, i] for i in range(len(names))]
-            for j in range(-1, len(names))
-        ]
-        weights = np.array([_products(factor, B) for factor in factors])  # of g itself, and of its derivatives
+        weights = weights_of(self.axes, 2 * (coordinates / wide - places) - 1, 2 / wide)
         key = np.column_stack([first, places])
         several = [tuple(place) for place in np.unique(key, axis=0).tolist()]
         rows = np.empty((1 + len(self.model.moved), B, count * _LATTICE))

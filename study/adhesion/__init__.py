@@ -1,0 +1,1 @@
+"""What is known of adhesion before a contact is solved."""

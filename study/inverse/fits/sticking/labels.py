@@ -36,7 +36,7 @@ class Points(NamedTuple):
         return Points(*(array[index] for array in self))
 
     def in_contact(self, load: np.ndarray, free: np.ndarray, base: np.ndarray) -> np.ndarray:
-        """(B, n) bool, the points that stick, for loads (B, n) with and without adhesion, and the baseline under both."""
+        """(B, n) bool, points that stick, for loads (B, n) with and without adhesion, and the baseline under both."""
         rows = np.arange(len(load))[:, None]
         on, off = (self.w * (self.y - base - part) for part in (load, free))
         more = np.where(self.robust[:, None], np.abs(on) - np.abs(off), on**2 - off**2)

@@ -1,6 +1,7 @@
 """A fixed sample of random shapes and of what sticks, and that wrong numbers are seen."""
 
 from collections import Counter
+from pathlib import Path
 
 import fuzz_shapes
 import numpy as np
@@ -42,3 +43,20 @@ def test_another_contact_is_seen():
     s = type(s)(**{key: value.copy() for key, value in vars(s).items()})
     s.a[1] *= 1.0001
     assert fuzz_shapes.differs(s, case, "P").tolist() == [False, True]
+
+
+def test_wrong_stresses_are_seen():
+    """The surface bears the pressure: here under a flat end, whose largest stress is in a ring next to the edge."""
+    case = {"shape": "rounded_flat", "flat_radius": 0.1, "edge_radius": 0.1, "base": "half_space", "micro": "smooth"}
+    problem = Problem.of(**case, a=[0.101, 0.12])
+    s = solve(problem, fuzz_shapes.X)
+    assert not fuzz_shapes.stressed(s, problem).any()
+    s = type(s)(**{key: value.copy() for key, value in vars(s).items()})
+    s.p[1] *= 1.01
+    assert fuzz_shapes.stressed(s, problem).tolist() == [False, True]
+
+
+def test_a_table_is_convex_and_its_file_is_gone():
+    word = fuzz_shapes.table(np.random.default_rng(0), 0, 0)
+    assert not Path(word.removeprefix("table:")).exists()
+    assert solve(Problem.of(shape=word, P=1e-4, base="half_space", micro="smooth")).status == Status.CONVERGED

@@ -174,15 +174,15 @@ def solve(
     return found
 
 
-def solve_one(stresses: bool = False, /, *, same_piece: bool = False, **parameters: Any) -> OneCase:
+def solve_one(stresses: str = "", /, *, same_piece: bool = False, **parameters: Any) -> OneCase:
     """One contact, as of :func:`solve`, without a dataset, and without warnings of what its summary says.
 
-    stresses : whether these are wanted besides: a contact that has none is refused before it is solved
+    stresses : what asks for stresses besides, in messages: a contact that has none is refused before it is solved
     """
     begun = time.monotonic()
     definition = from_call(parameters, [], same_piece, {"title": "", "output": {"x": POINTS, "profiles": True}})
     if stresses and (reason := none_in(definition.grid)):
-        raise StudyError([reason])
+        raise StudyError([f"{stresses}: {reason}"])
     if far := far_outside(definition):
         warnings.warn("\n".join(far), FarOutside, stacklevel=2)
     return OneCase(_solved_parts(definition, None, screen_of(None), begun))

@@ -54,7 +54,9 @@ def point(options, texts: list[str]) -> int:
         warnings.showwarning = lambda text, *_: say(f"beware: {text}", sys.stderr)
         try:
             # with the profile p, which may be largest in a ring
-            contact = solve(**parameters) if several else solve_one(bool(picture), **parameters)
+            contact = (
+                solve(**parameters) if several else solve_one(f"--stresses {picture}" * bool(picture), **parameters)
+            )
         except StudyError as error:
             raise StudyError(message.removeprefix("solve: ") for message in error.messages) from None
     if options.json or picture:

@@ -161,3 +161,7 @@ def test_a_picture_that_cannot_be_drawn_is_told_before_anything_is_solved(capsys
     assert "--stresses ball.doc: must end with one of .png, .pdf, .svg" in capsys.readouterr().err
     assert main(["point", "--stresses", "ball.png", *words(**BALL, P="10 N, 20 N")]) == 2
     assert "--stresses ball.png: the picture is of one contact, and there is a list" in capsys.readouterr().err
+    stamp = ["shape=flat", "flat_radius=0.1", "P=1e-5", "base=half_space", "micro=smooth"]
+    assert main(["point", "--stresses", "stamp.png", *stamp]) == 2
+    said = capsys.readouterr()
+    assert said.err.startswith("--stresses stamp.png: there are no largest stresses under a flat") and not said.out

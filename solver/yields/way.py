@@ -19,8 +19,9 @@ STEEPEST, _KINKS = 0.4, 100.0
 #: No body yields where the largest pressure of a half-space of the stiffer material is below this part of the strength
 #: over 1 + _BY_FRICTION mu: on a half-space a ball makes a body yield at 1.6 strengths, and layers that bend do sooner.
 _NEVER, _BY_FRICTION = 0.19, 4.0
-#: What is marched over, the radius less that of a flat end, is looked at in so many steps; and the pressure at radii.
-_STEPS, _LEAST, _MOST = 120, 1e-8, 1e2
+#: What is marched over, the radius less that of a flat end: so many steps on the way to where nothing yields, and many
+#: more to the last contact, which is 2 % short of the slope at most; and radii at which the pressure is looked at.
+_STEPS, _FINE, _LEAST, _MOST = 120, 1200, 1e-8, 1e2
 _LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
 
 
@@ -65,7 +66,7 @@ def way_of(problem, strength, mu, touched):
 
 def _last(shape):
     """The largest a - flat (B,) that is looked at."""
-    flat, steps = shape.least()[:, None], np.geomspace(_LEAST, _MOST, _STEPS)
+    flat, steps = shape.least()[:, None], np.geomspace(_LEAST, _MOST, _FINE)
     within = flat + steps < shape.most()[:, None]
     slopes = shape.slope(np.where(within, flat + steps, flat))
     steep = within & (slopes > STEEPEST)

@@ -64,3 +64,12 @@ def test_next_to_a_flat_end_the_largest_stress_is_in_a_narrow_ring():
     assert 0.99 < r < 0.999 and 0.003 < z < 0.007
     coarse = of_contacts(problem, solution, names=("mises2",), coarse=True)["mises2"][0, 0]
     assert 0.85 < coarse / largest <= 1 + 1e-9
+
+
+def test_what_protects_the_body_from_a_sharp_tip():
+    """A bare body yields at once; below a layer of this thickness its largest stress is the strength."""
+    scene = {"P": 1e-4, "shape": "berkovich", "n": 2.0, "bonding": "bonded", "micro": "smooth"}
+    found = study.h_protect(Y2=0.01, **scene)
+    h = found.h_protect.item()
+    stress = study.extremes(study.solve(h=[h, 1.05 * h, 3 * h], **scene)).mises2.values / 0.01
+    assert stress[0] == pytest.approx(1.0, rel=1e-6) and (stress[1:] < 1).all() and np.isnan(found.h_yields)

@@ -6,6 +6,7 @@ import numpy as np
 from ..body import BODIES
 from ..numerics.mesh import Mesh, mesh_of, on_panels
 from ..numerics.quadrature import radau_nodes
+from ..shapes import shaped
 from ..smooth_contact.contact import kinds_of, shape_in
 from ..smooth_contact.equation import respond
 from ..smooth_contact.pressure import pressure_changes, without_edge
@@ -46,9 +47,10 @@ def corners(scaled, a):
     """Radius (B,) in a of where the slope of the shape jumps inside the contact, the innermost; 0 of a sharp tip, NaN
     where there is none. The pressure of a smooth punch is infinite there, like a logarithm."""
     at = np.full(len(scaled), np.nan)
-    for mask, _ in kinds_of(scaled):
+    for mask, _ in kinds_of(scaled) if shaped(scaled).any() else ():
         index = np.flatnonzero(mask)
-        shape, kinks = shape_in(scaled.take(index)), shape_in(scaled.take(index)).kinks()
+        shape = shape_in(scaled.take(index))
+        kinks = shape.kinks()
         jumps = shape.slope(kinks * (1 + _APART)) - shape.slope(kinks * (1 - _APART))
         sharp = (jumps > _JUMP * shape.slope(a[index, None])) & (kinks < a[index, None])
         first = np.min(np.where(sharp, kinks, np.inf), axis=1, initial=np.inf) / a[index]

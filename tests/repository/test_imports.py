@@ -29,20 +29,8 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives", "fields"),
-        *(
-            "in_words",
-            "files",
-            "store",
-            "work",
-            "carried",
-            "lazy",
-            "solving",
-            "inverse",
-            "adhesion",
-            "yields",
-            "figures",
-        ),
-        *("api", "catalogue", "explorer", "commands", "__main__"),
+        *("in_words", "files", "store", "work", "carried", "lazy", "solving", "inverse", "adhesion"),
+        *("yields", "figures", "api", "catalogue", "explorer", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.

@@ -68,7 +68,8 @@ def of_contacts(problem, solution, r, z, mu=0.0):
         film = (scaled.base != "half_space") & (scaled.h / a < THINNEST)
         for rows, pressure, missed in pressures(scaled, ended, a):
             here = index[rows]
-            error[here] = np.maximum(missed, np.where(film[rows], MISSED, 0.0))
+            in_film = np.where(are_infinite(scaled.take(rows)), 1.0, MISSED)  # next to an infinite edge, unknown
+            error[here] = np.maximum(missed, np.where(film[rows], in_film, 0.0))
             for some, field in _of_pressures(scaled.take(rows), a[rows], pressure, r, z, mu):
                 units = problem.E2[here[some], None, None], solution.a[here[some], None, None]
                 for name, values in field.items():

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .body.graded import is_graded
 from .models.auto import cheapest
-from .models.graded import is_graded, solve_graded
+from .models.graded import solve_graded
 from .models.model_error import judged
 from .models.named import model_of, solve_named
 from .models.plastic_share import has_yield, plastic_share

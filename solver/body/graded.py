@@ -2,7 +2,9 @@
 
 import numpy as np
 
+from ..layers import full_name, numbers_of
 from ..numerics.profiles import TABLES
+from ..parameters import STACKED
 
 #: The sublayers are thinner and thinner over this many octaves of the depth: in a graded layer at the surface, which
 #: waves of all lengths feel, and in a deeper one.
@@ -11,6 +13,15 @@ _OCTAVES, _DEEPER = 8, 4
 _EVEN, _HALVINGS = 0.1, 60
 #: Sublayers where nothing says how many.
 _USUAL = 16
+
+
+def is_graded(problem):
+    """(B,) bool: the cases with a graded layer, of which the number of sublayers is not given."""
+    if not numbers_of(problem.parameters):
+        return np.zeros(len(problem), dtype=bool)
+    numbers = range(1, numbers_of(problem.parameters) + 1)
+    graded = np.any([getattr(problem, full_name(i, "profile")) != "uniform" for i in numbers], axis=0)
+    return graded & (problem.base == STACKED[1][0]) & (problem.sublayers == 0)
 
 
 def refined(layers, sublayers):

@@ -8,8 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..layers import full_name, numbers_of
-from ..parameters import STACKED
 from ..solution import JUDGED, PULLS, Solution
 from ..status import Status
 from .named import solve_named
@@ -24,15 +22,6 @@ _NUMBERS = (*JUDGED, "A0", "dP_dD", *PULLS, "p", "lam")
 _JUDGED = (*JUDGED, "P_off", "D_off")
 #: Statuses of cases that have numbers; of the last, those of pull-off and pull-in.
 _SOLVED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET, Status.PULLED_OFF)
-
-
-def is_graded(problem):
-    """(B,) bool: the cases with a graded layer, of which the number of sublayers is not given."""
-    if not numbers_of(problem.parameters):
-        return np.zeros(len(problem), dtype=bool)
-    numbers = range(1, numbers_of(problem.parameters) + 1)
-    graded = np.any([getattr(problem, full_name(i, "profile")) != "uniform" for i in numbers], axis=0)
-    return graded & (problem.base == STACKED[1][0]) & (problem.sublayers == 0)
 
 
 def solve_graded(problem, x):

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...body import BODIES
-from ...models.graded import is_graded
+from ...body.graded import is_graded
 from ...scaling import dimensionless, with_rigid_punch
 from ..contact import shape_in
 from ..equation import respond

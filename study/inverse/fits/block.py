@@ -4,7 +4,7 @@ from enum import IntEnum
 from typing import Any
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from .asked import Asked
 from .curve import Curve
@@ -81,7 +81,7 @@ def fit_block(
     if sigma is None and not asked.priors:
         variance = best.cost / np.maximum(count - k, 1)
     tail = (1 + asked.level) / 2
-    t = stats.t.ppf(tail, np.maximum(count - k, 1)) if sigma is None else np.full(len(x), stats.norm.ppf(tail))
+    t = special.stdtrit(np.maximum(count - k, 1), tail) if sigma is None else np.full(len(x), special.ndtri(tail))
     covariance = covariance_of(data, best, variance)
     limit = best.cost + t**2 * variance
     sd = np.sqrt(np.einsum("bii->bi", covariance))
@@ -137,7 +137,7 @@ def _no_contact(curve: Curve, data: Data, best: Fit, count: np.ndarray, k: int) 
     free, more = np.maximum(count - k, 1), max(k - 2, 1)
     with np.errstate(divide="ignore", invalid="ignore"):
         F = (line - residual) / more / (residual / free)
-    return ~(stats.f.ppf(_SURE, more, free) < F) & np.isfinite(best.cost)
+    return ~(special.fdtri(more, free, _SURE) < F) & np.isfinite(best.cost)
 
 
 def _propagated(asked: Asked, curve: Curve, data: Data, best: Fit) -> np.ndarray:

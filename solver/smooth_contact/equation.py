@@ -109,7 +109,7 @@ def respond(shape, body, a):
         which = int(octave[index[0]]), int(place[index[0]])
         part, size = body.take(index), size_of(int(fine[index[0]]), bool(kind % 2))
         L1 = excess(part, wave_nodes(sampler, *which, size) * (part.h / a[index])[:, None])
-        products, of_waves = Products.of(L1, sampler, *which, size), _error_of_waves(sampler, which[0])
+        products, of_waves = Products.of(L1, sampler, *which, size), error_of_waves(sampler, which[0])
         pieces.append((index, _on_kernel(shape.take(index), part, a[index], products, of_waves)))
     return Response.join(len(a), pieces)
 
@@ -137,7 +137,7 @@ def _on_kernel(shape, body, a, products, of_waves):
     turned = np.einsum("bn,bnj->bj", products.slope, y)
     resolvent = (products.corner - at_edge[:, 2]) / flat_D
     bent = y[:, :, :2] - sides[:, :, :2]
-    changes, of_basis = _left_out(products, matrix, sides, y)
+    changes, of_basis = left_out(products, matrix, sides, y, ~shape.even)
     rounded = _FLOOR * _EPS * N * np.abs(matrix).sum(axis=2).max(axis=1)
     of_radius = _of_radius(a, slope)
     bends = _sizes(bent)
@@ -156,7 +156,7 @@ def _on_kernel(shape, body, a, products, of_waves):
     )  # fmt: skip
 
 
-def _error_of_waves(sampler, octave):
+def error_of_waves(sampler, octave):
     """Error of what the kernel adds, in an octave of h/a."""
     if octave < -2 and has_few(sampler, octave):
         return _OF_FEW
@@ -168,12 +168,14 @@ def _of_radius(a, slope):
     return np.where(np.isfinite(slope), _EPS * a * slope, 0.0)
 
 
-def _left_out(products, matrix, sides, y):
+def left_out(products, matrix, sides, y, kinked):
     """Estimates of what the basis leaves out: of the second terms (B, N, 2) of the equation, without adhesion and of a
-    flat punch, and of y_0 and D, (B, 2, 2).
+    flat punch, and of y_0 and D, (B, 2, 2). kinked : (B,) bool, the shape is not smooth in r².
 
     A basis of n functions leaves the residual r, and a number that is z @ sides is off by z @ r. The last functions of
     the basis have r, of the solution without these, and z, both of which fall with n: their product is what they add.
+    The second terms are not such numbers. Where F goes on beyond the basis it moves their last functions by about as
+    much as these are: the ratio is then that of half as many functions, its root.
     """
     N = matrix.shape[1]
     n = coarser(N)
@@ -184,7 +186,9 @@ def _left_out(products, matrix, sides, y):
     z = _weights(products, y)
     added = _sizes(z[:, n:])[:, :, None] * _sizes(residual)[:, None]
     falls = _ratio(*(_sizes(z[:, part])[:, :, None] * _sizes(y[:, part, :2])[:, None] for part in blocks))
-    return _rest(_ratio(*(_sizes(bent[:, part]) for part in blocks)))[:, None] * (bent - of_less), _rest(falls) * added
+    of_bent = _ratio(*(_sizes(bent[:, part]) for part in blocks))
+    of_bent[kinked, 0] = np.sqrt(of_bent[kinked, 0])
+    return _rest(of_bent)[:, None] * (bent - of_less), _rest(falls) * added
 
 
 def _ratio(last, before, first):

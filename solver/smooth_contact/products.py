@@ -23,7 +23,7 @@ from ..numerics.quadrature import gauss_legendre
 #: Numbers N of functions in the basis for octaves of h/a from 3 downwards, of shapes that are smooth in r², and of all
 #: others; of thicker layers, as for octave 3. Films have those of the first for all shapes.
 _SIZES = {
-    True: (6, 8, 10, 12, 16, 22, 28, 38, 52, 70, 96, 130, 130, 164, 208, 272),
+    True: (6, 8, 10, 12, 16, 22, 28, 38, 52, 70, 96, 130, 130, 150, 170, 190),
     False: (6, 8, 11, 15, 21, 28, 40, 54, 72, 100, 144, 196),
 }
 #: The octave of the last of them: thinner films have as many.
@@ -34,6 +34,8 @@ _TABLES, _WAVES = Kept(_MOST), Kept(_MOST)
 #: Octave of h/a below which few nodes are not enough: they are chosen for functions that fall like 1/κ², and cos κ, of
 #: the edge, does not. A table would also be large.
 _THINNEST = -4
+#: Ratios of j_n begin so many orders beyond the last function, and times the root of third order of N more.
+_MILLER = 14
 #: Octaves of far waves, and nodes in each. The last function of N turns against the first by N²/κ in the octave from κ
 #: on: there are so many nodes more for each radian.
 _OCTAVES, _FAR, _TURNS = 30, 12, 0.7
@@ -197,3 +199,23 @@ def differences(size, k):
     values = transforms(size, k)
     values[0] = k * special.spherical_jn(1, k)
     return values
+
+
+def differences_at(size, k):
+    """d_m (B, N, G) at κ (B, G) > 0, by recurrence over the order n of j_n: upwards where n < κ, and beyond by ratios,
+    which are found downwards."""
+    last = 2 * size + int(_MILLER * np.cbrt(size)) + _MILLER
+    ratios, ratio = np.empty((2 * size, *k.shape)), np.zeros_like(k)  # j_(n+1)/j_n
+    for n in reversed(range(last)):
+        ratio = 1 / ((2 * n + 3) / k - ratio)
+        if n < 2 * size:
+            ratios[n] = ratio
+    out = np.empty((len(k), size, k.shape[1]))
+    before, now = np.cos(k) / k, np.sin(k) / k  # j_(-1), j_0
+    for n in range(2 * size - 1):
+        if n % 2 == 0:
+            out[:, n // 2] = (-1.0) ** (n // 2) * np.sqrt(2 * n + 1) * now
+        before, now = now, np.where(n < k, (2 * n + 1) / k * now - before, now * ratios[n])
+        if n == 0:
+            out[:, 0] = k * now
+    return out

@@ -6,7 +6,7 @@ from ..shapes.shape import column
 from .equation import Response, respond
 
 #: Most evaluations of a case, and the relative distance of P or D to what is given at which it is done.
-_MOST, _NEAR = 80, 1e-13
+_MOST, NEAR = 80, 1e-13
 #: Longest step of Newton's method in the variable of :class:`Radii`, a logarithm.
 _LONGEST = 3.0
 #: P or D that is not reached to this part is not reached: there is no such contact.
@@ -65,7 +65,7 @@ def rising_root(evaluate, start, low=-np.inf):
         lo, hi = low[active], high[active]
         outside = (following <= lo) | (following >= hi)
         following = np.where(outside & np.isfinite(lo + hi), (lo + hi) / 2, following)
-        ended = (np.abs(g) <= _NEAR) | np.isnan(g) | (hi - lo <= _NARROW * np.maximum(1.0, np.abs(here)))
+        ended = (np.abs(g) <= NEAR) | np.isnan(g) | (hi - lo <= _NARROW * np.maximum(1.0, np.abs(here)))
         x[active] = np.where(ended, np.where(np.isnan(g), np.nan, here), following)
         active = active[~ended]
         if not len(active):

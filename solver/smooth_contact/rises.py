@@ -15,6 +15,8 @@ from .products import in_blocks
 #: More points of a rule than the basis has functions, and the most kinks that end a panel: of more, as a table of many
 #: rows has, some are left out.
 _MORE, MOST_KINKS = 20, 24
+#: Lengths of panels are rounded to such parts.
+_PARTS = 8
 #: Points of a rule of the pressure: in a subpanel towards a singularity, and under a shape without one.
 _NEAR, _SMOOTH = 22, 40
 #: Numbers that are computed together.
@@ -63,16 +65,28 @@ def _even_rule(size):
 
 def _kinked_rises(shape, a, size):
     out = np.empty((len(a), size))
-    y, w = gauss_legendre(size + _MORE)
     for index, ends in panel_ends(shape, a):
-        radius, low, width = column(a[index]), ends[:, :-1, None], np.diff(ends, axis=1)[:, :, None]
-        tau = (low + width * y**2).reshape(len(index), -1)
-        weights = (width * (2 * y * w)).reshape(len(index), -1)
-        part = shape.take(index)
-        rise = weights * (part.lifted(radius) - part.lifted(radius * tau))
-        for m, values in enumerate(functions(tau, size)):
-            out[index, m] = (values * rise).sum(axis=1)
+        counts = _MORE + np.ceil(2 * size * _longest(ends)).astype(int)
+        for count in np.unique(counts).tolist():
+            rows = np.flatnonzero(counts == count)
+            out[index[rows]] = _in_panels(shape.take(index[rows]), a[index[rows]], ends[rows], size, count)
     return out
+
+
+def _longest(ends):
+    """The longest of panels (B, K + 1) in arccos τ, over that of all τ, in eighths: a function of the basis turns by as
+    large a part of all its waves there."""
+    angles = np.arccos(np.clip(ends, 0.0, 1.0)) / (np.pi / 2)
+    return np.ceil(_PARTS * (-np.diff(angles, axis=1)).max(axis=1)) / _PARTS
+
+
+def _in_panels(shape, a, ends, size, count):
+    """The same on panels with these ends, of `count` points each."""
+    y, w = gauss_legendre(count)
+    radius, low, width = column(a), ends[:, :-1, None], np.diff(ends, axis=1)[:, :, None]
+    tau = (low + width * y**2).reshape(len(a), -1)
+    rise = (width * (2 * y * w)).reshape(len(a), -1) * (shape.lifted(radius) - shape.lifted(radius * tau))
+    return np.stack([(values * rise).sum(axis=1) for values in functions(tau, size)], axis=1)
 
 
 def functions(tau, size):

@@ -7,6 +7,7 @@ import numpy as np
 from ..solution import Solution
 from .equation import Response, respond
 from .pressure import flat_pressure, pressure_changes, pressures
+from .radius import NEAR
 
 #: Radii at which the pressure is looked at, for tension and for its error; denser towards the edge.
 _LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
@@ -116,10 +117,17 @@ def _error(control, state):
     if control == "a":
         return 0 * state.a, _over(state.P_error, state.P) + _over(state.D_error, state.D)
     off, slope = (state.P_error, state.dP) if control == "P" else (state.D_error, state.dD)
-    moved = _over(off, slope)
+    moved = _over(off + NEAR * _size(control, state), slope)
     other, growth, error = (state.D, state.dD, state.D_error) if control == "P" else (state.P, state.dP, state.P_error)
     along = np.where(moved > 0, np.abs(growth) * moved, 0.0)
     return moved, _over(moved, state.a) + _over(error + along, other)
+
+
+def _size(control, state):
+    """What the shape and the edge add to the load, or depth, (B,): it is 0 nowhere."""
+    r = state.response
+    number, flat = (state.P, r.flat_P) if control == "P" else (state.D, r.flat_D)
+    return np.abs(number) + np.abs(state.A) * flat
 
 
 def _over(error, value):

@@ -15,6 +15,9 @@ _LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
 _FLAT = 1e-12
 #: Rounding of a pressure over the largest one: 3e-13 at most beside kinks of the shape (tools/errors/shape_errors.py).
 _OF_PRESSURE = 5e-13
+#: Nearer to a corner than this, relative, a contact is taken for that of a flat punch; at the second the rounding of a
+#: is a small part of the distance still.
+_CORNER, _AT_CORNER = 1e-9, 64 * np.finfo(float).eps
 #: The error of p(0) is the largest at so many of these radii, those below 0.45 a: one may be small by chance.
 _INNER = 8
 
@@ -66,12 +69,32 @@ class State(NamedTuple):
 
 def pinned(part, shape, body):
     """:class:`State` of flat punches, whose edge holds what they bear: either P or D follows from the other."""
-    r = respond(shape, body, shape.b)
+    r = respond(shape, body, shape.least())
     unit, other = (r.flat_P, r.flat_D) if part.control == "P" else (r.flat_D, r.flat_P)
     A = part.value / unit
     error = np.abs(A) * other * (r.flat_P_error / r.flat_P + r.flat_D_error / r.flat_D)
     P_error, D_error = (0 * error, error) if part.control == "P" else (error, 0 * error)
     return State(r.a, A, A * r.flat_P, A * r.flat_D, r.flat_P, r.flat_D, P_error, D_error, 1 + 0 * A, r)
+
+
+def at_corner(part, shape, body, state):
+    """The states, and which of them (B,) touch so little beyond what is flat, or less than can be told from its radius
+    b, that they are better taken for those of a flat punch of that radius. By the part by which a is larger than b, P
+    and D are off then."""
+    least = shape.least()
+    with np.errstate(invalid="ignore", divide="ignore"):
+        over = state.a / least - 1
+    corner = (least > 0) & (part.control != "a") & ~(over >= _CORNER)
+    index = np.flatnonzero(corner & np.isnan(over))
+    if len(index):  # there is no such radius; or the punch lifts off
+        at = respond(shape.take(index), body.take(index), least[index] * (1 + _AT_CORNER))
+        corner[index] = part.value[index] <= getattr(at, part.control)
+    if not corner.any():
+        return state, corner
+    index = np.flatnonzero(corner)
+    flat, over = pinned(part.take(index), shape.take(index), body.take(index)), np.nan_to_num(over[index], nan=_AT_CORNER)
+    flat = flat._replace(P_error=flat.P_error + over * flat.P, D_error=flat.D_error + over * flat.D)
+    return State.join(len(part), [(np.flatnonzero(~corner), state.take(~corner)), (index, flat)]), corner
 
 
 def beyond_profile(part, shape, at):

@@ -12,9 +12,8 @@ from ..numerics.quadrature import gauss_legendre, log_rule, panels_towards
 from ..shapes.shape import column
 from .products import in_blocks
 
-#: More points of a rule than the basis has functions, and the most kinks that end a panel: of more, as a table of many
-#: rows has, some are left out.
-_MORE, MOST_KINKS = 20, 24
+#: Points of a rule besides those for the basis.
+_MORE = 20
 #: Lengths of panels are rounded to such parts.
 _PARTS = 8
 #: Points of a rule of the pressure: in a subpanel towards a singularity, and under a shape without one.
@@ -31,8 +30,7 @@ def panel_ends(shape, a):
     counts = (kinks < 1).sum(axis=1)
     for count in np.unique(counts).tolist():
         index = np.flatnonzero(counts == count)
-        chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_KINKS)).astype(int)) if count else []
-        inner = kinks[index][:, chosen]
+        inner = kinks[index][:, :count]
         yield index, np.hstack([np.zeros((len(index), 1)), inner, np.ones((len(index), 1))])
 
 
@@ -43,7 +41,7 @@ def rises(shape, a, size):
     for index in (np.flatnonzero(even), np.flatnonzero(~even)):
         if len(index):
             part = _even_rises if even[index[0]] else _kinked_rises
-            step = max(1, _TOGETHER // (8 * (size + _MORE)))
+            step = max(1, _TOGETHER // (max(8, shape.kinks().shape[1]) * (size + _MORE)))
             for low in range(0, len(index), step):
                 rows = index[low : low + step]
                 out[rows] = part(shape.take(rows), a[rows], size)
@@ -66,18 +64,18 @@ def _even_rule(size):
 def _kinked_rises(shape, a, size):
     out = np.empty((len(a), size))
     for index, ends in panel_ends(shape, a):
-        counts = _MORE + np.ceil(2 * size * _longest(ends)).astype(int)
+        counts = _MORE + np.ceil(2 * size * longest(np.arccos(ends))).astype(int)
         for count in np.unique(counts).tolist():
             rows = np.flatnonzero(counts == count)
             out[index[rows]] = _in_panels(shape.take(index[rows]), a[index[rows]], ends[rows], size, count)
     return out
 
 
-def _longest(ends):
-    """The longest of panels (B, K + 1) in arccos τ, over that of all τ, in eighths: a function of the basis turns by as
-    large a part of all its waves there."""
-    angles = np.arccos(np.clip(ends, 0.0, 1.0)) / (np.pi / 2)
-    return np.ceil(_PARTS * (-np.diff(angles, axis=1)).max(axis=1)) / _PARTS
+def longest(angles):
+    """The longest of panels with ends at these angles (B, K), over a right angle, in eighths: a function of the basis
+    turns by as large a part of all its waves there."""
+    widths = np.abs(np.diff(angles, axis=1)).max(axis=1)
+    return np.ceil(_PARTS * widths / (np.pi / 2) - _EPS * _PARTS) / _PARTS
 
 
 def _in_panels(shape, a, ends, size, count):

@@ -23,7 +23,7 @@ from ...numerics.quadrature import gauss_legendre
 from ...shapes.shape import column
 from ..equation import Response, at_the_edge, error_of_waves, left_out, matrix_of, solved
 from ..products import Products, differences_at, size_of
-from ..rises import MOST_KINKS, functions, rises
+from ..rises import functions, longest, rises
 from ..state import State
 from ..tabulated import excess
 
@@ -115,8 +115,10 @@ class Maugis(NamedTuple):
         if hasattr(self.body, "kernel"):
             octave, place = place_of(self.body, c)
             octave = np.maximum(octave, OCTAVES[0])
-        kinds, pieces = 2 * (octave * 16 + place) + self.shape.even, []
         usable = np.isfinite(c)
+        edge = np.sqrt(np.exp(over) * (2 + np.exp(over)))
+        parts = np.nan_to_num(16 * longest(self._ends(a, c / a, edge))).astype(int)  # these have rules of their own
+        kinds, pieces = 32 * (2 * (octave * 16 + place) + self.shape.even) + parts, []
         for kind in np.unique(kinds[usable]).tolist():
             index = np.flatnonzero(usable & (kinds == kind))
             part = self.take(index)
@@ -180,18 +182,21 @@ class Maugis(NamedTuple):
     def _rule(self, a, gamma, edge, N):
         """Points z and weights (B, Q), τ = γ sin z <= 1. Beyond each kink of the shape, and beyond 0 where it is not
         smooth in r², the variable is y in z = start + width y²."""
-        end = np.arctan2(1.0, edge)[:, None]  # arcsin(1/γ)
+        ends = self._ends(a, gamma, edge)
         if self.shape.even[0]:
             y, w = gauss_legendre(_MORE + 2 * N)
-            return end * y, end * w
-        kinks = np.sort(np.minimum(np.nan_to_num(self.shape.kinks() / column(a), nan=1.0), 1.0), axis=1)
-        count, most = (kinks < 1).sum(axis=1)[:, None], min(kinks.shape[1], MOST_KINKS)
-        chosen = np.linspace(0, np.maximum(count - 1, most - 1)[:, 0], most).round().astype(int).T
-        inner = np.minimum(np.arcsin(np.take_along_axis(kinks, chosen, axis=1) / gamma[:, None]), end)
-        ends = np.hstack([0 * end, inner, end])
+            return ends[:, 1:] * y, ends[:, 1:] * w
+        y, w = gauss_legendre(_MORE + int(4 * N * longest(ends)[0]))
         low, width = ends[:, :-1, None], np.diff(ends, axis=1)[:, :, None]
-        y, w = gauss_legendre(_MORE + 4 * N // (1 + min(most, 2)))
         return (low + width * y**2).reshape(len(a), -1), (width * (2 * y * w)).reshape(len(a), -1)
+
+    def _ends(self, a, gamma, edge):
+        """Ends of panels (B, K) in z, at the kinks of the shape; those outside of the contact are at its edge."""
+        end = np.arctan2(1.0, edge)[:, None]  # arcsin(1/γ)
+        if self.shape.even[0]:
+            return np.hstack([0 * end, end])
+        kinks = np.sort(np.minimum(np.nan_to_num(self.shape.kinks() / column(a), nan=1.0), 1.0), axis=1)
+        return np.hstack([0 * end, np.minimum(np.arcsin(kinks / gamma[:, None]), end), end])
 
     def _waves(self, a, gamma, octave, place, N):
         """d_m (B, N, G), cos κ, κγ and the weights of ∫ (L - 1) · dκ (B, G) each."""

@@ -29,12 +29,17 @@ _CLASSES = MILD + 1
 #: Rounding of closed forms, relative; and that of the equation, over eps times its size and the norm of its matrix.
 _ROUNDING, _FLOOR = 16 * _EPS, 16
 #: Error of what the kernel adds, by the waves at which it is looked at, from octave 1 of h/a downwards; of few waves
-#: from octave -3 on (the largest of 3,000 random kernels, `python tools/errors/shape_errors.py`, times 2 to 5).
-_OF_WAVES, _OF_FEW = (1e-13, 1e-13, 1e-13, 1e-13, 3e-13, 3e-12, 3e-12, 3e-12, 3e-12, 3e-12, 2e-11), 2e-11
+#: from octave -3 on (the largest in random contacts of `python tools/errors/shape_errors.py`, times 2 to 5). Of the
+#: depth this part is enough.
+_OF_WAVES, _OF_FEW = (1e-13, 1e-13, 1e-13, 1e-13, 3e-13, 1e-12, 3e-12, 3e-12, 3e-12, 3e-12, 2e-11), 1e-11
+_OF_DEPTH = 0.3
+#: Octave from which downwards, and L(0) below which, few waves are not enough: what is left of the depth is small.
+_THIN, _SOFT = -3, 0.1
 #: The error of a basis is what its last functions add, as of a geometric series, times this factor: a series whose
-#: terms fall like 1/N² or 1/N, as in films, has 2 and 2.7 times as much left. The terms of the series fall at least and
-#: at most by these ratios.
-_BASIS, _RATIOS = 3.0, (1e-3, 0.9)
+#: terms fall like 1/N² or 1/N, as in films, has 2 and 2.7 times as much left; and films have no even series (8 of 9,600
+#: random numbers were up to 1.16 times as far off with 3). The terms of the series fall at least and at most by these
+#: ratios.
+_BASIS, _RATIOS = 4.0, (1e-3, 0.9)
 
 
 class Response(NamedTuple):
@@ -100,16 +105,18 @@ def respond(shape, body, a):
         return _on_half_space(shape, body, a)
     octave, place = place_of(body, a)
     sampler = None if isinstance(body, Tabulated) else body.kernel.sampler  # a table has all nodes at once
+    soft = 0 if sampler is None else (octave <= _THIN) & (body.L0 < _SOFT)
     usable = (a > 0) & np.isfinite(a)
     fine = np.where(usable & (octave == FILM), np.floor(np.log2(body.h / a)), octave)  # films have more functions
     fine = np.maximum(fine, LAST).astype(int)
-    kinds, pieces = 2 * ((fine - LAST) * _CLASSES + place) + shape.even, []
+    kinds, pieces = 2 * (2 * ((fine - LAST) * _CLASSES + place) + soft) + shape.even, []
     for kind in np.unique(kinds[usable]).tolist():
         index = np.flatnonzero(usable & (kinds == kind))
         which = int(octave[index[0]]), int(place[index[0]])
         part, size = body.take(index), size_of(int(fine[index[0]]), bool(kind % 2))
-        L1 = excess(part, wave_nodes(sampler, *which, size) * (part.h / a[index])[:, None])
-        products, of_waves = Products.of(L1, sampler, *which, size), error_of_waves(sampler, which[0])
+        chosen = None if kind // 2 % 2 else sampler
+        L1 = excess(part, wave_nodes(chosen, *which, size) * (part.h / a[index])[:, None])
+        products, of_waves = Products.of(L1, chosen, *which, size), error_of_waves(chosen, which[0])
         pieces.append((index, _on_kernel(shape.take(index), part, a[index], products, of_waves)))
     return Response.join(len(a), pieces)
 
@@ -145,7 +152,7 @@ def _on_kernel(shape, body, a, products, of_waves):
     errors = []
     for j, (load, low, high) in enumerate(((P, depth, D), (flat_P, 1.0, flat_D))):
         of_load = (rounded + share[:, j]) * np.abs(load) + 2 * E * a * of_basis[:, 0, j]
-        of_depth = rounded * np.abs(high) + of_waves * (bends[:, j] + np.abs(high - low)) + of_basis[:, 1, j]
+        of_depth = rounded * np.abs(high) + _OF_DEPTH * of_waves * (bends[:, j] + np.abs(high - low)) + of_basis[:, 1, j]
         errors += [of_load, of_depth]
     errors[0], errors[1] = errors[0] + of_radius * flat_P, errors[1] + of_radius * flat_D
     return Response(
@@ -158,7 +165,7 @@ def _on_kernel(shape, body, a, products, of_waves):
 
 def error_of_waves(sampler, octave):
     """Error of what the kernel adds, in an octave of h/a."""
-    if octave < -2 and has_few(sampler, octave):
+    if octave <= _THIN and has_few(sampler, octave):
         return _OF_FEW
     return _OF_WAVES[min(max(1 - octave, 0), len(_OF_WAVES) - 1)]
 

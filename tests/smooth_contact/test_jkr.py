@@ -239,10 +239,16 @@ def test_the_unstable_branch_goes_on_to_the_axis():
         np.testing.assert_allclose(unstable.a[1] / unstable.a[0], 0.01 if control == "D" else 0.1 ** (2 / 3), rtol=1e-3)
 
 
-def test_a_frustum_that_hardly_touches_is_told_so_by_its_error():
-    """a - b has then few digits; D is that of the flat end."""
-    case = {"base": "half_space", "micro": "smooth", "shape": "frustum", "flat_radius": 0.012, "half_angle": 70.0}
-    answer = solve(Problem.of(**case, P=[1e-8, 1e-9]))
-    assert answer.status.tolist() == [Status.CONVERGED, Status.TOLERANCE_NOT_MET]
-    flat = [1e-8 / 0.024, 1e-9 / 0.024]
-    np.testing.assert_allclose(answer.D, flat, rtol=1e-5)  # a is above b by 4e-9 of it; the rest is that rounding
+@pytest.mark.parametrize("body", [{"base": "half_space"}, {"h": 0.01, "n": 0.3}], ids=["half_space", "layered"])
+def test_a_frustum_that_hardly_touches_is_a_flat_punch(body):
+    """Under so little a - b is below 1e-9 of b, in the end below rounding: D, dP/dD and the pressure are those of
+    the flat punch to 1e-8 then, though p is 0 at the edge; and so is the load at such a depth."""
+    case = {"micro": "smooth", "flat_radius": 0.012} | body
+    for punch in ({"shape": "frustum", "half_angle": 70.0}, {"shape": "rounded_flat", "edge_radius": 1e-9}):
+        for control, values in (("P", [1e-13, 1e-16, 1e-20]), ("D", [1e-11, 1e-13, 1e-16])):
+            answer, flat = (solve(Problem.of(**case, **{control: values}, **v), [0, 0.5, 1]) for v in (punch, {"shape": "flat"}))
+            assert np.all(answer.status == Status.CONVERGED)
+            for name in ("P", "D", "dP_dD"):
+                assert_allclose(getattr(answer, name), getattr(flat, name), rtol=1e-8, atol=0)
+            assert_allclose(answer.p[:, :2], flat.p[:, :2], rtol=1e-8, atol=0)
+            assert np.all(answer.p[:, 2] == 0)

@@ -31,6 +31,8 @@ from ..tabulated import excess
 _STEP = 2e-3
 #: Rounding of P and D for each function of the basis; and by how much ln w, or ln(γ - 1), is off where it is found.
 _ROUNDING, _NEAR = 1e-15, 1e-13
+#: Rings that are computed together.
+_TOGETHER = 64
 #: Points of the rule in z besides those for the basis, whose last function turns by 4N quarters on it.
 _MORE = 24
 
@@ -75,7 +77,7 @@ class Maugis(NamedTuple):
         usable = np.flatnonzero((a > 0) & np.isfinite(a))
         part, over = self.take(usable), np.full(len(a), np.nan)
         over[usable] = part._over(a[usable])
-        center = self.ring(a, over)
+        center = self.ring(a, over, judged=True)
         by_a, by_over = self._slopes(a, over)
         dP, dD = (by_a[i] - by_over[i] * by_a[0] / by_over[0] for i in (1, 2))
         off = (center.w_error + _NEAR * self.w) / np.abs(by_over[0])  # by how much ln(γ - 1) may be off
@@ -102,14 +104,14 @@ class Maugis(NamedTuple):
     def _slopes(self, a, over):
         """Derivatives (3, B) of w, P and D by a and by ln(γ - 1)."""
         steps, weights = _STEP * np.array([-2, -1, 1, 2]), np.array([1, -8, 8, -1]) / (12 * _STEP)
-        by_a, by_over = np.zeros((2, 3, len(a)))
-        for step, weight in zip(steps, weights, strict=True):
-            by_a += weight * np.array(self.ring(a * (1 + step), over)[:3]) / a
-            by_over += weight * np.array(self.ring(a, over + step)[:3])
-        return by_a, by_over
+        around = np.append(1 + steps, np.ones(4))[:, None] * a, np.append(np.zeros(4), steps)[:, None] + over
+        rings = self.take(np.tile(np.arange(len(a)), 8)).ring(*(v.ravel() for v in around))
+        numbers = np.array(rings[:3]).reshape(3, 8, -1)
+        by_a, by_over = (np.einsum("s,isb->ib", weights, numbers[:, part]) for part in (slice(4), slice(4, 8)))
+        return by_a / a, by_over
 
-    def ring(self, a, over):
-        """The :class:`Ring` at a and ln(γ - 1) (B,)."""
+    def ring(self, a, over, judged=False):
+        """The :class:`Ring` at a and ln(γ - 1) (B,); the errors of the basis only where it is `judged`."""
         c = a * (1 + np.exp(over))
         octave, place = (np.zeros(len(a), dtype=int),) * 2
         if hasattr(self.body, "kernel"):
@@ -121,8 +123,9 @@ class Maugis(NamedTuple):
         kinds, pieces = 32 * (2 * (octave * 16 + place) + self.shape.even) + parts, []
         for kind in np.unique(kinds[usable]).tolist():
             index = np.flatnonzero(usable & (kinds == kind))
-            part = self.take(index)
-            pieces.append((index, part._ring(a[index], over[index], int(octave[index[0]]), int(place[index[0]]))))
+            which = int(octave[index[0]]), int(place[index[0]]), judged
+            for rows in np.split(index, range(_TOGETHER, len(index), _TOGETHER)):
+                pieces.append((rows, self.take(rows)._ring(a[rows], over[rows], *which)))
         width = max((piece.bent.shape[1] for _, piece in pieces), default=1)
         out = Ring(*np.full((6, len(a)), np.nan), np.zeros((len(a), width)))
         for index, piece in pieces:
@@ -131,7 +134,7 @@ class Maugis(NamedTuple):
             out.bent[index, : piece.bent.shape[1]] = piece.bent
         return out
 
-    def _ring(self, a, over, octave, place):
+    def _ring(self, a, over, octave, place, judged):
         """The :class:`Ring` where h/c is in one octave and class of stiffness."""
         N, E, gamma = size_of(octave, bool(self.shape.even[0])) + 4, self.body.E, 1 + np.exp(over)
         edge = np.sqrt(np.exp(over) * (gamma + 1))  # sqrt(γ² - 1)
@@ -143,7 +146,7 @@ class Maugis(NamedTuple):
         pulled = (unit * a)[:, None] * (root - edge[:, None])
         exact = depth - self.shape.lifted(column(a) * tau) + pulled
         side = rises(self.shape, a, N) + np.einsum("bq,bnq->bn", pulled * dz * root, basis)
-        layer = self._layer(a, gamma, octave, place, side)
+        layer = self._layer(a, gamma, (octave, place), side, judged)
         whole = exact + np.einsum("bn,bnq->bq", layer.y - side, basis)
         D = depth[:, 0] - unit * a * edge + layer.at_edge
         moved = 2 / np.pi * ((whole * dz).sum(axis=1) - unit * c) + layer.moved  # u(c)
@@ -156,26 +159,28 @@ class Maugis(NamedTuple):
             2 * E * a * of_y + rounding * (np.abs(load) + tension), D_error, layer.y - side,
         )  # fmt: skip
 
-    def _layer(self, a, gamma, octave, place, side):
+    def _layer(self, a, gamma, which, side, judged):
         """The :class:`Layer` of contacts whose right-hand side on a half-space is `side` (B, N)."""
         if not hasattr(self.body, "kernel"):
             return Layer(side, 0 * a, 0 * a, np.zeros((3, len(a))))
-        N, (d, cosine, by, q) = side.shape[1], self._waves(a, gamma, octave, place, side.shape[1])
+        N, (d, cosine, by, q) = side.shape[1], self._waves(a, gamma, *which, side.shape[1])
         kappa, J0 = by / gamma[:, None], special.j0(by)
         J1 = column(2 * self.sigma / self.body.E * a * gamma) * special.j1(by) / kappa
         products, sides = Products.summed(d, cosine, 2 / np.pi * q), np.zeros((len(a), N, 3))
         sides[:, :, 0], sides[:, 0, 1] = side + np.einsum("bg,bng->bn", q * J1, d), 1.0
         sides[:, :, 2] = products.edge
-        solution = solved(products, sides, N)
+        solution = solved(products, sides if judged else sides[:, :, :1], N)
         y = solution[:, :, 0]
         at_edge = at_the_edge(products, solution)[:, 0] - (q * J1 * cosine).sum(axis=1)
         transform = 2 / np.pi * (np.einsum("bn,bng->bg", y, d) + y[:, :1] * cosine)
         moved = (q * J0 * (transform - J1)).sum(axis=1)
-        _, left = left_out(products, matrix_of(products, N), sides, solution, ~self.shape.even)
-        of_y, of_edge = left[:, 0, 0], left[:, 1, 0]
+        of_y, of_edge = np.zeros((2, len(a)))
+        if judged:
+            _, left = left_out(products, matrix_of(products, N), sides, solution, ~self.shape.even)
+            of_y, of_edge = left[:, 0, 0], left[:, 1, 0]
         bends = np.sqrt(((y - side) ** 2).sum(axis=1))
         film = self.body.h < 2.0 ** OCTAVES[0] * a * gamma  # the quadrature ends where L - 1 has not decayed
-        of_waves = np.where(film, 1.0, error_of_waves(None, octave))
+        of_waves = np.where(film, 1.0, error_of_waves(None, which[0]))
         of_waves = of_waves * np.array([bends, bends + np.abs(at_edge), bends + np.abs(moved)])
         return Layer(y, at_edge, moved, np.array([of_y, of_edge, of_y + of_edge]) + of_waves)
 

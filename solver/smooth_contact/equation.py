@@ -147,8 +147,8 @@ def _on_kernel(shape, body, a, products, of_waves):
     changes, of_basis = left_out(products, matrix, sides, y, ~shape.even)
     rounded = _FLOOR * _EPS * N * np.abs(matrix).sum(axis=2).max(axis=1)
     of_radius = _of_radius(a, slope)
-    bends = _sizes(bent)
-    share = of_waves * np.minimum(bends / np.maximum(_sizes(y[:, :, :2]), _TINY), 1.0)  # y is 0 under what is flat
+    bends = sizes(bent)
+    share = of_waves * np.minimum(bends / np.maximum(sizes(y[:, :, :2]), _TINY), 1.0)  # y is 0 under what is flat
     errors = []
     for j, (load, low, high) in enumerate(((P, depth, D), (flat_P, 1.0, flat_D))):
         of_load = (rounded + share[:, j]) * np.abs(load) + 2 * E * a * of_basis[:, 0, j]
@@ -191,9 +191,9 @@ def left_out(products, matrix, sides, y, kinked):
     bent, of_less = y[:, :, :2] - sides[:, :, :2], np.pad(less - sides[:, :n, :2], ((0, 0), (0, N - n), (0, 0)))
     residual = sides[:, n:, :2] - matrix[:, n:, :n] @ less
     z = _weights(products, y)
-    added = _sizes(z[:, n:])[:, :, None] * _sizes(residual)[:, None]
-    falls = _ratio(*(_sizes(z[:, part])[:, :, None] * _sizes(y[:, part, :2])[:, None] for part in blocks))
-    of_bent = _ratio(*(_sizes(bent[:, part]) for part in blocks))
+    added = sizes(z[:, n:])[:, :, None] * sizes(residual)[:, None]
+    falls = _ratio(*(sizes(z[:, part])[:, :, None] * sizes(y[:, part, :2])[:, None] for part in blocks))
+    of_bent = _ratio(*(sizes(bent[:, part]) for part in blocks))
     of_bent[kinked, 0] = np.sqrt(of_bent[kinked, 0])
     return _rest(of_bent)[:, None] * (bent - of_less), _rest(falls) * added
 
@@ -220,8 +220,8 @@ def _weights(products, y):
     return np.stack([u / (1 + of_u)[:, None], v + u * of_depth[:, None]], axis=2)
 
 
-def _sizes(y):
-    """Norms (B, j) of functions (B, N, j) in the basis."""
+def sizes(y):
+    """Norms (B,) or (B, j) of functions (B, N) or (B, N, j) in the basis."""
     return np.sqrt((y**2).sum(axis=1))
 
 

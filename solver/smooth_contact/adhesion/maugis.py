@@ -18,10 +18,10 @@ import numpy as np
 
 from ...body.wave_rule import OCTAVES, place_of, quadrature
 from ...numerics import special
-from ...numerics.bracket import false_position
+from ...numerics.bracket import false_position, secant
 from ...numerics.quadrature import gauss_legendre
 from ...shapes.shape import column
-from ..equation import Response, at_the_edge, error_of_waves, left_out, matrix_of, solved
+from ..equation import Response, at_the_edge, error_of_waves, left_out, matrix_of, sizes, solved
 from ..products import Products, differences_at, size_of
 from ..rises import functions, longest, rises
 from ..state import State
@@ -52,12 +52,13 @@ class Ring(NamedTuple):
 
 class Layer(NamedTuple):
     """What a kernel makes of a ring, B cases: y (B, N), and what it adds to D, `at_edge`, and to u(c), `moved`, (B,);
-    errors (3, B) of y_0 and of these two."""
+    errors (3, B) of y_0 and of these two; `changes` (B, N), by how much y may be off."""
 
     y: np.ndarray
     at_edge: np.ndarray
     moved: np.ndarray
     errors: np.ndarray
+    changes: np.ndarray
 
 
 class Maugis(NamedTuple):
@@ -99,7 +100,12 @@ class Maugis(NamedTuple):
 
         near = np.pi * self.body.E * self.w / (4 * self.sigma**2) / a
         wide = np.sqrt(2 * self.w / self.sigma) / a
-        return false_position(off, np.log(np.minimum(near, wide)), np.full(len(a), _NEAR))[0]
+        start = np.log(np.minimum(near, wide))
+        x = secant(off, start)
+        rest = np.flatnonzero(np.isnan(x))
+        if len(rest):
+            x[rest], _ = false_position(lambda v, i: off(v, rest[i]), start[rest], np.full(len(rest), _NEAR))
+        return x
 
     def _slopes(self, a, over):
         """Derivatives (3, B) of w, P and D by a and by ln(γ - 1)."""
@@ -153,7 +159,8 @@ class Maugis(NamedTuple):
         load, tension = 2 * E * a * layer.y[:, 0], np.pi * c**2 * self.sigma
         rounding, (of_y, of_edge, of_moved) = _ROUNDING * N, layer.errors
         D_error = of_edge + rounding * (np.abs(depth[:, 0]) + unit * a * edge + np.abs(D))
-        gap_error = D_error + of_moved + of_y + rounding * (height + np.abs(moved) + unit * c)
+        of_moved = of_moved + 2 / np.pi * sizes(np.einsum("bnq,bq->bn", basis, dz) * layer.changes)
+        gap_error = D_error + of_moved + rounding * (height + np.abs(moved) + unit * c)
         return Ring(
             self.sigma * (height - D + moved), load - tension, D, self.sigma * gap_error,
             2 * E * a * of_y + rounding * (np.abs(load) + tension), D_error, layer.y - side,
@@ -162,7 +169,7 @@ class Maugis(NamedTuple):
     def _layer(self, a, gamma, which, side, judged):
         """The :class:`Layer` of contacts whose right-hand side on a half-space is `side` (B, N)."""
         if not hasattr(self.body, "kernel"):
-            return Layer(side, 0 * a, 0 * a, np.zeros((3, len(a))))
+            return Layer(side, 0 * a, 0 * a, np.zeros((3, len(a))), 0 * side)
         N, (d, cosine, by, q) = side.shape[1], self._waves(a, gamma, *which, side.shape[1])
         kappa, J0 = by / gamma[:, None], special.j0(by)
         J1 = column(2 * self.sigma / self.body.E * a * gamma) * special.j1(by) / kappa
@@ -174,15 +181,18 @@ class Maugis(NamedTuple):
         at_edge = at_the_edge(products, solution)[:, 0] - (q * J1 * cosine).sum(axis=1)
         transform = 2 / np.pi * (np.einsum("bn,bng->bg", y, d) + y[:, :1] * cosine)
         moved = (q * J0 * (transform - J1)).sum(axis=1)
-        of_y, of_edge = np.zeros((2, len(a)))
+        (of_y, of_edge, of_moved), changes = np.zeros((3, len(a))), 0 * y
         if judged:
-            _, left = left_out(products, matrix_of(products, N), sides, solution, ~self.shape.even)
-            of_y, of_edge = left[:, 0, 0], left[:, 1, 0]
-        bends = np.sqrt(((y - side) ** 2).sum(axis=1))
+            changes, left = left_out(products, matrix_of(products, N), sides, solution, ~self.shape.even)
+            (of_y, of_edge), changes = left[:, :, 0].T, changes[:, :, 0]
+            felt = np.einsum("bg,bng->bn", q * J0, d)
+            felt[:, 0] += (q * J0 * cosine).sum(axis=1)
+            of_moved = 2 / np.pi * sizes(felt * changes)
+        bends = sizes(y - side)
         film = self.body.h < 2.0 ** OCTAVES[0] * a * gamma  # the quadrature ends where L - 1 has not decayed
         of_waves = np.where(film, 1.0, error_of_waves(None, which[0]))
         of_waves = of_waves * np.array([bends, bends + np.abs(at_edge), bends + np.abs(moved)])
-        return Layer(y, at_edge, moved, np.array([of_y, of_edge, of_y + of_edge]) + of_waves)
+        return Layer(y, at_edge, moved, np.array([of_y, of_edge, of_moved]) + of_waves, changes)
 
     def _rule(self, a, gamma, edge, N):
         """Points z and weights (B, Q), τ = γ sin z <= 1. Beyond each kink of the shape, and beyond 0 where it is not

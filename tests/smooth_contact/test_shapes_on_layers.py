@@ -190,8 +190,8 @@ def test_beyond_the_last_row_of_a_table(tmp_path, monkeypatch):
 @pytest.mark.parametrize("more", [{}, {"w_adhesion": 1e-5}], ids=["free", "jkr"])
 def test_all_kinks_of_a_table_count(more, tmp_path):
     """The slope of 200 noisy rows has 199 kinks. By reciprocity the load is S D - 2π ∫ p1 f r dr, with the pressure p1
-    of the flat punch of unit depth: by 20 Gauss points between every two rows to 1e-8; with 24 of the kinks it is off by
-    2e-7. An edge that sticks adds P = S δ to the load, and δ to the depth."""
+    of the flat punch of unit depth: by 20 Gauss points between every two rows to 1e-8; with 24 of the kinks it is off
+    by 2e-7. An edge that sticks adds P = S δ to the load, and δ to the depth."""
     rng, a = np.random.default_rng(3), 0.2
     r = np.linspace(0, 0.3, 201)
     f = np.append(0, np.cumsum(np.cumsum(np.maximum(0, rng.normal(1, 1, 200))) * r[1] ** 2))

@@ -130,7 +130,10 @@ def answer(part, shape, state, counts, x, ring=None):
     largest = np.max(np.where(np.isfinite(looked_at), np.abs(looked_at), 0.0), axis=1)
     over = np.where(state.a > shape.least(), state.a - shape.least(), state.a)
     rounding = _OF_PRESSURE * np.sqrt(state.a / over)  # more next to a corner
-    of_waves = np.nan_to_num(response.flat_P_error / response.flat_P) * np.abs(looked_at[:, : 2 * _INNER]).max(axis=1)
+    off = np.nan_to_num(
+        np.where(response.P > 0, response.P_error / response.P, response.flat_P_error / response.flat_P)
+    )
+    of_waves = off * np.abs(looked_at[:, : 2 * _INNER]).max(axis=1)
     of_p0 = of_p[:, :_INNER].max(axis=1) + rounding * np.abs(p0) + along + of_waves
     error = error + np.where(np.isfinite(p0), _over(of_p0, p0), 0.0)
     numbers = {"a": state.a, "P": state.P, "D": state.D, part.control: part.value}

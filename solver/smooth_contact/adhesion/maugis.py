@@ -78,7 +78,7 @@ class Maugis(NamedTuple):
         usable = np.flatnonzero((a > 0) & np.isfinite(a))
         part, over = self.take(usable), np.full(len(a), np.nan)
         over[usable] = part._over(a[usable])
-        center = self.ring(a, over, judged=True)
+        center = self.ring(a, over, with_errors=True)
         by_a, by_over = self._slopes(a, over)
         dP, dD = (by_a[i] - by_over[i] * by_a[0] / by_over[0] for i in (1, 2))
         off = (center.w_error + _NEAR * self.w) / np.abs(by_over[0])  # by how much ln(γ - 1) may be off
@@ -116,8 +116,8 @@ class Maugis(NamedTuple):
         by_a, by_over = (np.einsum("s,isb->ib", weights, numbers[:, part]) for part in (slice(4), slice(4, 8)))
         return by_a / a, by_over
 
-    def ring(self, a, over, judged=False):
-        """The :class:`Ring` at a and ln(γ - 1) (B,); the errors of the basis only where it is `judged`."""
+    def ring(self, a, over, with_errors=False):
+        """The :class:`Ring` at a and ln(γ - 1) (B,); the errors of the basis only `with_errors`."""
         c = a * (1 + np.exp(over))
         octave, place = (np.zeros(len(a), dtype=int),) * 2
         if hasattr(self.body, "kernel"):
@@ -129,7 +129,7 @@ class Maugis(NamedTuple):
         kinds, pieces = 32 * (2 * (octave * 16 + place) + self.shape.even) + parts, []
         for kind in np.unique(kinds[usable]).tolist():
             index = np.flatnonzero(usable & (kinds == kind))
-            which = int(octave[index[0]]), int(place[index[0]]), judged
+            which = int(octave[index[0]]), int(place[index[0]]), with_errors
             for rows in np.split(index, range(_TOGETHER, len(index), _TOGETHER)):
                 pieces.append((rows, self.take(rows)._ring(a[rows], over[rows], *which)))
         width = max((piece.bent.shape[1] for _, piece in pieces), default=1)
@@ -140,7 +140,7 @@ class Maugis(NamedTuple):
             out.bent[index, : piece.bent.shape[1]] = piece.bent
         return out
 
-    def _ring(self, a, over, octave, place, judged):
+    def _ring(self, a, over, octave, place, with_errors):
         """The :class:`Ring` where h/c is in one octave and class of stiffness."""
         N, E, gamma = size_of(octave, bool(self.shape.even[0])) + 4, self.body.E, 1 + np.exp(over)
         edge = np.sqrt(np.exp(over) * (gamma + 1))  # sqrt(γ² - 1)
@@ -152,7 +152,7 @@ class Maugis(NamedTuple):
         pulled = (unit * a)[:, None] * (root - edge[:, None])
         exact = depth - self.shape.lifted(column(a) * tau) + pulled
         side = rises(self.shape, a, N) + np.einsum("bq,bnq->bn", pulled * dz * root, basis)
-        layer = self._layer(a, gamma, (octave, place), side, judged)
+        layer = self._layer(a, gamma, (octave, place), side, with_errors)
         whole = exact + np.einsum("bn,bnq->bq", layer.y - side, basis)
         D = depth[:, 0] - unit * a * edge + layer.at_edge
         moved = 2 / np.pi * ((whole * dz).sum(axis=1) - unit * c) + layer.moved  # u(c)
@@ -166,7 +166,7 @@ class Maugis(NamedTuple):
             2 * E * a * of_y + rounding * (np.abs(load) + tension), D_error, layer.y - side,
         )  # fmt: skip
 
-    def _layer(self, a, gamma, which, side, judged):
+    def _layer(self, a, gamma, which, side, with_errors):
         """The :class:`Layer` of contacts whose right-hand side on a half-space is `side` (B, N)."""
         if not hasattr(self.body, "kernel"):
             return Layer(side, 0 * a, 0 * a, np.zeros((3, len(a))), 0 * side)
@@ -176,13 +176,13 @@ class Maugis(NamedTuple):
         products, sides = Products.summed(d, cosine, 2 / np.pi * q), np.zeros((len(a), N, 3))
         sides[:, :, 0], sides[:, 0, 1] = side + np.einsum("bg,bng->bn", q * J1, d), 1.0
         sides[:, :, 2] = products.edge
-        solution = solved(products, sides if judged else sides[:, :, :1], N)
+        solution = solved(products, sides if with_errors else sides[:, :, :1], N)
         y = solution[:, :, 0]
         at_edge = at_the_edge(products, solution)[:, 0] - (q * J1 * cosine).sum(axis=1)
         transform = 2 / np.pi * (np.einsum("bn,bng->bg", y, d) + y[:, :1] * cosine)
         moved = (q * J0 * (transform - J1)).sum(axis=1)
         (of_y, of_edge, of_moved), changes = np.zeros((3, len(a))), 0 * y
-        if judged:
+        if with_errors:
             changes, left = left_out(products, matrix_of(products, N), sides, solution, ~self.shape.even)
             (of_y, of_edge), changes = left[:, :, 0].T, changes[:, :, 0]
             felt = np.einsum("bg,bng->bn", q * J0, d)

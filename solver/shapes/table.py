@@ -14,6 +14,7 @@ import numpy as np
 
 from ..numerics.profiles import is_number
 from ..parameters import Parameter
+from .lines import Series, series_of
 from .shape import Kind, column, load_by_quadrature
 
 PREFIX = "table:"
@@ -32,11 +33,12 @@ _HEADER = re.compile(r"\s*(\w+)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
 
 class Rows(NamedTuple):
     """The slope of a table: radii r (K,) from 0 to the last row, and f' there (K,), straight lines between; `metres`,
-    whether its lengths are in m, by units in the header."""
+    whether its lengths are in m, by units in the header. `series` is F of many rows, or None."""
 
     r: np.ndarray
     slopes: np.ndarray
     metres: bool
+    series: Series | None = None
 
 
 #: Word -> :class:`Rows` of the tables that have been read.
@@ -74,12 +76,10 @@ class Table(NamedTuple):
         return self._inside(r, self.rows.slopes[place] + self._bend[place] * along)
 
     def lifted(self, t):
-        over_t, bent = self._lifted(t / column(self.unit))
-        return t * (over_t + bent)
+        return t * self._lifted(t / column(self.unit), False)
 
     def lifted_slope(self, t):
-        over_t, bent = self._lifted(t / column(self.unit))
-        return over_t + 2 * bent
+        return self._lifted(t / column(self.unit), True)
 
     def lifted_load(self, a):
         return load_by_quadrature(self, a)
@@ -123,16 +123,23 @@ class Table(NamedTuple):
         """The values, NaN where r is beyond the last row."""
         return np.where(r <= self.rows.r[-1] * (1 + 4 * np.finfo(float).eps), values, np.nan)
 
-    def _lifted(self, t):
-        """F/t is the sum of both: of the lines as they would begin at r = 0, and of what they bend."""
-        knots, bend = self.rows.r, self._bend
-        start = self.rows.slopes[:-1] - bend * knots[:-1]
-        inner = np.minimum(knots, t[..., None])
-        cosines = np.sqrt((t[..., None] - inner) * (t[..., None] + inner))
-        angles = np.arctan2(inner, cosines)
-        angles[t == 0] = np.where(knots > 0, np.pi / 2, 0.0)
-        over_t = np.diff(angles) @ start
-        return self._inside(t, over_t), -np.diff(cosines) @ bend
+    def _lifted(self, t, slope):
+        """F/t, or F'."""
+        if self.rows.series is None:
+            return self._inside(t, _over_lines(self.rows, t)[int(slope)])
+        return self._inside(t, self.rows.series.at(np.minimum(t, self.rows.r[-1]), slope))
+
+
+def _over_lines(rows, t):
+    """F/t and F' at t: of the lines as they would begin at r = 0, and of what they bend."""
+    knots, bend = rows.r, np.diff(rows.slopes) / np.diff(rows.r)
+    start = rows.slopes[:-1] - bend * knots[:-1]
+    inner = np.minimum(knots, t[..., None])
+    cosines = np.sqrt((t[..., None] - inner) * (t[..., None] + inner))
+    angles = np.arctan2(inner, cosines)
+    angles[t == 0] = np.where(knots > 0, np.pi / 2, 0.0)
+    over_t, bent = np.diff(angles) @ start, -np.diff(cosines) @ bend
+    return over_t + bent, over_t + 2 * bent
 
 
 def read(word):
@@ -201,7 +208,8 @@ def _of_columns(r, f, metres):
     bend = np.diff(chords) / np.diff(middle)
     first = max(0.0, chords[0] - bend[0] * middle[0])
     last = chords[-1] + bend[-1] * (r[-1] - middle[-1])
-    return Rows(np.concatenate([[0.0], middle, r[-1:]]), np.concatenate([[first], chords, [last]]), metres)
+    rows = Rows(np.concatenate([[0.0], middle, r[-1:]]), np.concatenate([[first], chords, [last]]), metres)
+    return rows._replace(series=series_of(rows.r, lambda t: _over_lines(rows, t)))
 
 
 def _lengths(word, header):

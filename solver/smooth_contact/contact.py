@@ -9,7 +9,7 @@ from ..status import Status
 from .adhesion import adhesive
 from .equation import respond
 from .radius import touching
-from .state import State, answer, beyond_profile, pinned
+from .state import State, answer, at_corner, beyond_profile, pinned
 from .tabulated import Tabulated
 
 
@@ -36,8 +36,10 @@ def not_sticking(part, x):
         state, counts = pinned(part, shape, body), np.ones(len(part), dtype=np.int32)
     else:
         response, counts = touching(part.control, part.value, shape, body)
-        state = State.free(response)
+        state, corner = at_corner(part, shape, body, State.free(response))
     solution, tensile = answer(part, shape, state, counts, x)
+    if str(part.shape[0]) != "flat":
+        solution.p[np.ix_(corner, x == 1)] = 0.0
     outside = beyond_profile(part, shape, lambda index, a: State.free(respond(shape.take(index), body.take(index), a)))
     return solution.refused(tensile | ~np.isfinite(state.P), Status.LIFT_OFF).refused(outside, Status.OUTSIDE_LAW)
 

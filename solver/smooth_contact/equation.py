@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..body.wave_rule import FILM, MILD, place_of
-from .products import Products, coarser, size_of, wave_nodes
+from .products import LAST, Products, coarser, has_few, size_of, wave_nodes
 from .rises import rises
 from .tabulated import Tabulated, excess
 
@@ -27,13 +27,19 @@ _EPS, _TINY = np.finfo(float).eps, np.finfo(float).tiny
 #: Number of classes of stiffness.
 _CLASSES = MILD + 1
 #: Rounding of closed forms, relative; and that of the equation, over eps times its size and the norm of its matrix.
-_ROUNDING, _FLOOR = 16 * _EPS, 8
-#: Relative error of the kernel's part, by the waves at which it is looked at.
-_OF_WAVES = 2e-11
-#: The error of a basis is what two smaller ones show, as of a geometric series, times this factor: a series whose terms
-#: fall like 1/N² or 1/N, as in films, has 2 and 2.7 times as much left. The terms of the series fall at least and at
-#: most by these ratios.
-_BASIS, _RATIOS = 3.0, (1e-3, 0.9)
+_ROUNDING, _FLOOR = 16 * _EPS, 16
+#: Error of what the kernel adds, by the waves at which it is looked at, from octave 1 of h/a downwards; of few waves
+#: from octave -3 on (the largest in random contacts of `python tools/errors/shape_errors.py`, times 2 to 5). Of the
+#: depth this part is enough.
+_OF_WAVES, _OF_FEW = (1e-13, 1e-13, 1e-13, 1e-13, 3e-13, 1e-12, 3e-12, 3e-12, 3e-12, 3e-12, 2e-11), 1e-11
+_OF_DEPTH = 0.3
+#: Octave from which downwards, and L(0) below which, few waves are not enough: what is left of the depth is small.
+_THIN, _SOFT = -3, 0.1
+#: The error of a basis is what its last functions add, as of a geometric series, times this factor: a series whose
+#: terms fall like 1/N² or 1/N, as in films, has 2 and 2.7 times as much left; and films have no even series (8 of 9,600
+#: random numbers were up to 1.16 times as far off with 3). The terms of the series fall at least and at most by these
+#: ratios.
+_BASIS, _RATIOS = 4.0, (1e-3, 0.9)
 
 
 class Response(NamedTuple):
@@ -99,15 +105,19 @@ def respond(shape, body, a):
         return _on_half_space(shape, body, a)
     octave, place = place_of(body, a)
     sampler = None if isinstance(body, Tabulated) else body.kernel.sampler  # a table has all nodes at once
-    kinds, pieces = 2 * ((octave - FILM) * _CLASSES + place) + shape.even, []
+    soft = 0 if sampler is None else (octave <= _THIN) & (body.L0 < _SOFT)
     usable = (a > 0) & np.isfinite(a)
+    fine = np.where(usable & (octave == FILM), np.floor(np.log2(body.h / a)), octave)  # films have more functions
+    fine = np.maximum(fine, LAST).astype(int)
+    kinds, pieces = 2 * (2 * ((fine - LAST) * _CLASSES + place) + soft) + shape.even, []
     for kind in np.unique(kinds[usable]).tolist():
         index = np.flatnonzero(usable & (kinds == kind))
         which = int(octave[index[0]]), int(place[index[0]])
-        part, size = body.take(index), size_of(which[0], bool(kind % 2))
-        L1 = excess(part, wave_nodes(sampler, *which) * (part.h / a[index])[:, None])
-        products = Products.of(L1, sampler, *which, size)
-        pieces.append((index, _on_kernel(shape.take(index), part, a[index], products)))
+        part, size = body.take(index), size_of(int(fine[index[0]]), bool(kind % 2))
+        chosen = None if kind // 2 % 2 else sampler
+        L1 = excess(part, wave_nodes(chosen, *which, size) * (part.h / a[index])[:, None])
+        products, of_waves = Products.of(L1, chosen, *which, size), error_of_waves(chosen, which[0])
+        pieces.append((index, _on_kernel(shape.take(index), part, a[index], products, of_waves)))
     return Response.join(len(a), pieces)
 
 
@@ -120,8 +130,8 @@ def _on_half_space(shape, body, a):
     return Response(a, body.E, P, depth, *flat, slope, 0 * a, *errors, 0 * a, none, none, none, none)
 
 
-def _on_kernel(shape, body, a, products):
-    """:class:`Response` where `products` are those of the kernel."""
+def _on_kernel(shape, body, a, products, of_waves):
+    """:class:`Response` where `products` are those of the kernel, and `of_waves` their error."""
     N, E = products.edge.shape[1], body.E
     depth, slope = (f(a[:, None])[:, 0] for f in (shape.lifted, shape.lifted_slope))
     sides = np.zeros((len(a), N, 3))
@@ -131,24 +141,35 @@ def _on_kernel(shape, body, a, products):
     flat_D = 1 + at_edge[:, 1]
     P, flat_P = 2 * E * a * y[:, 0, 0], 2 * E * a * y[:, 0, 1]
     D = depth + at_edge[:, 0]
-    bends = np.einsum("bn,bnj->bj", products.slope, y)
+    turned = np.einsum("bn,bnj->bj", products.slope, y)
     resolvent = (products.corner - at_edge[:, 2]) / flat_D
     bent = y[:, :, :2] - sides[:, :, :2]
-    changes, of_basis = _left_out(products, sides[:, :, :2], y, 2 * E * a)
+    changes, of_basis = left_out(products, matrix, sides, y, ~shape.even)
     rounded = _FLOOR * _EPS * N * np.abs(matrix).sum(axis=2).max(axis=1)
-    whole = np.maximum(_sizes(y[:, :, :2]), _TINY)  # 0 under what is flat
-    of_waves = _OF_WAVES * np.minimum(_sizes(bent) / whole, 1.0)
     of_radius = _of_radius(a, slope)
-    errors = [of_basis[i, j] + (rounded + of_waves[:, j]) * np.abs(v) for i, j, v in (
-        (0, 0, P), (1, 0, D), (0, 1, flat_P), (1, 1, flat_D)
-    )]  # fmt: skip
+    bends = sizes(bent)
+    share = of_waves * np.minimum(bends / np.maximum(sizes(y[:, :, :2]), _TINY), 1.0)  # y is 0 under what is flat
+    errors = []
+    for j, (load, low, high) in enumerate(((P, depth, D), (flat_P, 1.0, flat_D))):
+        of_load = (rounded + share[:, j]) * np.abs(load) + 2 * E * a * of_basis[:, 0, j]
+        of_depth = (
+            rounded * np.abs(high) + _OF_DEPTH * of_waves * (bends[:, j] + np.abs(high - low)) + of_basis[:, 1, j]
+        )
+        errors += [of_load, of_depth]
     errors[0], errors[1] = errors[0] + of_radius * flat_P, errors[1] + of_radius * flat_D
     return Response(
         a, E, P, D, flat_P, flat_D,
-        (slope - bends[:, 0] / a) * flat_D,
-        -flat_D / a * (bends[:, 1] - resolvent),
+        (slope - turned[:, 0] / a) * flat_D,
+        -flat_D / a * (turned[:, 1] - resolvent),
         *errors, N + 0 * a, *np.moveaxis(bent, 2, 0), *np.moveaxis(changes, 2, 0),
     )  # fmt: skip
+
+
+def error_of_waves(sampler, octave):
+    """Error of what the kernel adds, in an octave of h/a."""
+    if octave <= _THIN and has_few(sampler, octave):
+        return _OF_FEW
+    return _OF_WAVES[min(max(1 - octave, 0), len(_OF_WAVES) - 1)]
 
 
 def _of_radius(a, slope):
@@ -156,25 +177,53 @@ def _of_radius(a, slope):
     return np.where(np.isfinite(slope), _EPS * a * slope, 0.0)
 
 
-def _left_out(products, sides, y, unit):
-    """Estimates of what the basis leaves out: of the second terms (B, N, 2) of the equation, and of P, in `unit` (B,),
-    and D, (2, 2, B), first without adhesion and then of a flat punch."""
-    N = few = sides.shape[1]
-    levels = [(y[:, :, :2] - sides, unit[:, None] * y[:, 0, :2], at_the_edge(products, y)[:, :2])]
-    for _ in range(2):
-        few = coarser(few)
-        less = solved(products, sides[:, :few], few)
-        bent = np.pad(less - sides[:, :few], ((0, 0), (0, N - few), (0, 0)))
-        levels.append((bent, unit[:, None] * less[:, 0], at_the_edge(products, less)))
-    last, before = ([np.abs(u - v) for u, v in zip(*levels[i : i + 2], strict=True)] for i in (0, 1))
-    ratio = np.clip(_sizes(last[0]) / np.maximum(_sizes(before[0]), _TINY), *_RATIOS)
-    part = _BASIS * ratio / (1 - ratio)
-    numbers = [(part * np.maximum(last[i], ratio * before[i])).T for i in (1, 2)]
-    return part[:, None] * (levels[0][0] - levels[1][0]), np.array(numbers)
+def left_out(products, matrix, sides, y, kinked):
+    """Estimates of what the basis leaves out: of the second terms (B, N, 2) of the equation, without adhesion and of a
+    flat punch, and of y_0 and D, (B, 2, 2). kinked : (B,) bool, the shape is not smooth in r².
+
+    A basis of n functions leaves the residual r, and a number that is z @ sides is off by z @ r. The last functions of
+    the basis have r, of the solution without these, and z, both of which fall with n: their product is what they add.
+    The second terms are not such numbers. Where F goes on beyond the basis it moves their last functions by about as
+    much as these are: the ratio is then that of half as many functions, its root.
+    """
+    N = matrix.shape[1]
+    n = coarser(N)
+    blocks = [slice(n - i * (N - n), N - i * (N - n)) for i in range(3)]
+    less = solved(products, sides[:, :n, :2], n)
+    bent, of_less = y[:, :, :2] - sides[:, :, :2], np.pad(less - sides[:, :n, :2], ((0, 0), (0, N - n), (0, 0)))
+    residual = sides[:, n:, :2] - matrix[:, n:, :n] @ less
+    z = _weights(products, y)
+    added = sizes(z[:, n:])[:, :, None] * sizes(residual)[:, None]
+    falls = _ratio(*(sizes(z[:, part])[:, :, None] * sizes(y[:, part, :2])[:, None] for part in blocks))
+    of_bent = _ratio(*(sizes(bent[:, part]) for part in blocks))
+    of_bent[kinked, 0] = np.sqrt(of_bent[kinked, 0])
+    return _rest(of_bent)[:, None] * (bent - of_less), _rest(falls) * added
 
 
-def _sizes(y):
-    """Norms (B, j) of functions (B, N, j) in the basis."""
+def _ratio(last, before, first):
+    """By which ratio three terms of a series fall, of which one may be small by chance."""
+    return np.maximum(last / np.maximum(before, _TINY), np.sqrt(last / np.maximum(first, _TINY)))
+
+
+def _rest(ratio):
+    """What is left of a series, over its last term, whose terms fall by the `ratio`; with the factor _BASIS."""
+    ratio = np.clip(ratio, *_RATIOS)
+    return _BASIS * ratio / (1 - ratio)
+
+
+def _weights(products, y):
+    """z (B, N, 2) by which y_0 and D are z @ sides: solutions of the transposed equation. The matrix is symmetric but
+    for the edge, so that those for the sides 1 and of the edge, y_1 and y_2, say what they are."""
+    edge = products.edge[:, : y.shape[1]]
+    v = y[:, :, 2] / (1 - y[:, :1, 2])
+    u = y[:, :, 1] + v * y[:, :1, 1]
+    of_u, of_v = ((edge * part).sum(axis=1) for part in (u, v))
+    of_depth = (products.corner - of_v) / (1 + of_u)
+    return np.stack([u / (1 + of_u)[:, None], v + u * of_depth[:, None]], axis=2)
+
+
+def sizes(y):
+    """Norms (B,) or (B, j) of functions (B, N) or (B, N, j) in the basis."""
     return np.sqrt((y**2).sum(axis=1))
 
 

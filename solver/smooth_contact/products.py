@@ -21,24 +21,30 @@ from ..numerics.kept import Kept
 from ..numerics.quadrature import gauss_legendre
 
 #: Numbers N of functions in the basis for octaves of h/a from 3 downwards, of shapes that are smooth in r², and of all
-#: others; of thicker layers, as for octave 3.
+#: others; of thicker layers, as for octave 3. Films have those of the first for all shapes. What the edge of a film
+#: does is not resolved below 1e-4 a by any of them: the thinnest have fewer, which take less time.
 _SIZES = {
-    True: (6, 8, 10, 12, 16, 22, 28, 38, 52, 70, 96, 130),
+    True: (6, 8, 10, 12, 16, 22, 28, 38, 52, 70, 96, 130, 130, 150, 170, 190, 190, 190, 130),
     False: (6, 8, 11, 15, 21, 28, 40, 54, 72, 100, 144, 196),
 }
+#: The octave of the last of them: thinner films have as many.
+LAST = 4 - len(_SIZES[True])
 #: Bytes of tables that are kept.
 _MOST = 256_000_000
 _TABLES, _WAVES = Kept(_MOST), Kept(_MOST)
 #: Octave of h/a below which few nodes are not enough: they are chosen for functions that fall like 1/κ², and cos κ, of
 #: the edge, does not. A table would also be large.
-_THINNEST = -5
-#: Octaves of far waves, and their nodes in each.
-_OCTAVES, _FAR = 30, 12
+_THINNEST = -4
+#: Ratios of j_n begin so many orders beyond the last function, and times the root of third order of N more.
+_MILLER = 14
+#: Octaves of far waves, and nodes in each. The last function of N turns against the first by N²/κ in the octave from κ
+#: on: there are so many nodes more for each radian.
+_OCTAVES, _FAR, _TURNS = 30, 12, 0.7
 
 
 def size_of(octave, even):
     """The number N of functions of the basis in an octave of h/a."""
-    return _SIZES[even or octave == FILM][min(max(3 - octave, 0), 11)]
+    return _SIZES[even or octave <= FILM][3 - min(max(octave, LAST), 3)]
 
 
 def coarser(size):
@@ -63,7 +69,7 @@ class Products(NamedTuple):
     @classmethod
     def of(cls, L1, sampler, octave, stiffness, size):
         """L1 (B, M) : L - 1 at :func:`wave_nodes`."""
-        if not _has_few(sampler, octave):
+        if not has_few(sampler, octave):
             return cls._summed(L1, octave, stiffness, size)
         key = sampler, octave, stiffness, size
         flat = in_blocks(L1, _TABLES.get(key, lambda: _table(*key)))
@@ -107,14 +113,14 @@ class Waves(NamedTuple):
     weight: np.ndarray
 
 
-def wave_nodes(sampler, octave, stiffness):
-    """κ (M,) at which L - 1 is needed in an octave of h/a and a class of stiffness."""
+def wave_nodes(sampler, octave, stiffness, size):
+    """κ (M,) at which L - 1 is needed in an octave of h/a and a class of stiffness, for `size` functions."""
     if octave == FILM:
-        return np.concatenate([_film_rule(stiffness)[0], _far_rule()[0]])
-    return few(sampler, octave, stiffness).k if _has_few(sampler, octave) else quadrature(octave, stiffness)[0]
+        return np.concatenate([_film_rule(stiffness)[0], _far_rule(size)[0]])
+    return few(sampler, octave, stiffness).k if has_few(sampler, octave) else quadrature(octave, stiffness)[0]
 
 
-def _has_few(sampler, octave):
+def has_few(sampler, octave):
     """Whether L - 1 at few nodes is enough."""
     return sampler is not None and octave >= _THINNEST
 
@@ -124,19 +130,23 @@ def _film_rule(stiffness):
     return k, weight * step(k / CUT)
 
 
-@lru_cache(maxsize=1)
-def _far_rule():
-    """Nodes and weights of waves beyond those of the film's quadrature: evenly in ln κ."""
-    t, w = gauss_legendre(_FAR)
-    ends = CUT * 2.0 ** np.arange(-2.0, _OCTAVES + 1)
-    k = (ends[:-1, None] * 2.0**t).ravel()
-    return k, k * np.log(2) * np.tile(w, len(ends) - 1) * (1 - step(k / CUT))
+@lru_cache(maxsize=8)
+def _far_rule(size):
+    """Nodes and weights of waves beyond those of the film's quadrature, for `size` functions: by Gauss in log2 κ on
+    each octave."""
+    k, weight = [], []
+    for start in CUT * 2.0 ** np.arange(-2, _OCTAVES):
+        t, w = gauss_legendre(_FAR + int(_TURNS * size**2 / start))
+        k.append(start * 2.0**t)
+        weight.append(k[-1] * np.log(2) * w)
+    k = np.concatenate(k)
+    return k, np.concatenate(weight) * (1 - step(k / CUT))
 
 
 def _waves(octave, stiffness, size):
     if octave == FILM:
         k, weight = _film_rule(stiffness)
-        far, far_weight = _far_rule()
+        far, far_weight = _far_rule(size)
     else:
         (k, weight), (far, far_weight) = quadrature(octave, stiffness), np.empty((2, 0))
     near = np.vstack([differences(size, k), np.cos(k), k * np.sin(k)])
@@ -190,3 +200,23 @@ def differences(size, k):
     values = transforms(size, k)
     values[0] = k * special.spherical_jn(1, k)
     return values
+
+
+def differences_at(size, k):
+    """d_m (B, N, G) at κ (B, G) > 0, by recurrence over the order n of j_n: upwards where n < κ, and beyond by ratios,
+    which are found downwards."""
+    last = 2 * size + int(_MILLER * np.cbrt(size)) + _MILLER
+    ratios, ratio = np.empty((2 * size, *k.shape)), np.zeros_like(k)  # j_(n+1)/j_n
+    for n in reversed(range(last)):
+        ratio = 1 / ((2 * n + 3) / k - ratio)
+        if n < 2 * size:
+            ratios[n] = ratio
+    out = np.empty((len(k), size, k.shape[1]))
+    before, now = np.cos(k) / k, np.sin(k) / k  # j_(-1), j_0
+    for n in range(2 * size - 1):
+        if n % 2 == 0:
+            out[:, n // 2] = (-1.0) ** (n // 2) * np.sqrt(2 * n + 1) * now
+        before, now = now, np.where(n < k, (2 * n + 1) / k * now - before, now * ratios[n])
+        if n == 0:
+            out[:, 0] = k * now
+    return out

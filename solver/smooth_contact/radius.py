@@ -6,9 +6,11 @@ from ..shapes.shape import column
 from .equation import Response, respond
 
 #: Most evaluations of a case, and the relative distance of P or D to what is given at which it is done.
-_MOST, _NEAR = 80, 1e-13
+MOST, NEAR = 80, 1e-13
 #: Longest step of Newton's method in the variable of :class:`Radii`, a logarithm.
 _LONGEST = 3.0
+#: The variable of the last radius before the end of a profile.
+LAST = 30.0
 #: P or D that is not reached to this part is not reached: there is no such contact.
 _REACHED = 1e-9
 #: Rounding of a radius. Next to what is flat it is a larger part of a - least, on which P and D depend.
@@ -54,7 +56,7 @@ def rising_root(evaluate, start, low=-np.inf):
     x, counts = start.copy(), np.zeros(len(start), dtype=np.int32)
     low, high = np.full(len(x), low), np.full(len(x), np.inf)
     active = np.arange(len(x))
-    for _ in range(_MOST):
+    for _ in range(MOST):
         g, slope = evaluate(x[active], active)
         counts[active] += 1
         here = x[active]
@@ -65,7 +67,7 @@ def rising_root(evaluate, start, low=-np.inf):
         lo, hi = low[active], high[active]
         outside = (following <= lo) | (following >= hi)
         following = np.where(outside & np.isfinite(lo + hi), (lo + hi) / 2, following)
-        ended = (np.abs(g) <= _NEAR) | np.isnan(g) | (hi - lo <= _NARROW * np.maximum(1.0, np.abs(here)))
+        ended = (np.abs(g) <= NEAR) | np.isnan(g) | (hi - lo <= _NARROW * np.maximum(1.0, np.abs(here)))
         x[active] = np.where(ended, np.where(np.isnan(g), np.nan, here), following)
         active = active[~ended]
         if not len(active):
@@ -111,4 +113,5 @@ def guess(control, value, shape, body, radii):
         return np.where(np.abs(g) < _CLOSE, 0.0, g), growth * da / Q
 
     start = np.where(np.isfinite(radii.most) | (radii.least > 0), -1.0, np.log(_USUAL))
-    return rising_root(evaluate, start)[0]
+    x = rising_root(evaluate, start)[0]
+    return np.where(radii.ends, np.minimum(x, LAST), x)  # a half-space may need more than there is of the profile

@@ -12,9 +12,10 @@ from ..numerics.quadrature import gauss_legendre, log_rule, panels_towards
 from ..shapes.shape import column
 from .products import in_blocks
 
-#: More points of a rule than the basis has functions, and the most kinks that end a panel: of more, as a table of many
-#: rows has, some are left out.
-_MORE, MOST_KINKS = 20, 24
+#: Points of a rule besides those for the basis.
+_MORE = 20
+#: Lengths of panels are rounded to such parts.
+_PARTS = 8
 #: Points of a rule of the pressure: in a subpanel towards a singularity, and under a shape without one.
 _NEAR, _SMOOTH = 22, 40
 #: Numbers that are computed together.
@@ -29,8 +30,7 @@ def panel_ends(shape, a):
     counts = (kinks < 1).sum(axis=1)
     for count in np.unique(counts).tolist():
         index = np.flatnonzero(counts == count)
-        chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_KINKS)).astype(int)) if count else []
-        inner = kinks[index][:, chosen]
+        inner = kinks[index][:, :count]
         yield index, np.hstack([np.zeros((len(index), 1)), inner, np.ones((len(index), 1))])
 
 
@@ -41,7 +41,7 @@ def rises(shape, a, size):
     for index in (np.flatnonzero(even), np.flatnonzero(~even)):
         if len(index):
             part = _even_rises if even[index[0]] else _kinked_rises
-            step = max(1, _TOGETHER // (8 * (size + _MORE)))
+            step = max(1, _TOGETHER // (max(8, shape.kinks().shape[1]) * (size + _MORE)))
             for low in range(0, len(index), step):
                 rows = index[low : low + step]
                 out[rows] = part(shape.take(rows), a[rows], size)
@@ -63,16 +63,28 @@ def _even_rule(size):
 
 def _kinked_rises(shape, a, size):
     out = np.empty((len(a), size))
-    y, w = gauss_legendre(size + _MORE)
     for index, ends in panel_ends(shape, a):
-        radius, low, width = column(a[index]), ends[:, :-1, None], np.diff(ends, axis=1)[:, :, None]
-        tau = (low + width * y**2).reshape(len(index), -1)
-        weights = (width * (2 * y * w)).reshape(len(index), -1)
-        part = shape.take(index)
-        rise = weights * (part.lifted(radius) - part.lifted(radius * tau))
-        for m, values in enumerate(functions(tau, size)):
-            out[index, m] = (values * rise).sum(axis=1)
+        counts = _MORE + np.ceil(2 * size * longest(np.arccos(ends))).astype(int)
+        for count in np.unique(counts).tolist():
+            rows = np.flatnonzero(counts == count)
+            out[index[rows]] = _in_panels(shape.take(index[rows]), a[index[rows]], ends[rows], size, count)
     return out
+
+
+def longest(angles):
+    """The longest of panels with ends at these angles (B, K), over a right angle, in eighths: a function of the basis
+    turns by as large a part of all its waves there."""
+    widths = np.abs(np.diff(angles, axis=1)).max(axis=1)
+    return np.ceil(_PARTS * widths / (np.pi / 2) - _EPS * _PARTS) / _PARTS
+
+
+def _in_panels(shape, a, ends, size, count):
+    """The same on panels with these ends, of `count` points each."""
+    y, w = gauss_legendre(count)
+    radius, low, width = column(a), ends[:, :-1, None], np.diff(ends, axis=1)[:, :, None]
+    tau = (low + width * y**2).reshape(len(a), -1)
+    rise = (width * (2 * y * w)).reshape(len(a), -1) * (shape.lifted(radius) - shape.lifted(radius * tau))
+    return np.stack([(values * rise).sum(axis=1) for values in functions(tau, size)], axis=1)
 
 
 def functions(tau, size):

@@ -7,6 +7,7 @@ import numpy as np
 from ..solution import Solution
 from .equation import Response, respond
 from .pressure import flat_pressure, pressure_changes, pressures
+from .radius import NEAR
 
 #: Radii at which the pressure is looked at, for tension and for its error; denser towards the edge.
 _LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
@@ -14,7 +15,11 @@ _LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
 _FLAT = 1e-12
 #: Rounding of a pressure over the largest one: 3e-13 at most beside kinks of the shape (tools/errors/shape_errors.py).
 _OF_PRESSURE = 5e-13
-#: The error of p(0) is the largest at so many of these radii, those below 0.45 a: one may be small by chance.
+#: Nearer to a corner than this, relative, a contact is taken for that of a flat punch; at the second the rounding of a
+#: is a small part of the distance still.
+_CORNER, _AT_CORNER = 1e-9, 64 * np.finfo(float).eps
+#: The error of p(0) is the largest at so many of these radii, those below 0.45 a: one may be small by chance. The
+#: kernel is off by a part of what presses at twice as many, below 0.87 a.
 _INNER = 8
 
 
@@ -65,12 +70,35 @@ class State(NamedTuple):
 
 def pinned(part, shape, body):
     """:class:`State` of flat punches, whose edge holds what they bear: either P or D follows from the other."""
-    r = respond(shape, body, shape.b)
+    r = respond(shape, body, shape.least())
     unit, other = (r.flat_P, r.flat_D) if part.control == "P" else (r.flat_D, r.flat_P)
     A = part.value / unit
     error = np.abs(A) * other * (r.flat_P_error / r.flat_P + r.flat_D_error / r.flat_D)
     P_error, D_error = (0 * error, error) if part.control == "P" else (error, 0 * error)
     return State(r.a, A, A * r.flat_P, A * r.flat_D, r.flat_P, r.flat_D, P_error, D_error, 1 + 0 * A, r)
+
+
+def at_corner(part, shape, body, state):
+    """The states, and which of them (B,) touch so little beyond what is flat, or less than can be told from its radius
+    b, that they are better taken for those of a flat punch of that radius. By the part by which a is larger than b, P
+    and D are off then."""
+    least = shape.least()
+    with np.errstate(invalid="ignore", divide="ignore"):
+        over = state.a / least - 1
+    corner = (least > 0) & (part.control != "a") & ~(over >= _CORNER)
+    index = np.flatnonzero(corner & np.isnan(over))
+    if len(index):  # there is no such radius; or the punch lifts off
+        at = respond(shape.take(index), body.take(index), least[index] * (1 + _AT_CORNER))
+        corner[index] = part.value[index] <= getattr(at, part.control)
+    if not corner.any():
+        return state, corner
+    index = np.flatnonzero(corner)
+    flat, over = (
+        pinned(part.take(index), shape.take(index), body.take(index)),
+        np.nan_to_num(over[index], nan=_AT_CORNER),
+    )
+    flat = flat._replace(P_error=flat.P_error + over * flat.P, D_error=flat.D_error + over * flat.D)
+    return State.join(len(part), [(np.flatnonzero(~corner), state.take(~corner)), (index, flat)]), corner
 
 
 def beyond_profile(part, shape, at):
@@ -99,11 +127,17 @@ def answer(part, shape, state, counts, x, ring=None):
     moved, error = _error(part.control, state)
     of_p = np.abs(pressure_changes(response, A, _LOOKED_AT))
     along = np.where(moved > 0, np.abs(flat_pressure(response) * state.dD) * moved, 0.0)
-    of_p0 = of_p[:, :_INNER].max(axis=1) + _OF_PRESSURE * np.abs(p0) + along
-    error = error + np.where(np.isfinite(p0), _over(of_p0, p0), 0.0)
     largest = np.max(np.where(np.isfinite(looked_at), np.abs(looked_at), 0.0), axis=1)
+    over = np.where(state.a > shape.least(), state.a - shape.least(), state.a)
+    rounding = _OF_PRESSURE * np.sqrt(state.a / over)  # more next to a corner
+    off = np.nan_to_num(
+        np.where(response.P > 0, response.P_error / response.P, response.flat_P_error / response.flat_P)
+    )
+    of_waves = off * np.abs(looked_at[:, : 2 * _INNER]).max(axis=1)
+    of_p0 = of_p[:, :_INNER].max(axis=1) + rounding * np.abs(p0) + along + of_waves
+    error = error + np.where(np.isfinite(p0), _over(of_p0, p0), 0.0)
     numbers = {"a": state.a, "P": state.P, "D": state.D, part.control: part.value}
-    between = np.maximum(_over(of_p.max(axis=1), largest) + _OF_PRESSURE, error)
+    between = np.maximum(_over(of_p.max(axis=1), largest) + rounding, error)
     solution = Solution.of(
         *p_x.shape, **numbers, p0=p0, p_max=p0, Ar_An=1.0, A0=0.0, dP_dD=state.stiffness, residual=0.0,
         error=error, profile_error=between, p=p_x, lam=1.0, iterations=counts, nodes=np.nan_to_num(response.size),
@@ -116,10 +150,17 @@ def _error(control, state):
     if control == "a":
         return 0 * state.a, _over(state.P_error, state.P) + _over(state.D_error, state.D)
     off, slope = (state.P_error, state.dP) if control == "P" else (state.D_error, state.dD)
-    moved = _over(off, slope)
+    moved = _over(off + NEAR * _size(control, state), slope)
     other, growth, error = (state.D, state.dD, state.D_error) if control == "P" else (state.P, state.dP, state.P_error)
     along = np.where(moved > 0, np.abs(growth) * moved, 0.0)
     return moved, _over(moved, state.a) + _over(error + along, other)
+
+
+def _size(control, state):
+    """What the shape and the edge add to the load, or depth, (B,): it is 0 nowhere."""
+    r = state.response
+    number, flat = (state.P, r.flat_P) if control == "P" else (state.D, r.flat_D)
+    return np.abs(number) + np.abs(state.A) * flat
 
 
 def _over(error, value):

@@ -39,6 +39,22 @@ def test_a_graded_layer_is_many_uniform_ones():
     assert np.all((off[8] / off[16] > 2) & (off[8] / off[16] < 4))
 
 
+def test_graded_layers_stick():
+    """JKR's D and pull-off are those of more and more uniform layers, whose first one is what the edge feels: 16 are 2
+    to 4.5 times as near as 8."""
+    graded = {"h": 0.06, "n": [1.0, 4.0], "nu": 0.3, "profile": "exponential", "bonding": "bonded"}
+    case, names, off = SMOOTH | {"a": 0.1, "w_adhesion": 1e-4}, ("D", "P_off", "D_off"), {}
+    exact = solve(Problem.of(layers=[graded], rtol=1e-2, **case))
+    assert exact.status == Status.CONVERGED and exact.stable
+    for count in (8, 16):
+        depths = (np.arange(count) + 0.5) / count
+        steps = [{"h": 0.06 / count, "n": 4.0**z, "nu": 0.3, "bonding": "bonded"} for z in depths]
+        contact = solve(Problem.of(layers=steps, **case))
+        off[count] = np.array([getattr(contact, name) / getattr(exact, name) - 1 for name in names])
+    assert np.all(np.abs(off[16]) < 3e-3)
+    assert np.all((off[8] / off[16] > 2) & (off[8] / off[16] < 4.5))
+
+
 def test_a_profile_that_does_not_change_is_uniform():
     """To the error that films have, 5e-8: the first of the sublayers is one."""
     layer = {"h": 0.05, "n": 3.0, "nu": 0.3, "bonding": "bonded"}

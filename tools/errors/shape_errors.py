@@ -97,7 +97,7 @@ def finer() -> None:
     wave_rule._LESS, wave_rule._MORE, wave_rule._LEAST = 0.0, 16, (18, 22)
     wave_rule._END, wave_rule._END_MIDDLE = 30.0, 26.0
     wave_rule.quadrature.cache_clear()
-    products._has_few = lambda *_: False
+    products.has_few = equation.has_few = lambda *_: False
     products._WAVES = products.Kept(products._MOST)
     few = products.size_of
     equation.size_of = maugis.size_of = lambda octave, even: int(1.5 * few(octave, even)) + 6

@@ -17,6 +17,8 @@ from .pull import Curve, Turn, below, beyond, highest, last_minimum
 
 #: A load or depth as near as this to that of pull-off is it, relative: rounding, by the units of what was returned.
 _SAME = 64 * np.finfo(float).eps
+#: Where load and depth of pull-off are off by this part, nothing is known of what is pulled off.
+_UNKNOWN = 0.1
 
 
 def solve(part, shape, body, x):
@@ -102,7 +104,7 @@ def _answered(part, shape, state, pulls, off, counts, x, ring=None):
     solution, _ = answer(part, shape, state, counts, x, ring)
     solution = replace(solution, error=np.maximum(solution.error, off))
     solution = solution.refused(~np.isfinite(state.P), Status.PULLED_OFF)
-    failed = np.isnan(pulls["P_off"])
+    failed = np.isnan(pulls["P_off"]) | (solution.status == Status.PULLED_OFF) & ~(off < _UNKNOWN)
     numbers = {"stable": solution.a >= pulls["a_off"], part.control: part.value}
     return replace(solution, **pulls, **numbers).refused(failed, Status.DIVERGED)
 

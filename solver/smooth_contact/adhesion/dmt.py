@@ -10,7 +10,7 @@ import numpy as np
 
 from ...status import Status
 from ..equation import Response, respond
-from ..radius import Radii, guess, rising_root, touching
+from ..radius import NEAR, Radii, guess, rising_root, touching
 from ..state import State, answer
 
 
@@ -22,7 +22,7 @@ def solve(part, shape, body, k, x):
     legal = (asked > 0) & ((part.branch == "stable") | (part.control == "a"))
     response, counts = touching(part.control, np.where(legal, asked, np.nan), shape, body)
     state = State.free(response)
-    state = state._replace(P=state.P - pull)
+    state = state._replace(P=state.P - pull, P_error=state.P_error + NEAR * pull)
     jumped = _jump(shape, body, pull, k)
     solution, tensile = answer(part, shape, state, counts, x)
     solution = solution.refused(legal & (tensile | np.isnan(state.P)), Status.LIFT_OFF)

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...numerics.bracket import between
 from ...shapes.shape import column
-from ..radius import Radii, rising_root
+from ..radius import LAST, MOST, Radii, rising_root
 from .jkr import State
 
 #: Distance of the radii in the variable of :class:`~..radius.Radii`, and how many are looked at together.
@@ -25,8 +25,6 @@ _STEP, _TOGETHER = 0.25, 8
 _ABOVE, _BELOW, _THIN = 4.0, 1e-3, 0.02
 #: Beyond what is flat, (a - b)/b where the search ends: there the slope of a frustum is that of its corner.
 _CORNER = 1e-6
-#: The variable of the last radius before the end of a profile.
-_LAST = 30.0
 #: Waves u = kh at which the kernel is looked at.
 _WAVES = np.geomspace(1e-9, 30.0, 72)
 #: Width of a bracket, in the variable, in which a minimum or a radius is found.
@@ -64,7 +62,7 @@ def highest(law, radii):
         return np.where(np.abs(g) < 0.01, 0.0, g), (2 * slope / F - 1 / a) * da
 
     x, _ = rising_root(evaluate, np.where(np.isfinite(radii.most) | (radii.least > 0), -1.0, np.log(0.05)))
-    return np.where(radii.ends, np.minimum(x + np.log(_ABOVE), _LAST), x + np.log(_ABOVE))
+    return np.where(radii.ends, np.minimum(x + np.log(_ABOVE), LAST), x + np.log(_ABOVE))
 
 
 def lowest(law, x, index, radii):
@@ -211,7 +209,8 @@ def beyond(curve, holder, value, turn, start):
         return (part.of(state.P, state.D) - value[index]) / unit, part.of(state.dP, state.dD) * da / unit
 
     start = np.fmax(start, np.where(turn.corner, turn.above, turn.x + 0.3))
-    return rising_root(evaluate, start, low=turn.x)[0]
+    x, counts = rising_root(evaluate, start, low=turn.x)
+    return np.where(counts < MOST, x, np.nan)
 
 
 def below(curve, holder, value, start, rising):

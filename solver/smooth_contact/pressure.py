@@ -33,13 +33,13 @@ def without_edge(shape, response, A, x):
     return (on_half_space(shape, response.a, x) - of_layer / column(response.a)) / column(np.pi / response.E)
 
 
-def _of_basis(rows, sizes, x):
-    """Σ_m rows_m ∫ e_m'(τ)/τ dv (B, m) at x (m,), of the functions that each case has, `sizes` (B,), among those of the
+def _of_basis(rows, counts, x):
+    """Σ_m rows_m ∫ e_m'(τ)/τ dv (B, m) at x (m,), of the functions that each case has, `counts` (B,), among those of the
     `rows` (B, N): so its numbers do not depend on its company."""
     out = np.full((len(rows), len(x)), np.nan)
-    out[sizes == 0] = 0.0
-    for size in np.unique(sizes[sizes > 0]).astype(int).tolist():
-        index = np.flatnonzero(sizes == size)
+    out[counts == 0] = 0.0
+    for size in np.unique(counts[counts > 0]).astype(int).tolist():
+        index = np.flatnonzero(counts == size)
         out[index] = in_blocks(rows[index, :size], _slopes(size, x.tobytes()))
     return out
 

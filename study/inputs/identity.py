@@ -28,6 +28,9 @@ from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY
 STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
 #: Stresses depend on these even where the contact does not, as on nu2 of a body on which the layer slides.
 RATIOS = ("nu1", "nu2")
+#: In the keys of cases that have another shape than the paraboloid, or that stick, beside NUMERICS_VERSION: raised when
+#: numbers of these alone change.
+_OF_SHAPES = "2"
 
 
 def acts(grid: Grid, name: str) -> np.ndarray:
@@ -66,6 +69,7 @@ def digest_of(definition) -> str:
         "dtype": definition.dtype,
     }
     content["values"] = {name: digests for name, digests in content["values"].items() if digests}
+    content |= {"shapes": _OF_SHAPES} if {"shape", "w_adhesion"} & {*content["values"], *grid.sizes} else {}
     compared = [name for name in STRENGTHS if name in grid.values and name not in grid.sizes]
     content |= {"strengths": {name: digest_of_array(along(grid, name)) for name in compared}} if compared else {}
     content |= {"stresses": _digest_of_ratios(grid)} if definition.stresses else {}
@@ -148,7 +152,7 @@ def find(keys: np.ndarray, stored: np.ndarray, rank: np.ndarray) -> np.ndarray:
 
 def _identity_of(name: str) -> Callable[[str], str]:
     """A function of a word of a parameter: a text that tells what it stands for from all else."""
-    of_name = {"micro": law_identity, "shape": shape_identity}
+    of_name = {"micro": law_identity, "shape": lambda word: f"{shape_identity(word)} {_OF_SHAPES}"}
     return profile_identity if name.endswith(".profile") else of_name.get(name, str)
 
 
@@ -164,6 +168,7 @@ def _hashed(name: str, array: np.ndarray) -> np.ndarray:
     else:
         numbers = array.astype(np.float64) + 0.0
         bits = np.where(np.isnan(numbers), np.nan, numbers).view(np.uint64)  # every NaN has the same bits
+    name = f"{name} {_OF_SHAPES}" if name == "w_adhesion" else name
     return _mixed(bits ^ _digest(name, 16).reshape(2, *[1] * array.ndim))
 
 

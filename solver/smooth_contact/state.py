@@ -134,7 +134,8 @@ def answer(part, shape, state, counts, x, ring=None):
         np.where(response.P > 0, response.P_error / response.P, response.flat_P_error / response.flat_P)
     )
     of_waves = off * np.abs(looked_at[:, : 2 * _INNER]).max(axis=1)
-    of_p0 = of_p[:, :_INNER].max(axis=1) + rounding * np.abs(p0) + along + of_waves
+    terms = np.abs(p0) + np.abs(A) * response.E / (np.pi * state.a)  # what the shape presses, and what the edge pulls
+    of_p0 = of_p[:, :_INNER].max(axis=1) + rounding * terms + along + of_waves
     error = error + np.where(np.isfinite(p0), _over(of_p0, p0), 0.0)
     numbers = {"a": state.a, "P": state.P, "D": state.D, part.control: part.value}
     between = np.maximum(_over(of_p.max(axis=1), largest) + rounding, error)

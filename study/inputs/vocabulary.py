@@ -180,7 +180,7 @@ def allowed(parameter: Parameter) -> str:
     """What the values of a parameter must be, as the end of a message: "must be > 0"."""
     if parameter.choices:
         words = [f'"{choice}"' for choice in parameter.choices if not choice.startswith("table:")]
-        words += ['or "table:FILE.csv"'] * (parameter.choices[0] in ("paraboloid", "uniform", "disc_cell"))
+        words += ['or "table:FILE.csv"'] * bool({"paraboloid", "uniform", "disc_cell"} & {*parameter.choices})
         return "must be one of " + ", ".join(words)
     low, high = parameter.interval[1:-1].split(", ")
     if high == "inf":
@@ -192,7 +192,9 @@ def allowed(parameter: Parameter) -> str:
 def check(parameter: Parameter, value) -> str:
     """What is wrong with one value of a parameter: "" or a text such as "must be > 0"."""
     if parameter.choices:
-        return "" if isinstance(value, str) and value in parameter.choices else allowed(parameter)
+        table = value.removeprefix("Table:") if isinstance(value, str) and value.endswith(".csv") else ""
+        hint = f'; a table of your own is "table:{table}"' * bool(table)
+        return "" if isinstance(value, str) and value in parameter.choices else allowed(parameter) + hint
     endless = parameter.interval.endswith("inf]")
     if not finite(value) and not (endless and value == math.inf):
         return f"must be a finite number, {allowed(parameter).removeprefix('must be ')}" + ', or "rigid"' * endless

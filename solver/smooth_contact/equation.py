@@ -27,7 +27,7 @@ _EPS, _TINY = np.finfo(float).eps, np.finfo(float).tiny
 #: Number of classes of stiffness.
 _CLASSES = MILD + 1
 #: Rounding of closed forms, relative; and that of the equation, over eps times its size and the norm of its matrix.
-_ROUNDING, _FLOOR = 16 * _EPS, 16
+_ROUNDING, _FLOOR = 64 * _EPS, 16
 #: Error of what the kernel adds, by the waves at which it is looked at, from octave 1 of h/a downwards; of few waves
 #: from octave -3 on (the largest in random contacts of `python tools/errors/shape_errors.py`, times 2 to 5). Of the
 #: depth this part is enough.

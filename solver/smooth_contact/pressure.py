@@ -34,8 +34,8 @@ def without_edge(shape, response, A, x):
 
 
 def _of_basis(rows, counts, x):
-    """Σ_m rows_m ∫ e_m'(τ)/τ dv (B, m) at x (m,), of the functions that each case has, `counts` (B,), among those of the
-    `rows` (B, N): so its numbers do not depend on its company."""
+    """Σ_m rows_m ∫ e_m'(τ)/τ dv (B, m) at x (m,), of the functions that each case has, `counts` (B,), among those of
+    the `rows` (B, N): so its numbers do not depend on its company."""
     out = np.full((len(rows), len(x)), np.nan)
     out[counts == 0] = 0.0
     for size in np.unique(counts[counts > 0]).astype(int).tolist():

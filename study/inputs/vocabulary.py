@@ -185,23 +185,21 @@ def allowed(parameter: Parameter) -> str:
     low, high = parameter.interval[1:-1].split(", ")
     if high == "inf":
         return f"must be {'>' if parameter.interval[0] == '(' else '>='} {low}"
-    either = "".join(f"{value} or " for value in parameter.also)
-    return f"must be {either}in {parameter.interval}"
+    return f"must be {''.join(f'{value} or ' for value in parameter.also)}in {parameter.interval}"
 
 
 def check(parameter: Parameter, value) -> str:
     """What is wrong with one value of a parameter: "" or a text such as "must be > 0"."""
     if parameter.choices:
-        table = value.removeprefix("Table:") if isinstance(value, str) and value.endswith(".csv") else ""
-        hint = f'; a table of your own is "table:{table}"' * bool(table)
+        table = str(value).removeprefix("Table:")
+        hint = f'; a table of your own is "table:{table}"' * table.endswith(".csv")
         return "" if isinstance(value, str) and value in parameter.choices else allowed(parameter) + hint
     endless = parameter.interval.endswith("inf]")
     if not finite(value) and not (endless and value == math.inf):
         return f"must be a finite number, {allowed(parameter).removeprefix('must be ')}" + ', or "rigid"' * endless
     if parameter.whole and value != int(value):
         return "must be a whole number"
-    inside = are_within(parameter, float(value)).all()  # float: a Decimal may trap a comparison
-    return "" if inside else allowed(parameter)
+    return "" if are_within(parameter, float(value)).all() else allowed(parameter)  # a Decimal may trap a comparison
 
 
 def finite(value) -> bool:
@@ -241,7 +239,7 @@ def absent(name: str) -> str:
     first, *others = re.split(r"[\s_.*-]+", name)
     parts = [re.sub(r"\d+$", "", first)] * bool(others) + [_as_word(word) for word in (first, *others) if len(word) > 2]
     texts = [says[word] for word in whole if word in says] or [text for word, text in says.items() if word in parts]
-    return texts[0] if texts else ""
+    return next(iter(texts), "")
 
 
 def _as_word(name: str) -> str:
@@ -259,4 +257,4 @@ def suggest(word: str, words, listed=None) -> str:
     if near:
         return f'; did you mean "{lower[near[0]]}"?'
     listed = list(listed or words)
-    return "; known: " + ", ".join(listed[:LISTED]) + (f" and {len(listed) - LISTED} more" * (len(listed) > LISTED))
+    return "; known: " + ", ".join(listed[:LISTED]) + f" and {len(listed) - LISTED} more" * (len(listed) > LISTED)

@@ -152,7 +152,7 @@ def test_messages_are_those_of_any_parameter():
     assert message(micro=cones.CONES) == 'solve: alpha is missing: micro = "cones" needs it'
     assert message(micro=cones.CONES, alpha=2.0) == "solve: alpha = 2.0: must be in (0, 1.57)"
     assert message(micro="conse", alpha=1.0).endswith(
-        '"hex_lattice", "normal_heights", "uniform_heights", "elastic_plastic", "cones"'
+        '"hex_lattice", "normal_heights", "uniform_heights", "elastic_plastic", "cones", or "table:FILE.csv"'
     )
     unnamed = dataclasses.replace(cones.CONES, version="")
     assert "version must be a text" in message(micro=unnamed, alpha=1.0)

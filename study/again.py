@@ -17,7 +17,7 @@ from .data.one_case import is_contact
 from .inputs.definition import StudyError
 from .inputs.laws import recall
 from .inputs.punch.shapes import MICROMETRE, in_metres
-from .inputs.punch.stresses import without_stresses
+from .inputs.punch.stresses import DECIDE, without_stresses
 from .inputs.scene.layers import moduli_of
 from .inputs.scene.layers import recall as recall_layers
 from .inputs.scene.names import is_ratio
@@ -64,7 +64,7 @@ class Again(NamedTuple):
 
 def no_stresses(again: Again, *, largest: bool = True) -> str:
     """Why some contacts have no stresses, or no `largest` ones; "" where all have them."""
-    values = (getattr(again.problem, name) for name in ("base", "micro", "shape", "w_adhesion", "adhesion"))
+    values = (getattr(again.problem, name) for name in DECIDE)
     return without_stresses(*values, largest=largest)
 
 

@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
-#: Terms of a series; and by which part of the largest value it may be off, which is the rounding of the sum over 1,000
-#: lines, else there is none: where rows lie side by
-#: side and the next ones far away.
+#: Terms of a series; and by which part of the largest value it may be off, the rounding of a sum over 1,000 lines. A
+#: table that needs more terms has no series: rows that lie close together, beside others far apart.
 _TERMS, _OFF = 18, 1e-12
 #: Tables of so many lines have no series: the sum over lines is as fast.
 FEW = 24

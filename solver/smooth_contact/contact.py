@@ -10,7 +10,7 @@ from .adhesion import adhesive
 from .equation import respond
 from .radius import touching
 from .state import State, answer, at_corner, beyond_profile, pinned
-from .tabulated import Tabulated
+from .tabulated import Tabulated, where_slow
 
 
 def kinds_of(problem):
@@ -29,9 +29,7 @@ def shape_in(part):
 
 def not_sticking(part, x):
     """:class:`~..solution.Solution` of cases without adhesion in units R = E2* = 1, at the radii x (m,)."""
-    shape, body = shape_in(part), BODIES[str(part.base[0])](part)
-    if hasattr(body, "kernel") and body.kernel.sampler is None:  # of many layers
-        body = Tabulated.of(body)
+    shape, body = shape_in(part), where_slow(BODIES[str(part.base[0])](part))
     if str(part.shape[0]) == "flat":
         state, counts = pinned(part, shape, body), np.ones(len(part), dtype=np.int32)
     else:

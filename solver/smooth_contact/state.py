@@ -94,10 +94,8 @@ def at_corner(part, shape, body, state):
     if not corner.any():
         return state, corner
     index = np.flatnonzero(corner)
-    flat, over = (
-        pinned(part.take(index), shape.take(index), body.take(index)),
-        np.nan_to_num(over[index], nan=_AT_CORNER),
-    )
+    flat = pinned(part.take(index), shape.take(index), body.take(index))
+    over = np.nan_to_num(over[index], nan=_AT_CORNER)
     flat = flat._replace(P_error=flat.P_error + over * flat.P, D_error=flat.D_error + over * flat.D)
     return State.join(len(part), [(np.flatnonzero(~corner), state.take(~corner)), (index, flat)]), corner
 

@@ -79,6 +79,11 @@ class Tabulated(NamedTuple):
         return np.where(beyond, 0.0, _clenshaw(terms, np.where(beyond, 0.0, local)))
 
 
+def where_slow(body):
+    """The body, with a table of its kernel if that is of many layers, of which each wave takes long."""
+    return Tabulated.of(body) if hasattr(body, "kernel") and body.kernel.sampler is None else body
+
+
 def excess(body, u):
     """(L - 1)/(1 + m) (B, M) of a body at u = kh (B, M)."""
     if isinstance(body, Tabulated):

@@ -72,11 +72,11 @@ def effective_work(scan: Scan, *, form: Any = "plane", periodic: bool = False, *
 def _asked(parameters: dict[str, Any]) -> tuple[Any, Problem]:
     """The scene of a call and its numbers for the solver."""
     usual = {"R": "1 um", "P": "0 N", "micro": "smooth"}
-    given = usual | {name: value for name, value in parameters.items() if value is not None}
-    if "w_adhesion" not in given:
+    inputs = usual | {name: value for name, value in parameters.items() if value is not None}
+    if "w_adhesion" not in inputs:
         raise StudyError(["effective_work: give w_adhesion"])
     try:
-        definition = from_call(given, [], False, {"output": {"profiles": False}})
+        definition = from_call(inputs, [], False, {"output": {"profiles": False}})
     except StudyError as error:
         raise StudyError(text.replace("solve: ", "effective_work: ", 1) for text in error.messages) from None
     scene = definition.scene

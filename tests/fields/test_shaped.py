@@ -47,9 +47,9 @@ def test_flat_punch_on_a_layer_of_the_same_material(mu):
     """Waves and closed forms of a layer which is nearly that of the body, against closed forms alone."""
     case = BARE | LAYER | {"n": 1.000001, "nu2": 0.3, "h": 0.07}
     flat = {"shape": "flat", "flat_radius": 0.1, "D": 0.01}
-    one, other = (of_contacts(*solved(**flat, **c), R, Z, mu=mu).inside for c in (case, BARE))
-    for name, values in other.items():
-        assert_allclose(one[name], values, rtol=0, atol=2e-6 * np.abs(values).max())  # n - 1 is 1e-6
+    layered, bare = (of_contacts(*solved(**flat, **c), R, Z, mu=mu).inside for c in (case, BARE))
+    for name, values in bare.items():
+        assert_allclose(layered[name], values, rtol=0, atol=2e-6 * np.abs(values).max())  # n - 1 is 1e-6
 
 
 def test_flat_punch_on_a_layer():

@@ -40,11 +40,11 @@ def test_python_of_the_page_prints_what_stands_there(tmp_path):
     ],
 )
 def test_every_name_is_in_a_table_of_symbols_with_its_unit(page, roles):
-    found = {name: row for row in rows("symbol", pages.read(page)) for name in re.findall(r"`(\w+)`", row[1])}
-    known = {name: entry for name, entry in VOCABULARY.items() if entry.role in roles and name not in OF_TESTS}
-    assert set(found) == set(known) | ({"x"} if page == "docs/model.md" else set())
-    for name, entry in known.items():
-        *_, scale, physical = found[name]
+    listed = {name: row for row in rows("symbol", pages.read(page)) for name in re.findall(r"`(\w+)`", row[1])}
+    entries = {name: entry for name, entry in VOCABULARY.items() if entry.role in roles and name not in OF_TESTS}
+    assert set(listed) == set(entries) | ({"x"} if page == "docs/model.md" else set())
+    for name, entry in entries.items():
+        *_, scale, physical = listed[name]
         plain = scale.strip("$").replace("^\\ast", "*").replace("E_2", "E2").replace("{-2}", "-2")
         assert plain == entry.scale, name
         assert physical == PRINTED.get(entry.unit, entry.unit), name

@@ -56,9 +56,9 @@ def main(size: int = 20_000, seed: int = 5) -> None:
         truth = at(FINE, "numpy")
         for (name, rtol), parts in rows.items():
             solution = at(rtol, PATHS[name])
-            known = (solution.status == Status.CONVERGED) & (truth.error < 0.1 * rtol)
-            parts.append(np.array([distances(solution, truth), solution.error])[:, known])
-            parts[-1] = (*parts[-1], problem.base[known])
+            judged = (solution.status == Status.CONVERGED) & (truth.error < 0.1 * rtol)
+            parts.append(np.array([distances(solution, truth), solution.error])[:, judged])
+            parts[-1] = (*parts[-1], problem.base[judged])
     for (name, rtol), parts in rows.items():
         print(line(name, rtol, *(np.concatenate(column) for column in zip(*parts, strict=True))), flush=True)
 

@@ -118,8 +118,8 @@ def distances(answer, truth) -> tuple[np.ndarray, np.ndarray]:
     pulls = "D_off" if answer.control == "D" else "P_off"
     parts = []
     for name in [*names, pulls]:
-        one, other = getattr(answer, name), getattr(truth, name)
-        parts.append(np.where(np.isfinite(other) & (other != 0), np.abs(one / other - 1), 0.0))
+        value, exact = getattr(answer, name), getattr(truth, name)
+        parts.append(np.where(np.isfinite(exact) & (exact != 0), np.abs(value / exact - 1), 0.0))
     p = np.where(np.isfinite(truth.p), truth.p, 0.0)
     off = np.where(np.isfinite(truth.p), np.abs(answer.p - truth.p), 0.0).max(axis=1)
     return np.max(parts, axis=0), off / np.abs(p).max(axis=1)

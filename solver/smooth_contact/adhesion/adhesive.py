@@ -76,7 +76,8 @@ def pulled(part, law):
     start = highest(law, curve.radii)
     turn = of_control = last_minimum(curve, holder, start)
     control = Held.by(np.full(len(few), np.inf if part.control == "D" else 0.0))
-    if any((one != other).any() for one, other in zip(holder, control, strict=True)) and part.control != "a":
+    differ = any((held != alone).any() for held, alone in zip(holder, control, strict=True))
+    if differ and part.control != "a":
         of_control = last_minimum(curve, control, start)
     jumped, _ = curve.at(_jump(curve, holder, turn), np.arange(len(few)))
     return Pulled(holder, turn, jumped, control, of_control).take(same), curve.counts[same]

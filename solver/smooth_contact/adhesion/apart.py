@@ -14,7 +14,7 @@ from ...scaling import dimensionless, with_rigid_punch
 from ..contact import shape_in
 from ..equation import respond
 from ..radius import Radii
-from ..tabulated import Tabulated
+from ..tabulated import where_slow
 from .jkr import Jkr
 from .maugis import Maugis, ring_stress
 
@@ -44,9 +44,7 @@ def apart(problem, x):
 def _apart(problem, x):
     rigid = with_rigid_punch(problem)
     part, (rows, points) = dimensionless(rigid), x.shape
-    shape, body = shape_in(part), BODIES[str(part.base[0])](part)
-    if hasattr(body, "kernel") and body.kernel.sampler is None:  # of many layers
-        body = Tabulated.of(body)
+    shape, body = shape_in(part), where_slow(BODIES[str(part.base[0])](part))
     index = np.repeat(np.arange(rows), points)
     with np.errstate(all="ignore"):
         a, da = Radii(shape).at(x.ravel(), index)

@@ -9,7 +9,7 @@ from ..grid import Grid, along
 from ..laws import smooth_laws
 
 #: Inputs that decide whether there are stresses.
-_DECIDE = ("base", "micro", "shape", "w_adhesion", "adhesion")
+DECIDE = ("base", "micro", "shape", "w_adhesion", "adhesion")
 
 
 def without_stresses(base, micro, shape=PARABOLOID, w_adhesion=0.0, adhesion="jkr", *, largest=False) -> str:
@@ -35,4 +35,4 @@ def without_stresses(base, micro, shape=PARABOLOID, w_adhesion=0.0, adhesion="jk
 
 def none_in(grid: Grid, *, largest: bool = True) -> str:
     """The same of the cases of a grid."""
-    return without_stresses(*(along(grid, name) for name in _DECIDE), largest=largest)
+    return without_stresses(*(along(grid, name) for name in DECIDE), largest=largest)

@@ -108,6 +108,16 @@ def is_ratio(name):
     return name in ("nu1", "nu2") or name.startswith("layers.") and name.endswith((".nu", ".nu_bottom"))
 
 
+def one_of(values, words):
+    """(...) bool: the values that are one of a few words or numbers. `numpy.isin` sorts, and takes as long for one case
+    as ten comparisons."""
+    values = np.asarray(values)
+    met = np.zeros(values.shape, dtype=bool)
+    for word in words:
+        met |= values == word
+    return met
+
+
 def among(condition, values):
     """(...) bool: the cases that meet a condition such as `needed_by`. `values(name)` gives the texts of a parameter,
     in an array of any shape."""

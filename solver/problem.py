@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import laws, layers, shapes
-from .parameters import CONTROL, PARAMETERS, STACKED, Parameter, allowed, among
+from .parameters import CONTROL, PARAMETERS, STACKED, Parameter, allowed, among, one_of
 
 #: Largest |P| or |D| under adhesion, in units R = E2* = 1: that of the bounds in solver/parameters.py.
 _PULL = 1e3
@@ -224,6 +224,8 @@ class Problem:
             if own.interval:
                 if own.needed_by not in having:
                     having[own.needed_by] = among(own.needed_by, lambda name: getattr(self, name))
+                if not having[own.needed_by].any():
+                    continue
                 values = getattr(self, name)
                 left_out = np.isnan(values) & (own.instead is not None)
                 bad |= having[own.needed_by] & ~(allowed(own, values) | left_out)
@@ -247,7 +249,7 @@ def _array(name, value):
 
 def _missing(given, arrays, table):
     """Yield a message for each parameter that is not `given` and has no default, though some case needs it."""
-    if np.isin(STACKED[1], arrays["base"]).any() and not layers.numbers_of(given):
+    if one_of(arrays["base"], STACKED[1]).any() and not layers.numbers_of(given):
         yield 'layers are missing: base = "stack" needs them'
     for name, own in table.items():
         if own.default is None and not {name, own.instead} & {*given} and own.instead != "":

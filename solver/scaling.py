@@ -32,12 +32,20 @@ def dimensionless(problem):
                 values = values / unit if power > 0 else values * unit
         return values
 
+    n = np.where(problem.base != "half_space", problem.n, 1.0)
+    if without_units(problem):
+        return replace(problem, parameters=problem.parameters | {"n": n})
     with_unit = {name: values for name, values in problem.parameters.items() if any(PARAMETERS[name].powers)}
     own = {name: number(values, PARAMETERS[name].powers) for name, values in with_unit.items()}
-    n, one = np.where(problem.base != "half_space", problem.n, 1.0), np.ones(len(problem))
+    one = np.ones(len(problem))
     own |= {"n": n, "R": one, "E2": one}
     value = number(problem.value, CONTROL[problem.control].powers)
     return replace(problem, value=value, parameters=problem.parameters | own)
+
+
+def without_units(problem):
+    """Whether R and E2* are 1 of all cases: then nothing need be divided or multiplied by them."""
+    return bool((problem.R == 1).all() and (problem.E2 == 1).all())
 
 
 def with_rigid_punch(problem):
@@ -108,10 +116,12 @@ def restore(solution, problem):
     that its unit makes infinite, is ``Status.DIVERGED``."""
     pulls, unknown = problem.w_adhesion > 0, without_centre(problem)
     solution = solution.refused(solution.out_of_range(pulls, unknown), Status.DIVERGED)
-    arrays = {}
+    arrays, have_units = {}, not without_units(problem)
     for name, (of_E2, of_R) in _UNITS.items():
-        array, factor = getattr(solution, name), problem.R**of_R * problem.E2**of_E2
-        arrays[name] = array * factor.reshape(-1, *[1] * (array.ndim - 1))
+        array = arrays[name] = getattr(solution, name).copy()
+        if have_units:
+            factor = problem.R**of_R * problem.E2**of_E2
+            array *= factor.reshape(-1, *[1] * (array.ndim - 1))
     solution = replace(solution, **arrays)
     return solution.refused(solution.not_finite(shapes.shaped(problem) | pulls, unknown), Status.DIVERGED)
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from .parameters import one_of
 from .status import Status
 
 #: The largest relative error of these is the error of a case.
@@ -137,14 +138,15 @@ class Solution:
         return cls(**{f.name: array(f.name) for f in fields(cls)})
 
     @classmethod
-    def join(cls, size: int, points: int, pieces: Iterable[tuple[Any, "Solution"]]) -> "Solution":
+    def join(cls, size: int, points: int, pieces: Iterable[tuple[Any, "Solution"]], **values: Any) -> "Solution":
         """Put pieces together.
 
         Parameters
         ----------
         size, points : number of cases, B, and of radii of the profiles, m
         pieces : pairs of an index into the cases and the solution of these. If a case is in two pieces, the last one
-            counts; a case in none has no numbers. A last piece of all cases, in their order, is the result itself
+            counts. A last piece of all cases, in their order, is the result itself
+        values : what a case in no piece has, as of :meth:`of`
 
         Returns
         -------
@@ -153,7 +155,7 @@ class Solution:
         pieces = list(pieces)
         if pieces and _is_all(pieces[-1][0], size) and pieces[-1][1].p.shape == (size, points):
             return pieces[-1][1]
-        whole = vars(cls.of(size, points))
+        whole = vars(cls.of(size, points, **values))
         for index, piece in pieces:
             for name, values in vars(piece).items():
                 whole[name][index] = values
@@ -186,7 +188,7 @@ class Solution:
         numpy.ndarray : (B,) bool: by its status the case has numbers, but one of them, not `model_error`, is NaN or
             infinite
         """
-        ended = np.isin(self.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
+        ended = one_of(self.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
         right = ended.copy()
         for name in _NUMBERS:
             values = getattr(self, name)

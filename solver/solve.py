@@ -67,14 +67,14 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
     is_judged |= problem.base == "thin_stack"
     graded = is_graded(problem)
     size = len(problem), len(radii)
-    pieces = [(np.arange(len(problem)), Solution.of(*size, status=Status.INVALID_INPUT, model_used=model_of(problem)))]
+    pieces = []
     named = ~(is_judged | is_auto | graded)
     for mask, way in (is_judged, judged), (is_auto, cheapest), (graded, solve_graded), (named, solve_named):
         index = np.flatnonzero(mask & ~invalid)
         if len(index):
             part = problem if len(index) == len(problem) else problem.take(index)
             pieces.append((index, way(part, radii)))
-    solution = Solution.join(*size, pieces)
+    solution = Solution.join(*size, pieces, status=Status.INVALID_INPUT, model_used=model_of(problem))
     if shaped(problem).any():
         beyond = ~invalid & beyond_table(scaled, solution)
         solution = solution.refused(beyond, Status.OUTSIDE_LAW)

@@ -16,6 +16,7 @@ from ..kernels.closed_form import bond_constants
 from ..kernels.two_layers import TwoLayers
 from ..laws import LAWS
 from ..numerics.ladder import LADDER
+from ..parameters import one_of
 from ..punches import PARABOLOID
 from ..solution import Solution
 from ..status import Status
@@ -53,7 +54,7 @@ def solve_newton(cases, rtol, nodes, limit, x):
 def _taken(cases, nodes):
     """(B,) bool: the cases of which the core knows law, body and punch, and whose mesh is free."""
     law, body = cases.law.law, cases.body
-    taken = (nodes == 0) | np.isin(nodes, _MESHES)
+    taken = (nodes == 0) | one_of(nodes, _MESHES)
     if law not in [LAWS[name] for name in TAKEN] or cases.punch is not PARABOLOID or cases.edge is not FREE:
         return np.zeros_like(taken)
     if law.name == "power_law":

@@ -5,12 +5,11 @@ from itertools import product
 
 import numpy as np
 
-from ..body import BODIES
 from ..contact import smooth
 from ..laws import LAWS
 from ..scaling import as_cases, dimensionless, restore, with_a_stiff_base, with_rigid_punch, without_springs
 from ..schemes import SCHEMES
-from ..shapes import PARABOLOID, SHAPES, shaped
+from ..shapes import shaped
 from ..smooth_contact.contact import kinds_of
 from ..solution import Model, Solution
 from ..status import Status
@@ -45,13 +44,13 @@ def solve_named(problem, x):
     scaled, size = dimensionless(rigid), (len(problem), len(x))
     no_springs = without_springs(scaled)
     status = np.where(no_springs, Status.THIN_LAYER_NOT_APPLICABLE, 0)
-    pieces = [(np.arange(len(problem)), Solution.of(*size, status=status))]
+    pieces = []
     for mask, way in _ways(scaled, ~no_springs):
         if mask.any():
             index = np.flatnonzero(mask)
             part = scaled if len(index) == len(scaled) else scaled.take(index)
             pieces.append((index, way(part, x)))
-    solution = Solution.join(*size, pieces)
+    solution = Solution.join(*size, pieces, status=status)
     missed = (solution.status == Status.CONVERGED) & ~(solution.error <= problem.rtol)
     solution.status[missed] = Status.TOLERANCE_NOT_MET
     return with_model_error(problem, _with_model(problem, restore(solution, rigid)))
@@ -98,10 +97,9 @@ def _ways(problem, solvable):
     yield solvable & is_smooth & half_space, _smooth_half_space
     yield solvable & is_smooth & thin, _smooth_layer
     iterated = solvable & ~(is_smooth & (half_space | thin))
-    words = PARABOLOID, *SHAPES
+    kinds = problem.micro, problem.base, problem.scheme, problem.shape
     # of each kind the words that occur, and the cases that have them
-    kinds = (LAWS, problem.micro), (BODIES, problem.base), (SCHEMES, problem.scheme), (words, problem.shape)
-    present = ([(word, words == word) for word in names if np.any(words == word)] for names, words in kinds)
+    present = ([(word, words == word) for word in dict.fromkeys(words.tolist())] for words in kinds)
     for (_, of_law), (_, on_body), (scheme, by_scheme), (_, of_shape) in product(*present):
         chosen = iterated & of_law & on_body & by_scheme & of_shape
         for limit in np.unique(problem.max_iterations[chosen]):

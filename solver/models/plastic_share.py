@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..laws import LAWS
+from ..parameters import one_of
 from ..scaling import dimensionless, law_of
 from .range_of_law import RADII
 
@@ -15,7 +16,7 @@ _POINTS = 4
 
 def has_yield(problem):
     """(B,) bool: the cases whose micro law has spots that yield."""
-    return np.isin(problem.micro, [name for name, law in LAWS.items() if law.yielded])
+    return one_of(problem.micro, [name for name, law in LAWS.items() if law.yielded])
 
 
 def plastic_share(problem, lam):

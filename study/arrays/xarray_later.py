@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 def __getattr__(name: str) -> Any:
     if name.startswith("__"):  # Python asks for __path__ when something is imported from here
         raise AttributeError(name)
-    return getattr(import_module("xarray"), name)
+    globals()[name] = found = getattr(import_module("xarray"), name)  # the next time Python finds it without this
+    return found
 
 
 def is_array(value: Any) -> bool:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver import Model, Status
+from solver.parameters import one_of
 from solver.status import NO_SOLUTION
 
 from ..arrays import xarray_later as xr
@@ -35,7 +36,7 @@ from .provenance import provenance
 
 def failed_cases(status: np.ndarray) -> np.ndarray:
     """The places in `status` (n,) of the cases that have failed."""
-    return np.flatnonzero(~np.isin(status, (0, *NO_SOLUTION)))
+    return np.flatnonzero(~one_of(status, (0, *NO_SOLUTION)))
 
 
 def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:

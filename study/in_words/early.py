@@ -6,6 +6,7 @@ import numpy as np
 
 from solver import Problem
 from solver.estimate import estimate
+from solver.parameters import one_of
 
 from ..arrays.labelled import Labelled
 from ..data.dataset import model_attributes
@@ -36,7 +37,7 @@ def far_outside(definition: Definition) -> list[str]:
     judged.
     """
     grid = definition.grid
-    slow = np.isin(along(grid, "base"), ("layered", "auto")) & have("rough", along(grid, "micro"))
+    slow = one_of(along(grid, "base"), ("layered", "auto")) & have("rough", along(grid, "micro"))
     slow = slow & (along(grid, "n") < SOFT)
     if not (definition.scene and slow.any()):
         return []

@@ -7,7 +7,7 @@ import numpy as np
 
 from solver import Problem
 from solver.laws import LAWS, untried
-from solver.parameters import STACKED
+from solver.parameters import STACKED, one_of
 from solver.scaling import dimensionless, law_of
 
 from ..terminal import shown
@@ -159,7 +159,7 @@ def picard_for_nothing(grid: Grid) -> list[str]:
     In a grid that has it for rough cases too, each smooth case is refused by its status.
     """
     asked, smooth = along(grid, "scheme") == "picard", smooth_laws()
-    if not asked.any() or (asked & ~np.isin(along(grid, "micro"), smooth)).any():
+    if not asked.any() or (asked & ~one_of(along(grid, "micro"), smooth)).any():
         return []
     others = " or ".join(shown(name) for name in VOCABULARY["micro"].parameter.choices if name not in smooth)
     names = " or ".join(map(shown, smooth))

@@ -7,6 +7,8 @@ from itertools import product
 
 import numpy as np
 
+from solver.parameters import one_of
+
 from ..terminal import shown
 from .vocabulary import VOCABULARY, Parameter, are_within, check, finite
 
@@ -51,8 +53,11 @@ def along(grid: Grid, name: str) -> np.ndarray:
     A dimension on which the parameter does not depend has the length 1. A parameter that the grid lacks has its
     default, or NaN.
     """
-    default = VOCABULARY[name].parameter.default
-    dims, array = grid.values.get(name, ((), np.array(np.nan if default is None else default)))
+    if name in grid.values:
+        dims, array = grid.values[name]
+    else:
+        default = VOCABULARY[name].parameter.default
+        dims, array = (), np.array(np.nan if default is None else default)
     if len(dims) > 1:
         array = array.transpose(sorted(range(len(dims)), key=lambda i: list(grid.sizes).index(dims[i])))
     return array.reshape([size if dim in dims else 1 for dim, size in grid.sizes.items()])
@@ -110,7 +115,7 @@ def box(shape: tuple[int, ...], most: int) -> list[int]:
 def usual_block(grid: Grid) -> int:
     """Number of cases in a block, unless the study says it. The slowest kind of case in the grid decides."""
     n, rtol, nodes = (along(grid, name) for name in ("n", "rtol", "nodes"))
-    layered = np.isin(along(grid, "base"), ("layered", "auto")).any()
+    layered = one_of(along(grid, "base"), ("layered", "auto")).any()
     approximated = (along(grid, "scheme") == "picard").any()
     if layered and (approximated or (n > _STIFF).any() or (rtol < _FINE).any()):
         return SLOWEST

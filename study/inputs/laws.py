@@ -10,7 +10,7 @@ from solver import laws
 from solver.laws.fit import fit_power_law
 from solver.laws.own_table import PREFIX
 from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
-from solver.parameters import allowed
+from solver.parameters import allowed, one_of
 
 from .grid import Grid, along
 from .punch import shapes
@@ -80,7 +80,7 @@ def is_parameter(name: str) -> bool:
 def results_of(micro: np.ndarray, sticking: bool = False) -> tuple[str, ...]:
     """Names of the results of these laws; plastic_share only if the spots of some law yield, those of pull-off only of
     contacts that may be `sticking`."""
-    yields = np.isin(micro, [name for name, law in laws.LAWS.items() if law.yielded]).any()
+    yields = one_of(micro, [name for name, law in laws.LAWS.items() if law.yielded]).any()
     of_laws = tuple(name for name in names("result") if yields or name != "plastic_share")
     return of_laws + (names("pull_off") if sticking else ())
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from solver.parameters import one_of
+
 from ..arrays import xarray_later as xr
 from ..arrays.labelled import as_xarray
 from ..inputs.laws import smooth_laws
@@ -29,7 +31,7 @@ YIELD, STIFF = 0.03, 1e10
 
 @rule()
 def ra_as_of_iso(v):
-    if {"Ra", "Nbar", "micro"} <= {*v} and not np.isin(v["micro"].values, smooth_laws()).all():
+    if {"Ra", "Nbar", "micro"} <= {*v} and not one_of(v["micro"].values, smooth_laws()).all():
         from ..specimen.roughness import looks_like_iso_ra  # here: it loads what measures scans
 
         Ra, Nbar = (v["Ra"] + 0 * v["Nbar"]).values, (v["Nbar"] + 0 * v["Ra"]).values

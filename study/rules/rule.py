@@ -10,6 +10,7 @@ import numpy as np
 
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS
+from solver.parameters import one_of
 from solver.shapes import PARABOLOID, SHAPES
 
 from ..arrays import xarray_later as xr
@@ -110,7 +111,7 @@ def numbers(variables: Mapping) -> Mapping:
     arrays = {name: along(dims, array) for name, array in variables.items() if set(array.dims) <= set(dims)}
     v = defaultdict(lambda: np.nan, {"m": 0.0} | arrays)
     models = zip(used["flag_values"], used["flag_meanings"].split(), strict=True)
-    v["thin"] = np.isin(
+    v["thin"] = one_of(
         v["model_used"], [value for value, word in models if word.endswith(("thin_layer", "thin_stack"))]
     )
     v |= {"slope": slope(v), "pressure": _pressure(v)}

@@ -5,6 +5,7 @@ import numpy as np
 from solver import Problem, Status, solve
 from solver.laws import LAWS
 from solver.laws.elastic_plastic import TABOR
+from solver.parameters import one_of
 from solver.yields import spots
 from solver.yields.contact import of_contacts
 
@@ -34,7 +35,7 @@ def asperities_yield(v, times):
     """The asperities would yield: on the axis of a spot the stress exceeds the yield strength, from hardness or
     yield_strength. The real area is then larger than this one, and pmax smaller (micro = "elastic_plastic")."""
     Y = np.where(np.isnan(v["yield_strength"]), v["hardness"] / TABOR, v["yield_strength"])
-    elastic = have("rough", v["micro"]) & ~np.isin(v["micro"], [name for name, law in LAWS.items() if law.yielded])
+    elastic = have("rough", v["micro"]) & ~one_of(v["micro"], [name for name, law in LAWS.items() if law.yielded])
     limit = np.broadcast_to(np.where(elastic, times * Y, np.nan), v["status"].shape)
     index = np.flatnonzero(np.isfinite(limit))
     if not len(index):

@@ -8,6 +8,7 @@ import numpy as np
 
 from solver import Status, solve
 from solver.laws import LAWS
+from solver.parameters import one_of
 from solver.scaling import dimensionless, law_of
 
 from ...again import Again
@@ -24,14 +25,14 @@ _RADII = np.sin(np.linspace(0, np.pi / 2, 25))
 def falling(contacts: xr.Dataset) -> list[str]:
     """A sentence on contacts whose asperities yield, and whose pressure somewhere was larger at 0.9 of the load."""
     laws = [name for name, law in LAWS.items() if law.yielded]
-    yielding = np.isin(contacts["micro"].values.astype(str), laws)
+    yielding = one_of(contacts["micro"].values.astype(str), laws)
     if not yielding.any():
         return []
     try:
         again = Again.of(contacts, "summary")
     except StudyError:  # of a mean, say
         return []
-    solved = (contacts["status"].values.ravel() == Status.CONVERGED) & np.isin(again.problem.micro, laws)
+    solved = (contacts["status"].values.ravel() == Status.CONVERGED) & one_of(again.problem.micro, laws)
     where, index = np.zeros(len(solved), dtype=bool), np.flatnonzero(solved)
     if len(index):
         problem = again.problem.take(index)

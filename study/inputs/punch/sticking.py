@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from solver.parameters import Parameter
+from solver.parameters import Parameter, one_of
 
 from ...specimen.quantities import readable
 from ...terminal import shown
@@ -64,7 +64,7 @@ def mistakes(grid: Grid, sections: Any) -> list[str]:
     messages += [f'{name} is given with adhesion = "dmt", which has no use for it' for name in extra]
     if (dmt & (values("shape") != "paraboloid")).any():
         messages.append(f'adhesion = "dmt" is for shape = "paraboloid", not {_first(values("shape"), "paraboloid")}')
-    if (sticks & np.isin(values("base"), THIN)).any():
+    if (sticks & one_of(values("base"), THIN)).any():
         messages.append('base = "thin_layer" does not stick: w_adhesion > 0 needs base = "layered", or "auto"')
     if (maugis & (values("shape") == "flat")).any():
         messages.append('adhesion = "maugis" does not go with shape = "flat", whose edge is held: take "jkr"')
@@ -80,7 +80,7 @@ def rough_and_sticking(grid: Grid, unit: Any) -> list[str]:
 
     unit : of pressures, in Pa, a number; None without units
     """
-    rough = ~np.isin(along(grid, "micro"), smooth_laws())
+    rough = ~one_of(along(grid, "micro"), smooth_laws())
     if not (adhesive(grid) & rough).any():
         return []
     message = (

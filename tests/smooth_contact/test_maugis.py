@@ -111,6 +111,13 @@ def test_a_depth():
     assert_allclose([again.a[0], again.P[0]], [at.a[0], at.P[0]], rtol=1e-10, atol=0)
 
 
+def test_where_nothing_touches_any_more():
+    """Under a depth below that of pull-off no case of the batch has a radius."""
+    apart = solve(Problem.of(D=-0.1, sigma0=0.01, **HALF_SPACE))
+    assert apart.status == Status.PULLED_OFF and np.isnan(apart.a)
+    assert -0.1 < apart.D_off[0] < 0
+
+
 def test_a_flat_punch_is_refused():
     contact = solve(Problem.of(P=0.0, shape="flat", flat_radius=0.1, sigma0=0.01, **HALF_SPACE))
     assert contact.status == Status.INVALID_INPUT

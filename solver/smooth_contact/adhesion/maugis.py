@@ -75,9 +75,9 @@ class Maugis(NamedTuple):
 
     def at(self, a):
         """The :class:`~..state.State` at the radii a (B,); A is 0, and `zone` is γ."""
-        usable = np.flatnonzero((a > 0) & np.isfinite(a))
-        part, over = self.take(usable), np.full(len(a), np.nan)
-        over[usable] = part._over(a[usable])
+        usable, over = np.flatnonzero((a > 0) & np.isfinite(a)), np.full(len(a), np.nan)
+        if len(usable):
+            over[usable] = self.take(usable)._over(a[usable])
         center = self.ring(a, over, with_errors=True)
         by_a, by_over = self._slopes(a, over)
         dP, dD = (by_a[i] - by_over[i] * by_a[0] / by_over[0] for i in (1, 2))

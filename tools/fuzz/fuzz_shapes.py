@@ -6,8 +6,8 @@ Each group is a batch of one shape, base, control and way to touch: smooth, one 
 Numbers are drawn between the bounds that the solver allows, half of them near those of contacts that people have. What
 has converged must be a contact: its numbers are finite but for those that are infinite or not known under a point, at
 an edge or at pull-off, and from its radius the same contact follows. Of some smooth groups the stresses must be those
-of the pressure at the surface, and nowhere above the largest where there is one. What is wrong is printed with its case; the exit code is
-then 1.
+of the pressure at the surface, and nowhere above the largest where there is one. What is wrong is printed with its
+case; the exit code is then 1.
 """
 
 import sys

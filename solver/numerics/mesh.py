@@ -106,18 +106,21 @@ def half_space_rows(nodes, s_out, breaks=WHOLE):
     plain Gauss rule. The others have subpanels that shrink towards it, on each of its sides (:mod:`.pieces`). The
     complementary parameter 1 - (x_</x_>)² is formed from the distance to the singularity: no digits are lost near it.
     Polynomial pressures are right to 1e-14 (tests/numerics/test_operator.py).
+
+    Contacts on several panels ask for some million values of K, each set of panels for about a hundred thousand.
     """
     panels = len(breaks) - 1
     order = len(nodes) // panels
     rows, local_nodes = np.zeros((len(s_out), panels, order)), nodes if panels == 1 else radau_nodes(order)
     for piece in pieces(s_out, breaks, order):
-        values = piece.weight * _kernel(s_out[piece.row, None], piece.gap, piece.sign)
+        values = piece.weight * _kernel(s_out[piece.row, None], piece.gap, piece.sign, panels > 1)
         rows[piece.row, piece.panel] += against(values, piece.basis(local_nodes))
     return rows.reshape(len(s_out), len(nodes))
 
 
-def _kernel(s, gap, sign):
-    """s' K(x_</x_>)/x_> at s' = s + sign·gap, x_< and x_> the smaller and the larger of x and x'; all broadcast."""
+def _kernel(s, gap, sign, many):
+    """s' K(x_</x_>)/x_> at s' = s + sign·gap, x_< and x_> the smaller and the larger of x and x'; all broadcast.
+    `many`: of K, as :func:`.special.ellipkm1` takes it."""
     point = s + sign * gap
     outer2 = (1 - s) * (1 + s) if sign > 0 else ((1 - s) + gap) * (1 + point)  # the larger x²
-    return point * special.ellipkm1(np.minimum(gap * (s + point) / outer2, 1.0)) / np.sqrt(outer2)
+    return point * special.ellipkm1(np.minimum(gap * (s + point) / outer2, 1.0), many) / np.sqrt(outer2)

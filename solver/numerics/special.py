@@ -38,13 +38,14 @@ def __getattr__(name: str) -> Any:
     return value
 
 
-def ellipkm1(x: np.ndarray) -> np.ndarray:
+def ellipkm1(x: np.ndarray, many: bool = False) -> np.ndarray:
     """The complete elliptic integral of the first kind K, of the complementary parameter x in (0, 1], any shape.
 
     It has the bits of `scipy.special.ellipkm1`, so it does not matter which one is used: the logarithm is that of the C
-    library, since numpy's own may be rounded otherwise.
+    library, since numpy's own may be rounded otherwise. `many`: other calls follow, with more than _MOST numbers in
+    all.
     """
-    if x.size > _MOST:
+    if many or x.size > _MOST:
         return import_module("scipy.special").ellipkm1(x)
     log = np.fromiter(map(math.log, x.ravel().tolist()), float, x.size).reshape(x.shape)
     large = _polynomial(_P, x) - log * _polynomial(_Q, x)

@@ -25,7 +25,8 @@ def test_many_numbers_are_left_to_scipy(monkeypatch):
     monkeypatch.setattr(scipy.special, "ellipkm1", lambda x: asked.append(x.size) or x)
     special.ellipkm1(np.full(special._MOST, 0.5))
     special.ellipkm1(np.full(special._MOST + 1, 0.5))
-    assert asked == [special._MOST + 1]
+    special.ellipkm1(np.full(3, 0.5), many=True)
+    assert asked == [special._MOST + 1, 3]
 
 
 @pytest.mark.parametrize("n", [*LADDER, 7])

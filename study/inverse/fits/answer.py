@@ -13,7 +13,7 @@ from ...solving import solve
 from .asked import Asked
 from .block import FitStatus
 
-#: At most so many curves that stick have all places solved at once.
+#: At most so many curves have all places solved at once: a call costs more than some hundred contacts.
 _FEW = 8
 _HALVINGS = 4  # of the depth, to the place where the first assumption fails: it is right to 1/16
 
@@ -96,7 +96,6 @@ def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndar
         flags[good], about = contacts["validity"].values, contacts["validity"].attrs
         broken = np.flatnonzero(flags != 0)
         holds, fails = np.zeros(len(broken), int), np.full(len(broken), 2**_HALVINGS)  # in parts of the depth
-        # one contact that sticks costs as much as many
         at_once = _all_parts(question, value[broken], (deepest - D0)[broken]) if 0 < len(broken) <= _FEW else None
         for _ in range(_HALVINGS if len(broken) else 0):
             part = (holds + fails) // 2
@@ -115,10 +114,8 @@ def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndar
     return xr.Dataset(variables)
 
 
-def _all_parts(question: Asked, value: np.ndarray, x: np.ndarray) -> np.ndarray | None:
-    """(M, 1 + parts) bool: no assumption is violated at a part of the depths x (M,); of contacts that stick."""
-    if not question.model.sticks:
-        return None
+def _all_parts(question: Asked, value: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """(M, 1 + parts) bool: no assumption is violated at a part of the depths x (M,)."""
     parts = np.arange(1, 2**_HALVINGS)
     every = np.repeat(value, len(parts), axis=0), (x[:, None] * parts / 2**_HALVINGS).ravel()
     good = _contacts(question, *every)["validity"].values == 0

@@ -27,7 +27,7 @@ kinds = pytest.mark.parametrize(("base", "law"), ITERATED, ids=["-".join(kind) f
 
 @pytest.fixture(scope="module", autouse=True)
 def anew(each_path):
-    for kept in (batches, solved, true, measured, films):
+    for kept in (batches, solved, true, measured):
         kept.cache_clear()
 
 
@@ -131,7 +131,8 @@ def test_the_estimate_encloses_springs_that_no_mesh_sees(control, nodes):
 
 @cache
 def films(n: float, bonding: str) -> tuple:
-    """Smooth films and their solutions at given a, which take most of the time and are the same for each control."""
+    """Smooth films and their solutions at given a, which take most of the time: they are solved on panels, without the
+    core on both paths. They are the same for each control, and the truth for both paths."""
     case = {"h": 0.04 * np.geomspace(1e-7, 1e-3, 5), "n": n, "bonding": bonding, "micro": "smooth"}
     return case, solve(Problem.of(a=0.04 * np.ones(5), **case, rtol=1e-9))
 
@@ -155,7 +156,7 @@ def test_the_estimate_encloses_films_that_no_mesh_sees(control, n, bonding):
 @pytest.mark.parametrize("base", ["half_space", "thin_layer", "layered"])
 def test_power_laws_of_small_exponents(base):
     """Down to β = 0.01 pressures at the edge underflow; every case is solved, and none is above its error."""
-    case = random_cases(40, 7) | {"base": base, "micro": "power_law", "beta": np.geomspace(0.01, 0.1, 40)}
+    case = random_cases(13, 7) | {"base": base, "micro": "power_law", "beta": np.geomspace(0.01, 0.1, 13)}
     found, fine = (solve(Problem.of(**case, rtol=rtol)) for rtol in (1e-4, 1e-7))
     assert np.all(found.status == Status.CONVERGED) and np.all(fine.status == Status.CONVERGED)
     assert np.all(difference(found, fine) <= found.error + fine.error)

@@ -144,25 +144,25 @@ CORNERED = {
 def test_heights_whose_meshes_agree_by_chance(case, rtol):
     """The truth: the same contact at rtol 1e-8."""
     case = MAIN | {"micro": "uniform_heights"} | case
-    found, truth = (solve(Problem.of(**case, rtol=goal)) for goal in (np.array(rtol), np.full(len(rtol), 1e-8)))
+    found, truth = (solve(Problem.of(**case, rtol=goal)) for goal in (np.array(rtol), 1e-8))
     assert np.all(found.status == Status.CONVERGED)
     assert np.all(difference(found, truth) <= found.error + truth.error)
 
 
 @pytest.mark.parametrize("base", ["half_space", "thin_layer"])
 def test_random_heights(base):
-    """Of 150 contacts whose heights are distributed evenly, none is above its error bar.
+    """Of 60 contacts whose heights are distributed evenly, none is above its error bar.
 
     dP/dD is not in the error bar, as docs/model.md says: it may be up to ten times as far off.
     """
     random = np.random.default_rng(1)
 
     def between(low, high):
-        return np.exp(random.uniform(np.log(low), np.log(high), 150))
+        return np.exp(random.uniform(np.log(low), np.log(high), 60))
 
     Ra = between(5e-4, 1e-2)
     case = {"Ra": Ra, "Nbar": between(0.1, 10) / Ra**2, "sigma": between(1e-6, 3e-4), "P": between(1e-7, 1e-3)}
-    case |= {"h": between(3e-3, 0.1), "n": random.uniform(0.05, 0.95, 150), "base": base, "micro": "uniform_heights"}
+    case |= {"h": between(3e-3, 0.1), "n": random.uniform(0.05, 0.95, 60), "base": base, "micro": "uniform_heights"}
     found, truth = (solve(Problem.of(**case, rtol=rtol), np.linspace(0, 1, 5)) for rtol in (1e-5, 1e-6))
     both = (found.status == Status.CONVERGED) & (truth.status == Status.CONVERGED)
     moved = difference(found, truth)[both]
@@ -207,7 +207,7 @@ def test_the_pressure_next_to_the_edge():
 def test_the_ends_of_two_octaves_agree_to_their_errors(bonding):
     """Where h/a passes a power of two, the operator is made of other waves; h itself differs by 1e-14 of it. Under
     harder layers than these, rounding may move the pressure by half of the error."""
-    rng, size, a = np.random.default_rng(1), 200, 0.04
+    rng, size, a = np.random.default_rng(1), 100, 0.04
     Ra = 10 ** rng.uniform(-6, -2, size)
     case = {"a": a, "n": 10 ** rng.uniform(-3, 2, size), "bonding": bonding, "Ra": Ra, "Nbar": Ra**-2, "rtol": 1e-9}
     h = a * 2.0 ** rng.integers(-7, 4, size)

@@ -78,12 +78,11 @@ def test_order_and_offsets_of_the_points_do_not_count():
         other = fit(depths, loads)
         for key, value in usual.items():
             np.testing.assert_allclose(other[key], value, rtol=1e-6, atol=1e-14, err_msg=f"{name}, {key}")
-    for D0 in (-5e-6, -1e-7, 5e-6):
-        for P0 in (-1e-6, 1e-3):
-            other = fit(DEPTHS + D0, P + P0)
-            assert status(other) == ["converged"]
-            np.testing.assert_allclose(other.E1, usual["E1"], rtol=1e-6)
-            np.testing.assert_allclose(other.P0 - P0, usual["P0"], rtol=0, atol=1e-3 * usual["P0_spread"][0])
+    for D0, P0 in ((-5e-6, 1e-3), (-1e-7, -1e-6), (5e-6, -1e-6)):
+        other = fit(DEPTHS + D0, P + P0)
+        assert status(other) == ["converged"]
+        np.testing.assert_allclose(other.E1, usual["E1"], rtol=1e-6)
+        np.testing.assert_allclose(other.P0 - P0, usual["P0"], rtol=0, atol=1e-3 * usual["P0_spread"][0])
 
 
 def test_repeated_depths():
@@ -98,18 +97,19 @@ def test_repeated_depths():
 def test_the_bits_of_a_curve_do_not_depend_on_its_company(free):
     """Alone, among 70 others of other lengths and moduli, and in another order."""
     random = np.random.default_rng(5)
-    P, sigma = gel()
-    count = 71 if free == ("E1",) else 5
+    depths = DEPTHS[::2]
+    P, sigma = gel(depths=depths)
+    count = 71 if free == ("E1",) else 5  # one block of 64 and a part of another
     curves = P * np.exp(random.uniform(-2, 2, count))[:, None] + sigma * random.standard_normal((count, len(P)))
-    curves[1, 60:] = np.nan
+    curves[1, 30:] = np.nan
     curves[2] = np.nan
     intervals = "fisher" if free == ("E1",) else "profile"
-    together = fit(DEPTHS, curves, free, intervals)
-    turned = fit(DEPTHS, curves[::-1], free, intervals).isel(curve=slice(None, None, -1))
+    together = fit(depths, curves, free, intervals)
+    turned = fit(depths, curves[::-1], free, intervals).isel(curve=slice(None, None, -1))
     for name in together.data_vars:
         np.testing.assert_array_equal(turned[name].values, together[name].values, err_msg=name)
     for i in (0, 1, 3, count - 1):
-        alone = fit(DEPTHS, curves[[i]], free, intervals)
+        alone = fit(depths, curves[[i]], free, intervals)
         for name in together.data_vars:
             np.testing.assert_array_equal(alone[name].values[0], together[name].values[i], err_msg=f"{name} of {i}")
 

@@ -121,10 +121,10 @@ def test_hardness_follows_from_yield_strength_and_back():
 def test_error_bars():
     """λ bends where yielding begins, which two meshes may see alike by chance: with the quadrature of the nodes alone
     errors of Ar/An were nine times the estimate."""
-    cases = random_contacts(40, seed=7)
+    cases = random_contacts(20, seed=7)
     found, exact = solve(cases), solve(cases.but(rtol=1e-9))
     right = (found.status == 0) & (exact.status == 0)
-    assert right.sum() > 36
+    assert right.sum() > 18
     errors = [np.abs(getattr(found, name) / getattr(exact, name) - 1)[right] for name in RESULTS]
     assert (np.max(errors, axis=0) < found.error[right] + 1e-9).all()
 
@@ -183,7 +183,7 @@ def test_poisson_ratios_count_without_friction_too():
     for base in ("layered", "thin_layer", "auto", "half_space"):
         name = "nu2" if base == "half_space" else "nu1"
         a = study.solve(P=1e-6, **LAYER | {"bonding": "frictionless", "base": base, name: [0.1, 0.45]}, **SPOTS,
-                        hardness=0.02, micro="elastic_plastic", m=0.2, rtol=1e-9, accuracy=0.3).Ar_An  # fmt: skip
+                        hardness=0.02, micro="elastic_plastic", m=0.2, accuracy=0.3).Ar_An  # fmt: skip
         assert abs(a[1] / a[0] - 1) > 1e-4, base
 
 

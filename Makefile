@@ -80,7 +80,9 @@ explorer-test: $(READY) ## install node, chromium and playwright, and test the p
 check: $(READY) lint ## for the inner loop: lint, and the tests in tests/quick.txt, which take half a minute
 	$(PYTEST) @tests/quick.txt
 
-# The rooms that compute, without files that take long because they make the same sums for more cases, or start processes.
+# The rooms that compute: golden numbers, error bars and limits, which depend on rounding. Left out are long samples of the
+# same, what rounding does not reach (messages, errors of models), and, but for its golden numbers, the compiled core, which
+# calls no BLAS.
 kernels: $(READY) ## the tests in tests/computing.txt under the BLAS kernels of other processors
 	@for kernel in $(KERNELS); do echo "OPENBLAS_CORETYPE=$$kernel"; \
 	  OPENBLAS_CORETYPE=$$kernel $(PYTEST) @tests/computing.txt || exit 1; done

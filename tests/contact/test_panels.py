@@ -1,5 +1,7 @@
 """Panels: the mesh of several polynomials, and the cases that no single one resolves."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -21,6 +23,12 @@ CORNER = {
     "Nbar": np.array([1.5e4, 5e4]),
     "base": "thin_layer",
 }
+
+
+@cache
+def near_full_contact():
+    """The cases CORNER at 1e-9, which three tests look at."""
+    return solve(Problem.of(**CORNER, rtol=1e-9))
 
 
 def test_the_half_space_on_panels():
@@ -60,7 +68,7 @@ def test_the_corner_is_there():
 
 def test_cases_near_full_contact_are_solved_on_panels():
     """One polynomial does not reach 1e-9; panels do, and agree with themselves at 1e-11 and the polynomial."""
-    s, finer = (solve(Problem.of(**CORNER, rtol=rtol)) for rtol in (1e-9, 1e-11))
+    s, finer = near_full_contact(), solve(Problem.of(**CORNER, rtol=1e-11))
     assert np.all(s.status == Status.CONVERGED)
     assert np.all(s.nodes > 96)
     assert np.all(difference(s, finer) < 1e-9)
@@ -78,7 +86,7 @@ def test_panels_resolve_the_real_area_as_well():
 
 @pytest.mark.parametrize("control", ["P", "D"])
 def test_panels_serve_every_control(control):
-    by_radius = solve(Problem.of(**CORNER, rtol=1e-9))
+    by_radius = near_full_contact()
     case = {name: value for name, value in CORNER.items() if name != "a"}
     found = solve(Problem.of(**case, **{control: getattr(by_radius, control)}, rtol=1e-9))
     assert np.all(found.status == Status.CONVERGED)

@@ -17,7 +17,7 @@ from solver.scaling import as_cases
 @cache
 def rubber():
     """Bonded layers of ν near 1/2, without their control, and the solutions at given radii."""
-    rng, size = np.random.default_rng(3), 45
+    rng, size = np.random.default_rng(3), 50
     low, high = np.log([[3e-3, 0.1], [2e-3, 0.5], [1e-4, 0.5], [1e-5, 0.05], [1e3, 1e8], [1e-4, 0.1]]).T
     a, h, n, soft, Nbar, Ra = np.exp(rng.uniform(low, high, (size, 6)).T)
     given = {"h": h * a, "n": n, "nu1": 0.5 - soft, "nu2": rng.uniform(0, 0.5, size), "bonding": "bonded"}

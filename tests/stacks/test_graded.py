@@ -19,7 +19,7 @@ def test_graded_layers(profile, top, bottom, above):
     cover = [{"h": 0.01, "n": 2.0, "bonding": "bonded"}] * above
     case = {"a": np.array([0.03, 0.1]), **SMOOTH}
     contact = solve(Problem.of(layers=[*cover, graded], rtol=1e-4, **case))
-    fine = solve(Problem.of(layers=[*cover, graded], rtol=2e-6, **case))
+    fine = solve(Problem.of(layers=[*cover, graded], rtol=1e-5, **case))
     assert np.all(contact.status == Status.CONVERGED) and np.all(contact.error < 1e-4)
     for name in ("P", "D", "p0", "dP_dD"):
         off = np.abs(getattr(contact, name) / getattr(fine, name) - 1)
@@ -71,7 +71,7 @@ def test_a_table_is_a_profile(tmp_path):
     table, line = layer | {"profile": f"table:{path}"}, layer | {"profile": "linear", "n": [1.0, 3.0]}
     for rigid in (False, True):
         one, other = (
-            solve(Problem.of(a=0.05, layers=[own], rigid_base=rigid, rtol=1e-5, **SMOOTH)) for own in (table, line)
+            solve(Problem.of(a=0.05, layers=[own], rigid_base=rigid, rtol=1e-4, **SMOOTH)) for own in (table, line)
         )
         assert_allclose([one.P, one.D, one.p0], [other.P, other.D, other.p0], rtol=1e-5)
 

@@ -47,7 +47,7 @@ def beyond(size, seed):
     return case
 
 
-@pytest.mark.parametrize(("kinds", "size", "seed"), [(mixed, 100, 4), (beyond, 24, 0)])
+@pytest.mark.parametrize(("kinds", "size", "seed"), [(mixed, 100, 5), (beyond, 24, 0)])
 def test_mixed_batches_are_single_cases(monkeypatch, kinds, size, seed):
     """Each case of a batch has the numbers it has alone, and in any other order and company.
 

@@ -32,8 +32,8 @@ matrices; the rest is the law, the kernel of the layer, profiles and errors, and
 ## Before anything is computed
 
 Processor time of a new Python, its imports and one contact, by turns with `python -c "import xarray"` (`make start`).
-A contact in the terminal is printed without xarray; scipy.special is imported for tables of layers and for stresses,
-pint for units that roughcoat does not write itself.
+A contact in the terminal is printed without xarray; scipy.special is imported for tables of layers, for panels and for
+stresses, pint for units that roughcoat does not write itself.
 
 {start}
 

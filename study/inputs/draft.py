@@ -5,8 +5,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from solver.parameters import one_of
-
 from .checks import (
     dimensions_that_differ,
     equal_cases,
@@ -110,7 +108,7 @@ class Draft:
             if shapes.left_out(name, request.sections) or sticking.left_out(name, request.sections):
                 continue
             words = values.get(selector, ((), ""))[1]  # "": micro has been refused
-            if parameter.default is not None and (selector not in _WORDS or one_of(words, owners).any()):
+            if parameter.default is not None and (selector not in _WORDS or np.any([words == word for word in owners])):
                 values[name] = (), np.array(parameter.default)
         names = {*request.sections, *["n"] * request.physical}  # n follows from moduli
         names |= {name for name in PARAMETERS if beyond(name, count) or request.physical and name.endswith(".n")}

@@ -3,14 +3,13 @@
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import product
 
 import numpy as np
 
-from solver.parameters import one_of
-
 from ..terminal import shown
-from .vocabulary import VOCABULARY, Parameter, are_within, check, finite
+from .vocabulary import VOCABULARY, Parameter, among, are_within, check, finite
 
 LONGEST_AXIS = 1_000_000
 #: Cases in a block: ordinary ones, those that take some milliseconds each, those that may take ten seconds each.
@@ -115,7 +114,7 @@ def box(shape: tuple[int, ...], most: int) -> list[int]:
 def usual_block(grid: Grid) -> int:
     """Number of cases in a block, unless the study says it. The slowest kind of case in the grid decides."""
     n, rtol, nodes = (along(grid, name) for name in ("n", "rtol", "nodes"))
-    layered = one_of(along(grid, "base"), ("layered", "auto")).any()
+    layered = among(("base", ("layered", "auto")), partial(along, grid)).any()
     approximated = (along(grid, "scheme") == "picard").any()
     if layered and (approximated or (n > _STIFF).any() or (rtol < _FINE).any()):
         return SLOWEST

@@ -50,7 +50,7 @@ def test_the_body_alone_is_what_its_kernel_makes_of_the_pressure(micro, layer):
     nodes, weights = np.polynomial.legendre.leggauss(60)
     angle, w = (nodes + 1) * np.pi / 4, weights * np.pi / 4  # r = a sin(angle)
     x, wx = np.sin(angle), w * np.cos(angle)
-    found = study.solve(**micro, **layer, m=0.7, rtol=1e-9, x=np.r_[0, x, 1])
+    found = study.solve(**micro, **layer, m=0.7, rtol=1e-6, x=np.r_[0, x, 1])
     a, p, n = float(found.a), found.p.values[1:-1], layer["n"] + (layer["n"] == 0)
     k, wk = np.polynomial.legendre.leggauss(400)
     top = 30 / layer["h"]  # L - 1 falls as exp(-2 k h)
@@ -86,10 +86,10 @@ def test_with_units_it_is_the_same_in_m():
 def test_a_profile_of_too_few_points_gives_no_number():
     """LOAD_MISSED: with more of the load missed D_body is NaN, with less its error is below that times D."""
     for given in (SMOOTH | {"base": "half_space"}, ROUGH | {"h": 0.02, "n": 0.5}, SMOOTH | PLATE):
-        fine = study.solve(**given, m=3.0, x=1025)
+        fine = study.solve(**given, m=3.0, x=769)
         right = derived.depth_of_the_body(fine)
         for points in (5, 7, 9, 17, 33):
-            coarse = derived.depth_of_the_body(study.solve(**given, m=3.0, x=points))
+            coarse = derived.depth_of_the_body(fine.isel(x=slice(None, None, 768 // (points - 1))))
             assert np.isnan(coarse) or abs(coarse - right) < derived.LOAD_MISSED * fine.D, points
         assert np.isfinite(coarse)
     assert np.isnan(derived.depth_of_the_body(study.solve(**ROUGH, h=0.02, n=0.5, m=3.0, x=5)))

@@ -1,6 +1,7 @@
-"""The solver of the page, core.js, run by node, against the program on 20,000 contacts."""
+"""The solver of the page, core.js, run by node, against the program on 20,000 contacts, or a part of these."""
 
 import json
+import os
 import shutil
 import subprocess
 
@@ -13,6 +14,8 @@ from study.explorer.page import contents
 
 ROOM = ROOT / "study/explorer"
 NODE = shutil.which("node")
+#: Every so many-th contact is looked at; `make explorer-test` looks at all.
+EVERY = int(os.environ.get("EXPLORER_EVERY", "4"))
 RUN = """
 const Core = require(process.argv[1] + "/core.js"), [meshes, cases] = JSON.parse(require("fs").readFileSync(0));
 Core.load(meshes);
@@ -33,11 +36,11 @@ def cases(control: str) -> list[dict]:
     columns["bonded"], columns["rough"] = columns.pop("bonding") == "bonded", columns.pop("micro") == "disc_cell"
     columns["layered"] = columns.pop("base") == "layered"
     columns["n"] = np.where(columns["layered"], columns["n"], 1.0)
-    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    rows = zip(*(column[::EVERY].tolist() for column in columns.values()), strict=True)
     return [dict(zip(columns, row, strict=True), control=control) for row in rows]
 
 
-def test_twenty_thousand_contacts():
+def test_contacts_of_all_kinds():
     """All within 5e-4, 99 % of layers of a/20 and thicker within 1e-5; few are farther off than the page says."""
     given = [case for control in CONTROLS for case in cases(control)]
     command = [NODE, "-e", RUN, "--", str(ROOM), ",".join(RESULTS)]
@@ -45,7 +48,7 @@ def test_twenty_thousand_contacts():
     done = subprocess.run(command, input=text, capture_output=True, text=True, check=True, timeout=600)
     status, stated, *results = zip(*json.loads(done.stdout), strict=True)
     with np.load(ROOT / "tests/references/explorer.npz") as reference:
-        wanted = np.concatenate([reference[control] for control in CONTROLS], axis=1).astype(float)
+        wanted = np.concatenate([reference[control][:, ::EVERY] for control in CONTROLS], axis=1).astype(float)
     h, layered = (np.array([case[name] for case in given]) for name in ("h", "layered"))
     known, solved = np.isfinite(wanted).all(axis=0), np.array(status) == "converged"
     assert (known & ~solved & ((h > wanted[0] / 255) | ~layered)).sum() <= 3, "what the program solves the page solves"
@@ -55,7 +58,7 @@ def test_twenty_thousand_contacts():
     beyond = np.mean(error > np.maximum(1e-6, 2 * np.array(stated, float)[both]))  # as contact.js states it
     print(f"{error.size} contacts: {error.max():.1e} at most, {np.quantile(error, 0.99):.1e} for 99 %", end="; ")
     print(f"h > a/20: {np.quantile(thick, 0.99):.1e} for 99 %; {beyond:.1%} beyond the stated error")
-    assert error.size >= 20_000
+    assert error.size * EVERY >= 20_000
     assert error.max() < 5e-4
     assert np.quantile(thick, 0.99) < 1e-5
     assert beyond < 0.01

@@ -41,7 +41,7 @@ def test_the_mask_needs_a_strength(micro):
     for strengths in ({"yield_strength": "1 GPa"}, {"hardness": "2.84 GPa"}):
         contact = study.solve(**case, **strengths, P=["1e-12 N", "1 N"])
         assert (contact.validity.values & 1024 > 0).tolist() == [False, True]
-        assert "asperities would yield" in study.summary(contact.isel(P=1))
+    assert "asperities would yield" in study.summary(contact.isel(P=1))
     bare = study.solve(**case, P=["1e-12 N", "1 N"])
     assert not (bare.validity & 1024).any() and (bare.p_max == contact.p_max).all()
 

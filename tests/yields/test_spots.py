@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from yielding import first_yield
 
 import study
 from solver import Problem, solve
@@ -70,7 +71,7 @@ def test_first_yield_of_asperities():
 def test_asperities_are_as_strong_as_the_softer_material():
     scene = {"R": "5 mm", "punch": "steel 52100", "layer": "DLC a-C:H", "h": "200 um", "body": "steel 52100"}
     scene |= {"bonding": "bonded", "Nbar": "0.1 1/um^2", "Ra": "20 um"}
-    named = study.first_yield(**scene)
+    named = first_yield("asperities", **scene)
     steel = study.materials.get("steel 52100").hardness
-    given = study.first_yield(hardness=f"{steel} Pa", **scene)
+    given = first_yield("asperities", hardness=f"{steel} Pa", **scene)
     assert named.P_Ya.item() == pytest.approx(given.P_Ya.item(), rel=1e-9)

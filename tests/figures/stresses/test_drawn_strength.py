@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from conftest import opened
 from drawn import frame, legend, lines, mesh
+from yielding import first_yield, largest
 
 import study
 from study.studies.systems.strength import FRICTION, MODES, THICKNESS, first, nominal_at_asperity_yield, strength
@@ -28,11 +29,11 @@ def test_pressures_of_first_yield(drawing, results):
     assert frame(figure.axes[2])[:4] == ("$h/a$", "log", "$p(0)/Y_2$ at first yield", "log")
     assert list(legend(figure.legends[0])) == [f"{n:g}" for n in contacts.n.values]
     case = contacts.sel(bonding="frictionless").isel(n=-1)
-    largest = study.extremes(case)
+    top = largest(case, "mises1", "mises2")
     for axes, name in ((figure.axes[1], "mises1"), (figure.axes[3], "mises2")):
         line = lines(axes)[contacts.n.size - 1]
         np.testing.assert_allclose(line.x, case.h / case.a, rtol=1e-14)
-        np.testing.assert_allclose(line.y, case.p0 / largest[name], rtol=1e-9)
+        np.testing.assert_allclose(line.y, case.p0 / top[name], rtol=1e-9)
     thick = (columns["h/a"] == columns["h/a"].max()) & (columns["bonded"] == 1)
     np.testing.assert_allclose(columns["p0/Y1"][thick], 1.613, rtol=0.15)  # nearly a half-space of the layer
     assert (columns["p0/Y2"][thick] > 15).all(), "a thick layer protects the body"
@@ -51,8 +52,7 @@ def test_loads_at_which_stresses_reach_the_strengths(drawing, coated):
     figure, columns, _ = drawing("what_fails_first")
     h = coated.h.values
     for number, mode in enumerate(MODES):
-        largest = study.extremes(coated.isel(h=0), 0.4)[mode.stress].item()
-        factor = strength(mode, coated) / largest
+        factor = strength(mode, coated) / largest(coated.isel(h=0), mode.stress, mu=0.4)[mode.stress].item()
         load = coated.P.values[0] * factor**3 / 0.005**2
         chosen = (columns["mode"] == number) & (columns["mu"] == 0.4)
         at = h[0] * factor / 0.005
@@ -69,9 +69,9 @@ def test_loads_at_which_stresses_reach_the_strengths(drawing, coated):
 def test_loads_are_those_of_first_yield(coated):
     """What grows like a/R, and the search over the load, give the same."""
     case = coated.isel(h=0)
-    factor = strength(MODES[0], coated) / study.extremes(case).mises2.item()
+    factor = strength(MODES[0], coated) / largest(case, "mises2").mises2.item()
     inputs = {name: case[name].item() for name in ("punch", "layer", "body", "bonding", "micro", "base")}
-    found = study.first_yield(**inputs, R="5 mm", h=f"{case.h.item() * factor * 1e6!r} um")
+    found = first_yield("body", **inputs, R="5 mm", h=f"{case.h.item() * factor * 1e6!r} um")
     np.testing.assert_allclose(found.P_Y2, case.P * factor**3, rtol=1e-5)
 
 

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from test_largest_pressure import SIZES, quiet
+from yielding import first_yield, largest
 
 import study
 
@@ -25,7 +26,7 @@ def sizes(text: str) -> list[float]:
 
 def test_what_is_nearest_to_its_limit_and_at_which_load_it_is_there():
     found = quiet(**DLC, P="10 N", Nbar="0.1 1/um^2", Ra="20 um")
-    text, yields = strength(found), study.first_yield(**DLC, Nbar="0.1 1/um^2", Ra="20 um")
+    text, yields = strength(found), first_yield("asperities", **DLC, Nbar="0.1 1/um^2", Ra="20 um")
     assert text.startswith("Nearest to its limit is what meets at the asperities: the largest von Mises stress, ")
     load = re.search(r"What meets at the asperities would yield at about P = ([\d.]+ m?N)\.", text)[1]
     assert sizes(load) == pytest.approx([yields.P_Ya.item()], rel=0.06), "two digits"
@@ -34,7 +35,7 @@ def test_what_is_nearest_to_its_limit_and_at_which_load_it_is_there():
 
 def test_the_stress_its_place_and_the_share_are_those_of_the_extremes():
     found = quiet(**DLC, P="100 N", micro="smooth", Y2="800 MPa")
-    text, extremes = strength(found), study.extremes(found)
+    text, extremes = strength(found), largest(found, "mises2")
     assert text.startswith("Nearest to its limit is the body: ") and " on the axis " in text
     stress, depth, limit = sizes(text.split(". Less")[0])
     assert stress == pytest.approx(extremes.mises2.item(), rel=0.06) and limit == 8e8
@@ -42,7 +43,7 @@ def test_the_stress_its_place_and_the_share_are_those_of_the_extremes():
     share = float(re.search(r"is ([\d.]+) times the yield strength", text)[1])
     assert share == pytest.approx(extremes.mises2.item() / 8e8, rel=0.06) and share > 1
     load = sizes(re.search(r"At about P = ([\d.]+ m?N) the body begins to yield\.", text)[1])
-    assert load == pytest.approx([study.first_yield(**DLC, micro="smooth", Y2="800 MPa").P_Y2.item()], rel=0.06)
+    assert load == pytest.approx([first_yield("body", **DLC, micro="smooth", Y2="800 MPa").P_Y2.item()], rel=0.06)
 
 
 def test_a_coating_that_cracks():
@@ -50,7 +51,7 @@ def test_a_coating_that_cracks():
     plate = {"R": "3 mm", "punch": "rigid", "layer": "ta-C", "h": "20 um", "bonding": "bonded", "body": "PEEK"}
     found = quiet(**plate, P="20 N", micro="smooth")
     text, limit = strength(found), study.materials.get("ta-C").fracture_strength
-    tension = study.extremes(found).s1_layer.item()
+    tension = largest(found, "s1_layer").s1_layer.item()
     part = f"{tension / limit:.2g} {'times' if tension > limit else 'of'}"
     assert f"the layer {part} its fracture strength" in text or "largest tension" in text
 
@@ -59,7 +60,7 @@ def test_strengths_that_are_not_known_are_asked_for():
     """And how large they must be is said: here at the bottom of the layer it is far from p(0)/1.6."""
     ball = {"R": "3 mm", "E2": "4 GPa", "nu2": 0.4, "E1": "500 GPa", "nu1": 0.2, "h": "20 um", "bonding": "bonded"}
     found = quiet(**ball, P="20 N", micro="smooth")
-    text, extremes = strength(found), study.extremes(found)
+    text, extremes = strength(found), largest(found, "mises1", "mises2")
     layer, body = sizes(text)
     assert text.startswith("Not known of the layer, which needs above ") and "(Y1)" in text and "(Y2)" in text
     assert layer == pytest.approx(extremes.mises1.item(), rel=0.06) and layer > 5 * found.p0.item() / 1.6
@@ -91,7 +92,7 @@ def test_films_say_who_computes_their_stresses():
 
 def test_a_body_that_yields_is_named_in_the_warning():
     given = {"h": 0.02, "n": 5.0, "bonding": "bonded", "micro": "smooth", "P": 1e-5}
-    stress = study.extremes(study.solve(**given))
+    stress = largest(study.solve(**given), "mises1", "mises2")
     for name, who in (("1", "layer"), ("2", "body")):
         limit = stress[f"mises{name}"].item()
         weak, strong = (study.solve(**given, **{f"Y{name}": share * limit}) for share in (0.999999, 1.000001))

@@ -191,7 +191,9 @@ PROTECTED = {0.0077: False, 0.0095: True, 0.0105: True}
 @pytest.fixture(scope="module")
 def protected():
     """Thicknesses that protect bodies of these strengths, all in one call, and below some of which they yield."""
-    return study.h_protect(P=1e-5, Y2=[*PROTECTED], **HARD)
+    protected = study.h_protect(P=1e-5, Y2=[*PROTECTED], **HARD)
+    assert protected.h_yields.attrs["message"] == "h_yields of 1 of 3 cases: there is no such thickness"
+    return protected
 
 
 @pytest.mark.parametrize(("Y2", "yields"), PROTECTED.items(), ids=["bare yields", "early", "late"])

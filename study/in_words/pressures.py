@@ -16,13 +16,12 @@ RING = 1.01
 
 
 class Largest(NamedTuple):
-    """The largest pressures of a case.
+    """Where a case has its largest pressures.
 
-    nominal, real : of the ring, if there is one, else p(0) and p_max; real is NaN where it is not known
+    real : the largest real one, in the ring if there is one, else p_max; NaN where it is not known
     place : index of the ring in the profile; None: the centre
     """
 
-    nominal: float
     real: float
     place: int | None
 
@@ -31,16 +30,16 @@ def largest(case: xr.Dataset | OneCase) -> Largest:
     """The largest pressures of one case, over the points of its profile."""
     p0, p_max = float(case["p0"]), float(case["p_max"])
     if not np.isfinite(p0):  # of a sharp tip
-        return Largest(p0, p_max, None)
+        return Largest(p_max, None)
     p = case["p"].values if "p" in case else np.array([p0])
     place = int(np.argmax(p)) if np.isfinite(p).all() else 0
     if not p[place] > RING * p0:
-        return Largest(p0, p_max, None)
+        return Largest(p_max, None)
     try:
         real = float(derived.peak_pressure(as_dataset(case)))
     except ValueError:  # the moduli are not known, as of a mean
         real = np.nan
-    return Largest(float(p[place]), real, place)
+    return Largest(real, place)
 
 
 def largest_of_all(contact: xr.Dataset | OneCase) -> dict[str, xr.Variable]:

@@ -14,8 +14,8 @@ _SHRINK, _LEVELS, _ON_AXIS, _TO_POINT = 0.4, 4, 6, 10
 #: Most kinks that get panels of their own. A profile with more of them is a table, whose kinks are small: panels are
 #: halved where its pressure asks for it, as everywhere.
 MOST = 12
-#: A kink so near to the edge, in s, gets no panel of its own: rounding of its place would count.
-_AT_EDGE = 1e-6
+#: A kink so near to the edge or to the axis, in s, gets no panel of its own: rounding of its place would count.
+_AT_EDGE, _AT_AXIS = 1e-6, 1e-12
 #: Panels follow until the last step moves ln(a - b) by less than this part of rtol. What a kink in the wrong place adds
 #: to the pressure is far below its distance from the right one.
 _SETTLED, _ROUNDING = 0.01, 1e-13
@@ -27,7 +27,7 @@ def ends_of(shape, a):
     inside = () if shape is None else np.unique(shape.kinks()[0])
     inside = np.array([b for b in inside if 0 < b < a])
     s = np.sqrt((1 - inside / a) * (1 + inside / a))
-    s = np.sort(s[(s > _AT_EDGE) & (s < 1)])
+    s = np.sort(s[(s > _AT_EDGE) & (s < 1 - _AT_AXIS)])
     return (0.0, *s.tolist(), 1.0) if len(s) <= MOST else (0.0, 1.0)
 
 

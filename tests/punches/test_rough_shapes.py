@@ -195,9 +195,8 @@ def test_other_laws_and_a_stack(name, micro):
 
 
 def test_a_tip_that_no_panel_can_have_is_as_a_point():
-    """The kink behind it is nearer to the axis than rounding in s = sqrt(1 - (b/a)²). The pressure on it is not known."""
-    case, a, *_ = GIVEN["cone"]
-    blunt = solved(case | {"shape": "blunt_cone", "tip_radius": 1e-8, "tip": "paraboloid"} | BARE, a=a, rtol=1e-6)
-    sharp = solved(case | BARE, a=a, rtol=1e-6)
-    assert blunt.status == Status.TOLERANCE_NOT_MET and sharp.status == Status.CONVERGED
-    assert_allclose([blunt.P, blunt.D], [sharp.P, sharp.D], rtol=1e-6, atol=0)
+    """The kink behind it is nearer to the axis than rounding in s = sqrt(1 - (b/a)²): p(0) is not known."""
+    case, a, P, D = GIVEN["cone"]
+    blunt = solved(case | {"shape": "blunt_cone", "tip_radius": 5e-9, "tip": "paraboloid"}, a=a, rtol=1e-4)
+    assert blunt.status == Status.TOLERANCE_NOT_MET
+    assert_allclose([blunt.P[0], blunt.D[0]], [P, D], rtol=1e-4, atol=0)

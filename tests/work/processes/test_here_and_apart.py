@@ -157,7 +157,7 @@ def test_processes_compute_all_of_many_blocks_that_are_stored(threads, monkeypat
     monkeypatch.setattr(engine, "MANY", 3)
     monkeypatch.setattr(engine, "available_workers", lambda: 4)
     wanted = definition(**SMOOTH)
-    for size, workers, asked in ((10, None, [3]), (10, 2, [2]), (10, 1, []), (30, 1, [])):
+    for size, workers, asked in ((10, None, [3]), (10, 2, [2]), (15, None, [1]), (10, 1, []), (30, 1, [])):
         threads.asked.clear()
         blocks = np.array_split(np.arange(30), 30 // size)
         found = dict(engine.computed(wanted, blocks, workers, storing=True))

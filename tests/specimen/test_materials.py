@@ -78,8 +78,7 @@ def test_strengths_of_a_file(mine):
     assert (own.hardness, own.hardness_spread, own.yield_strength) == (8e9, 0.0, None)
     for line, message in (
         ("hardness = 8", "hardness = 8: must be a number of Pa from 1000 to 2e"),
-        ("hardness = 8e9", "hardness and hardness_spread go together"),
-        ("hardness_spread = 1e9", "hardness and hardness_spread go together"),
+        *((line, "hardness and hardness_spread go together") for line in ("hardness = 8e9", "hardness_spread = 1e9")),
         ("hardness = 8e9\nhardness_spread = 8e9", "hardness_spread = 8e+09: must be 0 or less than the strength"),
         ("hardness = 8e9\nhardness_spread = -1", "hardness_spread = -1: must be 0 or less than the strength"),
         ("strength_source = 1", "strength_source = 1: must be a text"),

@@ -109,8 +109,7 @@ def is_ratio(name):
 
 
 def one_of(values, words):
-    """(...) bool: the values that are one of a few words or numbers. `numpy.isin` sorts, and takes as long for one case
-    as ten comparisons."""
+    """(...) bool: the values that are one of a few words or numbers. `numpy.isin` sorts, which takes longer."""
     values = np.asarray(values)
     met = np.zeros(values.shape, dtype=bool)
     for word in words:
@@ -125,8 +124,7 @@ def among(condition, values):
         return np.True_
     met = np.False_
     for name, words in zip(condition[::2], condition[1::2], strict=True):
-        for word in words:
-            met = met | (values(name) == word)
+        met = met | one_of(values(name), words)
     return met
 
 

@@ -107,7 +107,7 @@ def half_space_rows(nodes, s_out, breaks=WHOLE):
     complementary parameter 1 - (x_</x_>)² is formed from the distance to the singularity: no digits are lost near it.
     Polynomial pressures are right to 1e-14 (tests/numerics/test_operator.py).
 
-    Contacts on several panels ask for some million values of K, each set of panels for about a hundred thousand.
+    Contacts on several panels ask for so many values of K that importing scipy's pays.
     """
     panels = len(breaks) - 1
     order = len(nodes) // panels

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 def __getattr__(name: str) -> Any:
     if name.startswith("__"):  # Python asks for __path__ when something is imported from here
         raise AttributeError(name)
-    globals()[name] = found = getattr(import_module("xarray"), name)  # the next time Python finds it without this
-    return found
+    globals()[name] = member = getattr(import_module("xarray"), name)  # the next time Python finds it without this
+    return member
 
 
 def is_array(value: Any) -> bool:

@@ -199,7 +199,7 @@ def check(parameter: Parameter, value) -> str:
         return f"must be a finite number, {allowed(parameter).removeprefix('must be ')}" + ', or "rigid"' * endless
     if parameter.whole and value != int(value):
         return "must be a whole number"
-    return "" if are_within(parameter, float(value)).all() else allowed(parameter)  # a Decimal may trap a comparison
+    return "" if are_within(parameter, float(value)).all() else allowed(parameter)  # float: a Decimal may trap it
 
 
 def finite(value) -> bool:

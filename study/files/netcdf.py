@@ -185,6 +185,8 @@ def _cannot_be_opened(path: Path, error: OSError) -> Exception:
         with open(path, "rb") as file:
             head, size = file.read(64), os.fstat(file.fileno()).st_size
             free = locked(file.fileno(), shared=True, wait=False)  # HDF5 locks a file that it writes
+    except FileNotFoundError as removed:  # just now: it was there a moment ago
+        return removed
     except OSError as reason:
         return Unusable(path, "unreadable", f"cannot be read: {reason.strerror}")
     if not free:

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -98,6 +99,22 @@ def test_a_file_that_another_program_has_locked(opened):
             with pytest.raises(study.StudyError, match="is open for writing in another program, which has locked it"):
                 wanted()
     assert opened.run().computed == 0
+
+
+@pytest.mark.parametrize("opening", [1, 2], ids=["as they are looked at", "as their statuses are read"])
+def test_results_removed_just_as_they_are_opened(opened, monkeypatch, opening):
+    """netCDF finds nothing where there was a file a moment before: what is left is the blocks."""
+    openings, really = [], netCDF4.Dataset
+
+    def removed(path, mode):
+        openings.append(mode)
+        if len(openings) == opening:
+            path.unlink()
+        return really(path, mode)
+
+    monkeypatch.setattr(netCDF4, "Dataset", removed)
+    state = opened.status()
+    assert (state["state"], state["counts"], len(openings)) == ("partial", {0: 23}, opening)
 
 
 def test_a_pipe_among_the_blocks_is_passed_by(file):

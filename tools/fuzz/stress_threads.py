@@ -68,7 +68,10 @@ def asking(folder: Path, number: int) -> None:
 
 
 def written(folder: Path, name: str, loads: list) -> study.Study:
-    (folder / f"{name}.toml").write_text(TEXT.format(loads), encoding="utf-8")
+    """The study of this file, written beside it and moved: `asking` may read it at any time and finds it whole."""
+    beside = folder / f"{name}.toml.new"
+    beside.write_text(TEXT.format(loads), encoding="utf-8")
+    beside.replace(folder / f"{name}.toml")
     return opened_of(folder, name)
 
 

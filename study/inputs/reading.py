@@ -22,7 +22,7 @@ from .laws import results_of
 from .punch import sticking
 from .punch.stresses import none_in
 from .request import MOST_MESSAGES, Request
-from .scene.layers import axes_in
+from .scene.layers import axes_in, in_layers
 from .vocabulary import NUMERICS, absent, suggest
 
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
@@ -114,7 +114,7 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
         limit = f"at most {most:.0e} (fewer points, or profiles = false)"
         errors.append(f"{grid.size} cases make {numbers:.1e} numbers: {limit}")
     if errors:
-        raise refusal(where, errors)
+        raise refusal(where, in_layers(errors, request.sections))
     return replace(definition, digest=digest_of(definition), laws=tuple(law_versions(grid)))
 
 

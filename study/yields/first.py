@@ -12,7 +12,6 @@ from solver.yields.way import ROUND, STEEPEST
 
 from ..again import Again, of_all_cases, refuse_without_stresses, strengths
 from ..fields import carried, friction, residual_stress, units_of
-from ..in_words import FarOutside
 from ..inputs.definition import StudyError
 from ..inputs.request import Request
 from ..inputs.vocabulary import CONTROLS
@@ -115,11 +114,10 @@ def refuse(who: str, parameters: dict, names: tuple, reason: str) -> None:
 
 
 def contacts(who: str, parameters: dict, name: str, value: float) -> tuple[xr.Dataset, Again]:
-    """Contacts with these inputs, of which one is any value: how they are solved does not count."""
+    """Contacts with these inputs, of which one is any value: no warning of these contacts is shown."""
     physical = Request.in_python(parameters, [], False, {}).physical
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        warnings.simplefilter("default", FarOutside)
         try:
             any_ = ("1 nN" if name == "P" else "1 um") if physical else value
             contact = solve(**parameters, **{name: any_}, x=2, profiles=False)

@@ -36,11 +36,14 @@ def missing(request: Request, values: dict) -> list[str]:
         messages.append(f"R and {pair[0]} are both given: R = 1/(1/R1 + 1/R2) follows from R1 and R2")
     if not {"E2", "body"} & names:
         messages.append('E2 is missing: Young\'s modulus of the body (under the layer, if there is one), or "rigid"')
-    if layered(values) and not {"E1", "n", "layer"} & names:
+    several = "sublayers" in names
+    lacking = layered(values) and not {"E1", "n", "layer"} & names
+    if lacking and not several:
         messages.append('E1 is missing: Young\'s modulus of the layer (without a layer: base = "half_space")')
-    numbers = [name.removesuffix(".h") for name in names if name.startswith("layers.") and name.endswith(".h")]
-    lacking = [name for name in sorted(numbers) if not {f"{name}.{field}" for field in ("E1", "n", "material")} & names]
-    messages += [f"{name}.E1 is missing: Young's modulus of this layer, or its material" for name in lacking]
+    others = [name.removesuffix(".h") for name in names if name.startswith("layers.") and name.endswith(".h")]
+    without = [name for name in sorted(others) if not {f"{name}.{field}" for field in ("E1", "n", "material")} & names]
+    without = ["layers.1"] * (lacking and several) + without
+    messages += [f"{name}.E1 is missing: Young's modulus of this layer, or its material" for name in without]
     for modulus, _, ratio in BODIES.values():
         if modulus in names and ratio in names:
             messages.append(f"{modulus} and {ratio} are both given: one follows from the other")

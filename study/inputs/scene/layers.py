@@ -4,6 +4,7 @@ The first layer, at the surface, has the names of a case with one layer, h, n or
 have names like layers.2.h (:mod:`solver.layers`).
 """
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -103,6 +104,7 @@ def flattened(table: dict, errors: list[str], rows: Any = (), elsewhere: Any = (
     table = _dotted(table)
     if not any(map(_is_of_layers, (*table, *elsewhere))):
         return table
+    errors += _twice(table)
     named = {name: value for name, value in table.items() if name.startswith("layers.")}
     others = {name: value for name, value in table.items() if name not in ("layers", RIGID, *named)}
     stack = {}
@@ -138,6 +140,8 @@ def in_tables(tables: dict, errors: list[str]) -> tuple[dict, dict]:
         return tables, {}
     beside = [name for name in _ONE_LAYER if name in names and "layers" in tables]
     errors += [f"{name} is given beside layers: each of the layers has its own" for name in beside[:1]]
+    for part in (*parts.values(), *(row for row in rows if isinstance(row, dict))):
+        errors += _twice(part)
     parts = {section: {_short(name): value for name, value in part.items()} for section, part in parts.items()}
     rows = [{_short(name): value for name, value in row.items()} if isinstance(row, dict) else row for row in rows]
     axes, sections = parts.get("axes", {}), [parts.get("axes", {}), parts.get("sample", {}), *rows]
@@ -150,6 +154,17 @@ def in_tables(tables: dict, errors: list[str]) -> tuple[dict, dict]:
     model = {name: value for name, value in flat.items() if name in parts["model"] or name == "base"}
     stack = {name: value for name, value in flat.items() if name not in model}
     return tables | parts | {"model": model, "layers": None} | ({"cases": rows} if rows else {}), stack
+
+
+def in_layers(messages: list[str], names: Any) -> list[str]:
+    """Messages that name h of a stack as layers.1.h, as the other layers are named. `names` : of the inputs given."""
+    if "sublayers" not in names:
+        return messages
+    fields = {name: field for field, name in _FIRST.items()}
+    before = "^| and |: |follows from |given as |in place of "
+    after = r"\[|: | = | is missing| is given twice| and | are both | follows |,|$"
+    names = re.compile(f"({before})({'|'.join(fields)})(?={after})")
+    return [names.sub(lambda found: f"{found[1]}layers.1.{fields[found[2]]}", message) for message in messages]
 
 
 def axes_in(tables: dict) -> list[str]:
@@ -178,6 +193,12 @@ def _short(name: str) -> str:
     """ "layers.1.h" as "h"."""
     number, _, field = name.removeprefix("layers.").partition(".")
     return name_of(int(number), field) if number.isdigit() and int(number) == 1 else name
+
+
+def _twice(table: dict) -> list[str]:
+    """Messages for numbers of the first layer that stand in a table under both of their names."""
+    both = [(_short(name), name) for name in table if isinstance(name, str) and _short(name) != name]
+    return [f"{name} is {short}, which is given too: leave out one" for short, name in both if short in table]
 
 
 def _of_list(stack: Any, errors: list[str]) -> dict:

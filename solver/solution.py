@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
-from enum import IntEnum
 from typing import Any
 
 import numpy as np
 
+from .numerics.codes import Codes
 from .parameters import one_of
 from .status import Status
 
@@ -32,7 +32,7 @@ _DEFAULTS = {"stable": True} | dict.fromkeys(PULLS, 0.0)
 _SHARES, _ROUNDING = ("Ar_An", "lam"), 1e-10
 
 
-class Model(IntEnum):
+class Model(Codes):
     """What a case was solved with. A smooth model, one above the rough one, solves a smooth punch; with "auto" it then
     adds the asperities."""
 

@@ -1,9 +1,9 @@
 """How the solution of a case ended."""
 
-from enum import IntEnum
+from .numerics.codes import Codes
 
 
-class Status(IntEnum):
+class Status(Codes):
     """Status of one case; `meaning` says it in a sentence. A case that fails is a flagged value, never an exception."""
 
     CONVERGED = 0, "the iteration closed and the estimated error is within rtol"

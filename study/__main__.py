@@ -20,7 +20,7 @@ from pathlib import Path
 from .commands import ending
 from .commands.arguments import Parser, Version, add_curves, add_engine, folder, part, proposed
 from .commands.ending import INTERRUPTED
-from .terminal import empty_buffers, open_closed_streams, program, say
+from .terminal import empty_buffers, interrupt, open_closed_streams, program, say
 
 # The solver computes on one BLAS thread. A BLAS library that reads this before numpy is imported does not start others;
 # without it each worker process would have a thread for each processor.
@@ -127,7 +127,7 @@ def main(arguments=None) -> int:
         raise
     except (KeyboardInterrupt, Exception) as error:
         # a library may have turned the interrupt into another error
-        if not (ending.state.interrupted or isinstance(error, KeyboardInterrupt)):
+        if not (interrupt.came or isinstance(error, KeyboardInterrupt)):
             raise
         say(f"\ninterrupted{kept}", sys.stderr)
         code = INTERRUPTED
@@ -180,7 +180,7 @@ def _attempt(act, options, item, kept: str) -> int:
         text, code = f"{item if isinstance(item, str) else options.command}: {error}{kept}", 1
     except SystemExit as ended:  # of what is not ours, such as the function of a figure: it is no end of the command
         text, code = f"{item}: something that it needs calls sys.exit({ended})", 1
-    if ending.state.interrupted:  # a library has turned the interrupt into this error
+    if interrupt.came:  # a library has turned the interrupt into this error
         raise KeyboardInterrupt
     say(text, sys.stderr)
     return code

@@ -4,10 +4,13 @@ import errno
 import os
 import re
 import sys
+from types import SimpleNamespace
 from typing import Any, TextIO
 
 #: Control characters of a terminal, without ends of lines and tabs, and those that change the direction of writing.
 CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+#: Whether a signal has asked this command to end.
+interrupt = SimpleNamespace(came=False)
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # a reader waits for the text in vain
 
 
@@ -96,3 +99,10 @@ def empty_buffers() -> None:
             stream.flush()
         except ValueError:  # the stream has been closed
             continue
+
+
+def end_if_interrupted() -> None:
+    """Raise KeyboardInterrupt if a signal has come and a library has lost the first one: numpy, for one, forgets what
+    is raised while it looks for attributes."""
+    if interrupt.came:
+        raise KeyboardInterrupt

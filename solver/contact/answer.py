@@ -1,11 +1,11 @@
 """What an iteration on a mesh has found: the solution with its error and profiles, and what becomes of each case."""
 
-from enum import IntEnum
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics.codes import Codes
 from ..numerics.mesh import gauss_rule
 from ..solution import Solution
 from ..status import Status
@@ -27,7 +27,7 @@ _FALLS, _LATE, _FAR = 0.5, 48, 100.0
 _NOISE = 30.0
 
 
-class Verdict(IntEnum):
+class Verdict(Codes):
     """What becomes of a case on a mesh: of these conditions the first that holds. :func:`_verdicts` has them in code.
 
     ========  ==========================================================  ==============================================

@@ -7,10 +7,11 @@ divided by 1 - 2 nu. Where X = kh is below about 1 the state is carried from the
 Above, it is the sum of a wave that decays from the surface and one that decays from the interface: nothing overflows.
 """
 
-from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
+
+from ..numerics.codes import Codes
 
 #: Where X = kh is below it, the layer is thin. Against 113 bits 0.5 and 1.5 do as well (docs/stresses.md), so that
 #: cases whose h differ by a factor of 2 may have one limit in k.
@@ -19,7 +20,7 @@ THIN = 1.0
 _SERIES, _TERMS = 0.8, 10
 
 
-class Kind(IntEnum):
+class Kind(Codes):
     """Where a state is, and whether that of a half-space of the layer's material is left out of it: the difference is
     formed without cancellation, and decays like a wave that was at the interface."""
 

@@ -10,14 +10,14 @@ import signal
 import sys
 from types import SimpleNamespace
 
-from ..terminal import empty_buffers
+from ..terminal import empty_buffers, interrupt
 
 INTERRUPTED = 130  # exit code
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-state = SimpleNamespace(working=False, interrupted=False, code=None)
-"""working : the command has begun; interrupted : a signal has come; code : the exit code, once it is known."""
+state = SimpleNamespace(working=False, code=None)
+"""working : the command has begun; code : the exit code, once it is known."""
 
 
 def listen() -> None:
@@ -33,7 +33,7 @@ def _first_signal(*_) -> None:
     for number in SIGNALS:
         if signal.getsignal(number) is _first_signal:
             signal.signal(number, _end_at_once)
-    state.interrupted = True
+    interrupt.came = True
     if state.code is None and state.working:
         raise KeyboardInterrupt
     _end_at_once()

@@ -16,7 +16,7 @@ from ..files.lock import held
 from ..inputs.definition import Definition, StudyError
 from ..store.blocks import Inventory, Store, add, count_statuses, gather, inventory, remove_litter
 from ..store.writer import exporting
-from ..terminal import say
+from ..terminal import end_if_interrupted, say
 from .cases import Failure, blocks_of
 from .cost import Estimate, estimate
 from .engine import computed
@@ -130,6 +130,7 @@ def compute_blocks(
                     failures[number] = f"case {case}: {status_words()[value]}"
             if order.fail_fast and failures:
                 break
+            end_if_interrupted()
     return failures
 
 

@@ -23,7 +23,7 @@ OURS = {"roughcoat", "solver", "study", "studies"}
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
     "solver": (
-        *("threads", "status", "closed_forms", "numerics", "parameters", "layers", "shapes", "punches", "laws"),
+        *("threads", "closed_forms", "numerics", "status", "parameters", "layers", "shapes", "punches", "laws"),
         *("kernels", "body", "edges", "problem", "solution", "contact", "compiled", "scaling", "estimate"),
         *("flat", "schemes", "smooth_contact", "models", "solve", "sensitivity", "fields", "yields"),
     ),

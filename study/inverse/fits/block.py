@@ -1,10 +1,11 @@
 """Fits of the curves of one block: starts, least squares, intervals, status."""
 
-from enum import IntEnum
 from typing import Any
 
 import numpy as np
 from scipy import special
+
+from solver.numerics.codes import Codes
 
 from .asked import Asked
 from .curve import Curve
@@ -22,7 +23,7 @@ _SURE = 0.999  # level of the F test that there is a contact
 _SAME = 1e-3  # minima whose unknowns differ by less than this part of a spread are one
 
 
-class FitStatus(IntEnum):
+class FitStatus(Codes):
     """What became of the fit of a curve; the first that holds in the order of `_ORDER`."""
 
     CONVERGED = 0

@@ -7,6 +7,7 @@ import logging
 import os
 import subprocess
 import sys
+from contextlib import suppress
 from functools import partial
 from signal import SIGINT, SIGTERM, raise_signal
 
@@ -95,6 +96,16 @@ def taken_for(error: Exception) -> None:
     _before_a_block_is_stored(signalled)
 
 
+def lost() -> None:
+    """As in numpy, which forgets what is raised while it looks for attributes. The next block is not computed."""
+
+    def signalled():
+        with suppress(KeyboardInterrupt):
+            raise_signal(SIGINT)
+
+    _before_a_block_is_stored(signalled)
+
+
 def _before_a_block_is_stored(function) -> None:
     real = run.add
 
@@ -110,10 +121,11 @@ def _before_a_block_is_stored(function) -> None:
     [
         (while_it_starts, ""),
         (in_a_destructor, ""),
+        (lost, INTERRUPTED),
         (partial(taken_for, OSError("HDF error")), INTERRUPTED),
         (partial(taken_for, RuntimeError("HDF error")), INTERRUPTED),
     ],
-    ids=["while it starts", "in a destructor", "taken for an error of a file", "taken for any error"],
+    ids=["while it starts", "in a destructor", "lost", "taken for an error of a file", "taken for any error"],
 )
 def test_an_interrupt_at_an_odd_moment(opened, tmp_path, moment, said):
     process = command(tmp_path, 60, *RUN, prepared=moment)

@@ -1,0 +1,47 @@
+"""Whether the model describes the contacts at which something first yields."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
+from solver.solve import solve
+from solver.yields.crossing import Crossing
+
+from ..again import STRENGTHS, Again, of_all_cases
+from ..arrays.labelled import Labelled
+from ..data.dataset import model_attributes
+from ..inputs.laws import results_of
+from ..rules.rule import RULES, broken, of_cases, validity_attributes, validity_of
+from ..work.cases import arrays_of
+
+_STRENGTHS = {*STRENGTHS.values(), "hardness", "yield_strength"}
+
+
+def validity_at(again: Again, crossing: Crossing) -> np.ndarray:
+    """`validity` of the contact at the first yield of each case, (B,) int32; 0 where there is none, or no load."""
+    flags, rows = np.zeros(len(again.problem), np.int32), np.flatnonzero(crossing.numbers["P"] > 0)
+    if not len(rows):
+        return flags
+    problem = replace(again.problem.take(rows), control="P", value=crossing.numbers["P"][rows])
+    solution = solve(problem)
+    # the masks of strengths would say of each what it was looked for
+    numbers = {name: value for name, value in problem.parameters.items() if name not in _STRENGTHS}
+    radii = again.scene.radii() if again.scene else {}
+    numbers |= {name: of_all_cases(value.to_xarray(), again.dims, again.shape)[rows] for name, value in radii.items()}
+    numbers |= arrays_of(solution, results_of(problem.micro), ())
+    variables = {name: Labelled("case", array) for name, array in numbers.items()}
+    variables["model_used"].attrs = model_attributes()
+    flags[rows] = validity_of(variables).values
+    return flags
+
+
+def warn_of(flags: np.ndarray) -> None:
+    """A warning if the contacts at which something first yields, whose `validity` these are, violate an assumption."""
+    violated = broken(Labelled("case", flags, validity_attributes()))
+    said = [of_cases(where) + RULES[name].sentence for name, where in violated.items() if where.any()]
+    if said:
+        first = "the contact at which something first yields is beyond what the model describes:"
+        warnings.warn("\n".join([first, *said]), stacklevel=3)

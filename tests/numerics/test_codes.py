@@ -1,0 +1,34 @@
+"""numpy reads a status, and each other code, without Python code in which a signal would be lost."""
+
+import sys
+
+import numpy as np
+import pytest
+
+from solver import Status
+from solver.numerics.codes import Codes
+from study.inverse.fits.block import FitStatus
+
+
+def test_all_codes_are_of_this_kind():
+    names = {kind.__name__ for kind in Codes.__subclasses__()}
+    assert {"Status", "Model", "Verdict", "Kind", "FitStatus"} <= names and issubclass(FitStatus, int)
+
+
+@pytest.mark.parametrize("kind", Codes.__subclasses__(), ids=lambda kind: kind.__name__)
+@pytest.mark.parametrize("use", [np.equal, np.bitwise_and, np.add, np.full_like])
+def test_no_function_of_enum_is_called(kind, use):
+    """A function of Python, before which a signal would be heard."""
+    array, one, called = np.zeros(3, np.int8), next(iter(kind)), []
+    sys.setprofile(lambda frame, event, _: called.append(frame.f_code.co_filename) if event == "call" else None)
+    try:
+        use(array, one)
+    finally:
+        sys.setprofile(None)
+    assert not [file for file in called if "enum" in file]
+
+
+def test_they_are_numbers_with_names():
+    assert Status.CONVERGED == 0 and Status(11) is Status.PULLED_OFF and Status["LIFT_OFF"].meaning
+    with pytest.raises(AttributeError, match="FLOWN_AWAY"):
+        _ = Status.FLOWN_AWAY

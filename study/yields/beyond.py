@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -38,10 +37,7 @@ def validity_at(again: Again, crossing: Crossing) -> np.ndarray:
     return flags
 
 
-def warn_of(flags: np.ndarray) -> None:
-    """A warning if the contacts at which something first yields, whose `validity` these are, violate an assumption."""
+def said_of(flags: np.ndarray) -> str:
+    """A sentence for each assumption that contacts of this `validity` violate; "" if all hold."""
     violated = broken(Labelled("case", flags, validity_attributes()))
-    said = [of_cases(where) + RULES[name].sentence for name, where in violated.items() if where.any()]
-    if said:
-        first = "the contact at which something first yields is beyond what the model describes:"
-        warnings.warn("\n".join([first, *said]), stacklevel=3)
+    return " ".join(of_cases(where) + RULES[name].sentence for name, where in violated.items() if where.any())

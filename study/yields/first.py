@@ -18,7 +18,7 @@ from ..inputs.vocabulary import CONTROLS
 from ..rules.rule import validity_attributes
 from ..solving import solve
 from ..specimen.materials import Material
-from .beyond import validity_at, warn_of
+from .beyond import said_of, validity_at
 
 BODIES = {"layer": "_Y1", "body": "_Y2", "asperities": "_Ya", "punch": "_Y_punch"}
 """What may yield, in the order of the codes of `first_yield` -> the end of the names of its numbers."""
@@ -64,9 +64,9 @@ def first_yield(
         the body with Y2, of the asperities with Ya, of an elastic punch, a half-space under the same pressure, with
         Y_punch. found_Y1 and so on: 0, it is the first crossing; 1, there is none up to a = 0.2 R, or up to that slope;
         2, the strength is not known. Where it is not 0 the numbers are NaN, and P_Y1 has a `message`. validity_Y1 and
-        so on: `validity` of the contact at that load, 0 where there is none. P_Y1_spread and so on, of a strength with
-        a spread: what that alone makes. `first_yield`: what yields first, of those that are known. A warning tells of
-        physical cases in which that contact is beyond what the model describes
+        so on: `validity` of the contact at that load, 0 where there is none; P_Y1 has a `comment` that says it in
+        words. P_Y1_spread and so on, of a strength with a spread: what that alone makes. `first_yield`: what yields
+        first, of those that are known
 
     Raises
     ------
@@ -90,7 +90,7 @@ def first_yield(
     known, spreads = (strengths(contact, again, own, spread) for spread in (False, True))
     residual = residual_stress(sigma_res, again) / stress
     nu_punch = _of_cases(contact, again, "nu_punch", 0.3)
-    variables, loads, beyond = {}, [], []
+    variables, loads = {}, []
     for body, end in BODIES.items():
         strength = np.where(_there(problem, body), known[body], np.nan)
         if np.isfinite(strength).any():
@@ -101,16 +101,12 @@ def first_yield(
         found = np.where(crossing.crossed, 0, np.where(lacking, 2, 1)).astype(np.int8)
         loads.append(np.where(crossing.crossed, crossing.numbers["P"], np.inf))
         variables |= _variables(again, units, body, end, crossing, found)
-        beyond.append(validity_at(again, crossing))
-        variables[f"validity{end}"] = labelled(again, beyond[-1], _about_validity(body))
         if np.any(spreads[body] > 0):
             variables |= _spreads(again, units, body, end, crossing, spreads[body] / known[body])
     loads = np.array(loads)
     first = np.where(np.isfinite(loads).any(axis=0), 1 + loads.argmin(axis=0), 0).astype(np.int8)
     about = _flags("what yields first", ("not_known", *BODIES))
     variables["first_yield"] = labelled(again, first, about)
-    if again.scene:
-        warn_of(np.choose(first, [np.zeros_like(beyond[0]), *beyond]))
     return without_control(carried(contact, variables), name)
 
 
@@ -170,8 +166,11 @@ def _variables(again: Again, units: tuple, body: str, end: str, crossing: Crossi
     made[f"found{end}"] = labelled(again, found, _flags(f"whether the load {where} was found", words))
     if found.any():
         made[f"P{end}"].attrs["message"] = _message(body, found, crossing.unsolved, round_.all())
-    if ((found == 0) & (crossing.numbers["P"] == 0) & ~round_).any():
-        made[f"P{end}"].attrs["comment"] = _SHARP
+    flags = validity_at(again, crossing)
+    made[f"validity{end}"] = labelled(again, flags, _about_validity(body))
+    sharp = bool(((found == 0) & (crossing.numbers["P"] == 0) & ~round_).any())
+    if comment := ". ".join(text for text in (_SHARP * sharp, said_of(flags)) if text):
+        made[f"P{end}"].attrs["comment"] = comment
     return made
 
 

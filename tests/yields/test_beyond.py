@@ -1,4 +1,4 @@
-"""Whether the model describes the contact at which something first yields: its flags, and a warning."""
+"""Whether the model describes the contact at which something first yields: its flags, and a comment."""
 
 import warnings
 
@@ -33,23 +33,14 @@ def test_the_flags_are_those_of_the_contact_at_that_load(kind):
     assert (found.found_Y1 == 2).all() and (found.validity_Y1 == 0).all()
 
 
-def test_a_warning_of_what_yields_first():
-    """Not of what yields later: the asperities do, when the spots merge."""
-    rough = BARE | COARSE | {"Nbar": "0.01 1/um^2", "hardness": "20 GPa"}
-    with pytest.warns(UserWarning) as caught:
-        found = study.first_yield(**rough)
-    assert len(caught) == 1 and caught[0].filename == __file__
-    assert str(caught[0].message).startswith(
-        "the contact at which something first yields is beyond what the model describes:\nFewer than 100 asperities"
-    )
-    assert "spots merge" not in str(caught[0].message)
+def test_a_comment_says_it_in_words():
+    """The body yields when few asperities touch; the asperities later, when the spots merge."""
+    found = study.first_yield(**BARE | COARSE | {"Nbar": "0.01 1/um^2", "hardness": "20 GPa"})
+    assert found.P_Y2.attrs["comment"].startswith("Fewer than 100 asperities touch")
+    assert "spots merge" in found.P_Ya.attrs["comment"] and "Fewer" not in found.P_Ya.attrs["comment"]
     assert (found.first_yield, found.validity_Y2, found.validity_Ya) == (2, 2, 16)
-
-
-def test_no_warning_where_all_holds():
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        assert study.first_yield(**COATED, micro="smooth").validity_Y2 == 0
+    assert study.decode(found.validity_Y2).item() == "few_spots"
+    assert "comment" not in study.first_yield(**COATED, micro="smooth").P_Y2.attrs
 
 
 def test_no_warning_of_the_contact_that_is_tried():

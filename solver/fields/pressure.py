@@ -18,10 +18,11 @@ from ..numerics.quadrature import gauss_legendre, lagrange, radau_nodes
 #: Gauss points of ∫ p' db on a panel beyond half its number of nodes. With 16 a polynomial of degree 63 is right to
 #: rounding, which grows like the square of the degree in p' (tests/fields/test_half_space.py).
 _MORE = 16
-#: Of waves above _LONG only what is within _WINDOW/k of the edge makes any: there a smooth window ends, the normal
-#: distribution with the width _WIDE/k, whose own waves and tails are 1e-14. So p^ takes as long at any k
-#: (tests/fields/test_half_space.py).
+#: Of waves above _LONG only what is within _WINDOW/k of the edge makes any, or of panels narrower than _NARROW/k, as at
+#: a tip: there a smooth window ends, the normal distribution with the width _WIDE/k, whose own waves and tails are
+#: 1e-14. So p^ takes as long at any k (tests/fields/test_half_space.py).
 _LONG, _WINDOW, _WIDE = 500.0, 120.0, 8.0
+_NARROW = 40.0
 #: Rows of so many numbers in all are kept for other cases and other points.
 _KEPT = 250_000
 #: An edge pressure below this part of the largest is rounding, and would make stresses infinite at the edge.
@@ -45,10 +46,12 @@ class Pressure(NamedTuple):
         octaves = first * 2.0 ** np.arange(max(np.ceil(np.log2(k[-1] / first)), 0))
         pieces = [piece for piece in np.split(k, np.searchsorted(k, octaves)) if len(piece)]
         rows = [
-            (_kept_waves if piece.size * self.mesh.n <= _KEPT else _waves)(self.mesh, piece.tobytes())
+            self.values @ _kept_waves(self.mesh, piece.tobytes())
+            if piece.size * self.mesh.n <= _KEPT
+            else _waves(self.mesh, self.values, piece)
             for piece in pieces
         ]
-        waves = np.concatenate([self.values @ piece.T for piece in rows], axis=1)
+        waves = np.concatenate(rows, axis=1)
         return waves if self.A is None else waves + self.A[:, None] * (np.sin(k) / k)
 
     def at(self, r):
@@ -83,38 +86,47 @@ class Pressure(NamedTuple):
         return (nodal @ self.mesh.basis(s.ravel()).T).reshape(len(nodal), *s.shape)
 
 
-def _waves(mesh, k_bytes):
-    """From values at the nodes to p^ at k of one octave, from the edge alone where that is enough: (K, n)."""
-    k = np.frombuffer(k_bytes)
-    deep = _deep(mesh, k[0])
-    if k[0] < _LONG or deep > 0.5:
-        return transform(mesh, k)
-    s, weight = _edge_rule(mesh, k[-1], deep)
-    x, middle = np.sqrt((1 - s) * (1 + s)), 1 - _WINDOW / (2 * k[0]) - (deep - _WINDOW / k[0])
-    window = special.ndtr((x - middle) * (k[0] / _WIDE))
-    weights = mesh.basis(s) * (weight * s * window)[:, None]
-    return np.concatenate([special.j0(part[:, None] * x) @ weights for part in np.array_split(k, len(k) // 1000 + 1)])
+@lru_cache(maxsize=64)
+def _kept_waves(mesh, k_bytes):
+    """From values at the nodes to p^ at k of one octave: (n, K)."""
+    return _waves(mesh, np.eye(mesh.n), np.frombuffer(k_bytes))
 
 
-_kept_waves = lru_cache(maxsize=64)(_waves)
+def _waves(mesh, values, k):
+    """p^ (B, K) at k of one octave, from windows alone where that is enough."""
+    windows = _windows(mesh, k[0])
+    if k[0] < _LONG or np.diff(windows).sum() > 0.5:
+        return values @ transform(mesh, k).T
+    s, weight = (np.concatenate(parts) for parts in zip(*(_rule(mesh, k, *ends) for ends in windows), strict=True))
+    x, inside = np.sqrt((1 - s) * (1 + s)), (values @ mesh.basis(s).T * (weight * s)).T
+    parts = np.array_split(k, len(k) // 1000 + 1)
+    return np.concatenate([special.j0(part[:, None] * x) @ inside for part in parts]).T
 
 
-def _deep(mesh, k):
-    """How far from the edge waves of k and shorter ones are felt, in x: a window, beyond panels that may have such."""
+def _windows(mesh, k):
+    """Where in x waves of k and shorter ones are felt, the ends of windows (m, 2): at the edge, and about panels that
+    may have such waves, as those at a tip and at a kink."""
     x = np.sqrt(1 - np.array(mesh.breaks) ** 2)
-    narrow = np.flatnonzero(-np.diff(x) < 40 / k)
-    return _WINDOW / k + (1 - x[narrow[-1] + 1] if len(narrow) else 0.0)
+    narrow = -np.diff(x) < _NARROW / k
+    low, high = np.append(x[1:][narrow], 1.0) - _WINDOW / k, np.append(x[:-1][narrow], 1.0) + _WINDOW / k
+    order = np.argsort(low)
+    low, high = low[order], high[order]
+    apart = low[1:] > high[:-1]
+    return np.clip(np.stack([low[np.append(True, apart)], high[np.append(apart, True)]], axis=1), 0.0, 1.0)
 
 
-def _edge_rule(mesh, k, deep):
-    """Rule of ∫ · ds from the edge to the depth `deep` in x, for waves of at most k: points and weights (m,)."""
-    pieces = int(np.ceil(deep * k / 16))
-    ends = np.arccos(1 - deep * np.arange(pieces + 1) / pieces)
+def _rule(mesh, k, low, high):
+    """Rule of ∫ · ds over a window in x with smooth ends, for waves k (K,): points s and weights (m,)."""
+    pieces = int(np.ceil((high - low) * k[-1] / 16))
+    ends = np.arccos(high - (high - low) * np.arange(pieces + 1) / pieces)
     breaks = np.arcsin(np.array(mesh.breaks))
-    ends = np.union1d(ends, breaks[breaks < ends[-1]])
+    ends = np.union1d(ends, breaks[(breaks > ends[0]) & (breaks < ends[-1])])
     t, weight = gauss_legendre(20)
     angle, width = (ends[:-1, None] + np.diff(ends)[:, None] * t).ravel(), np.diff(ends)[:, None]
-    return np.sin(angle), (width * weight).ravel() * np.cos(angle)
+    x, steep = np.cos(angle), k[0] / _WIDE
+    weight = (width * weight).ravel() * x
+    weight *= special.ndtr((x - low) * steep - _WINDOW / (2 * _WIDE)) if low > 0 else 1.0
+    return np.sin(angle), weight * (special.ndtr((high - x) * steep - _WINDOW / (2 * _WIDE)) if high < 1 else 1.0)
 
 
 @lru_cache(maxsize=16)

@@ -26,7 +26,7 @@ def validity_at(again: Again, crossing: Crossing) -> np.ndarray:
         return flags
     problem = replace(again.problem.take(rows), control="P", value=crossing.numbers["P"][rows])
     solution = solve(problem)
-    # the masks of strengths would say of each what it was looked for
+    # without strengths, whose masks say that something yields: at these loads it does
     numbers = {name: value for name, value in problem.parameters.items() if name not in _STRENGTHS}
     radii = again.scene.radii() if again.scene else {}
     numbers |= {name: of_all_cases(value.to_xarray(), again.dims, again.shape)[rows] for name, value in radii.items()}

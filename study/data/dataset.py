@@ -91,6 +91,13 @@ class Parts(NamedTuple):
         return self._replace(coords=coords, attributes=self.attributes | attributes)
 
 
+def validity_of_rows(arrays: dict[str, np.ndarray], times: float = 1.0) -> Labelled:
+    """`validity_of` of cases in a row: name -> (n,), of their parameters and of what they were solved to."""
+    variables = {name: Labelled("case", array) for name, array in arrays.items()}
+    variables["model_used"].attrs = model_attributes()
+    return validity_of(variables, times)
+
+
 def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:
     """The parts of the dataset of a grid, from flat arrays (B, ...): dimensions in the order of the study, then `x`."""
     made = labelled(definition, arrays, command)

@@ -8,11 +8,10 @@ from solver import Problem
 from solver.estimate import estimate
 from solver.parameters import one_of
 
-from ..arrays.labelled import Labelled
-from ..data.dataset import model_attributes
+from ..data.dataset import validity_of_rows
 from ..inputs.definition import Definition
 from ..inputs.grid import along, columns
-from ..rules.rule import RULES, broken, have, validity_of
+from ..rules.rule import RULES, broken, have
 
 #: A contact is far outside if it exceeds the limit of an assumption this many times. The estimate is right to about
 #: that factor: of 300 random contacts beyond no limit it takes none for far outside, and of 300 that exceed one 50
@@ -53,7 +52,4 @@ def _exceeded(parameters: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Name of each assumption -> (n,) bool: the contact exceeds its limit FAR times, by an estimate."""
     size = len(parameters["micro"])
     unknown = {"status": np.zeros(size), "model_used": np.full(size, np.nan), "model_error": np.full(size, np.nan)}
-    arrays = parameters | unknown | estimate(Problem.of(**parameters))
-    variables = {name: Labelled("case", array) for name, array in arrays.items()}
-    variables["model_used"].attrs = model_attributes()
-    return broken(validity_of(variables, FAR))
+    return broken(validity_of_rows(parameters | unknown | estimate(Problem.of(**parameters)), FAR))

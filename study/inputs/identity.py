@@ -30,7 +30,7 @@ STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
 RATIOS = ("nu1", "nu2")
 #: In the keys of cases that have another shape than the paraboloid, or that stick, beside NUMERICS_VERSION: raised when
 #: numbers of these alone change.
-_OF_SHAPES = "2"
+_OF_SHAPES = "3"
 
 
 def acts(grid: Grid, name: str) -> np.ndarray:

@@ -9,14 +9,13 @@ import numpy as np
 from solver.solve import solve
 from solver.yields.crossing import Crossing
 
-from ..again import STRENGTHS, Again, of_all_cases
+from ..again import Again, of_all_cases
 from ..arrays.labelled import Labelled
-from ..data.dataset import model_attributes
+from ..data.dataset import validity_of_rows
+from ..inputs.identity import STRENGTHS
 from ..inputs.laws import results_of
-from ..rules.rule import RULES, broken, of_cases, validity_attributes, validity_of
+from ..rules.rule import RULES, broken, of_cases, validity_attributes
 from ..work.cases import arrays_of
-
-_STRENGTHS = {*STRENGTHS.values(), "hardness", "yield_strength"}
 
 
 def validity_at(again: Again, crossing: Crossing) -> np.ndarray:
@@ -27,13 +26,10 @@ def validity_at(again: Again, crossing: Crossing) -> np.ndarray:
     problem = replace(again.problem.take(rows), control="P", value=crossing.numbers["P"][rows])
     solution = solve(problem)
     # without strengths, whose masks say that something yields: at these loads it does
-    numbers = {name: value for name, value in problem.parameters.items() if name not in _STRENGTHS}
+    numbers = {name: value for name, value in problem.parameters.items() if name not in STRENGTHS}
     radii = again.scene.radii() if again.scene else {}
     numbers |= {name: of_all_cases(value.to_xarray(), again.dims, again.shape)[rows] for name, value in radii.items()}
-    numbers |= arrays_of(solution, results_of(problem.micro), ())
-    variables = {name: Labelled("case", array) for name, array in numbers.items()}
-    variables["model_used"].attrs = model_attributes()
-    flags[rows] = validity_of(variables).values
+    flags[rows] = validity_of_rows(numbers | arrays_of(solution, results_of(problem.micro), ())).values
     return flags
 
 

@@ -2,6 +2,7 @@
 
 import warnings
 
+import numpy as np
 import pytest
 
 import study
@@ -13,7 +14,7 @@ COARSE = {"micro": "disc_cell", "Nbar": "0.0001 1/um^2", "Ra": "50 um"}
 BARE = BALL | {"base": "half_space", "micro": "smooth"}
 CASES = {
     "asperities on a layer": COATED | COARSE | {"Nbar": ["0.0001 1/um^2", "0.1 1/um^2"]},
-    "a smooth coating": COATED | {"micro": "smooth"},
+    "a smooth coating": COATED | {"micro": "smooth", "Y1": "1 GPa", "E_punch": "70 GPa", "Y_punch": "100 MPa"},
     "a cup": {**BARE, "R": None, "R1": "5 mm", "R2": "-5.05 mm"},
     "a blunt cone": {**BARE, "R": None, "shape": "blunt_cone", "half_angle": "82 deg", "tip_radius": "1 mm"},
 }
@@ -24,13 +25,16 @@ CASES = {
 def test_the_flags_are_those_of_the_contact_at_that_load(kind):
     """As `study.solve` has them, which is given no strength."""
     given = {name: value for name, value in CASES[kind].items() if value is not None}
-    found = study.first_yield(**given)
-    del given["Y2"]
-    cases = [given | {"Nbar": Nbar} for Nbar in given["Nbar"]] if "Nbar" in given else [given]
-    loads, flags = found.P_Y2.values.ravel().tolist(), found.validity_Y2.values.ravel().tolist()
-    assert flags == [study.solve(**case, P=f"{P} N", x=2).validity for case, P in zip(cases, loads, strict=True)]
-    assert found.validity_Y2.dims == found.P_Y2.dims and len(set(flags)) == len(cases)
-    assert (found.found_Y1 == 2).all() and (found.validity_Y1 == 0).all()
+    yielding = study.first_yield(**given)
+    without = {name: value for name, value in given.items() if name not in ("Y1", "Y2", "Y_punch")}
+    cases = [without | {"Nbar": Nbar} for Nbar in given["Nbar"]] if "Nbar" in given else [without]
+    for end in ("Y1", "Y2", "Ya", "Y_punch"):
+        loads, flags = (yielding[f"{name}_{end}"].values.ravel().tolist() for name in ("P", "validity"))
+        loads = [f"{P} N" if np.isfinite(P) else "" for P in loads]
+        contacts = [P and study.solve(**case, P=P, x=2) for case, P in zip(cases, loads, strict=True)]
+        assert flags == [contact.validity if P else 0 for contact, P in zip(contacts, loads, strict=True)], end
+        assert all(loads) or end not in given
+    assert yielding.validity_Y2.dims == yielding.P_Y2.dims
 
 
 def test_a_comment_says_it_in_words():

@@ -163,8 +163,8 @@ def in_layers(messages: list[str], names: Any) -> list[str]:
     fields = {name: field for field, name in _FIRST.items()}
     before = "^| and |: |follows from |given as |in place of "
     after = r"\[|: | = | is missing| is given twice| and | are both | follows |,|$"
-    names = re.compile(f"({before})({'|'.join(fields)})(?={after})")
-    return [names.sub(lambda found: f"{found[1]}layers.1.{fields[found[2]]}", message) for message in messages]
+    first = re.compile(f"({before})({'|'.join(fields)})(?={after})")
+    return [first.sub(lambda match: f"{match[1]}layers.1.{fields[match[2]]}", message) for message in messages]
 
 
 def axes_in(tables: dict) -> list[str]:

@@ -171,7 +171,7 @@ def test_folders_are_small(top):
 @pytest.mark.parametrize("top", ["solver", "study", "studies", "tests", "tools"])
 def test_files_are_short(top):
     sizes = {name(path): path.read_bytes().count(b"\n") for path in (ROOT / top).rglob("*.py")}
-    assert {file: size for file, size in sizes.items() if size > 260} == {}
+    assert {file: size for file, size in sizes.items() if size > 400} == {}
 
 
 def test_only_blocks_and_dataset_and_tables_know_the_solver():

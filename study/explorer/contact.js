@@ -1,21 +1,12 @@
 "use strict";
 /* One contact: from texts with units to the parameters of the solver, and from its numbers to texts. The names are those
    of `roughcoat point`. DATA, which page.py writes, has meshes, materials, limits and sentences of the Python program. */
-const Contact = ((Core, DATA) => {
+const Contact = ((Core, Numbers, DATA) => {
+  const { UNITS, short, percent, written, readable } = Numbers;
   Core.load(DATA.meshes);
   const MATERIALS = Object.fromEntries(DATA.materials.map((own) => [own.name, own]));
 
-  /* ---- units ---- */
-
-  /** SI unit -> spellings that are read, and the multiples in which numbers are written. */
-  const UNITS = {
-    m: { what: "a length", read: { m: 1, cm: 1e-2, mm: 1e-3, um: 1e-6, nm: 1e-9 }, write: [["m", 1], ["mm", 1e-3], ["µm", 1e-6], ["nm", 1e-9]] },
-    N: { what: "a force", read: { MN: 1e6, kN: 1e3, N: 1, mN: 1e-3, uN: 1e-6, nN: 1e-9 }, write: [["kN", 1e3], ["N", 1], ["mN", 1e-3], ["µN", 1e-6], ["nN", 1e-9]] },
-    Pa: { what: "a pressure", read: { TPa: 1e12, GPa: 1e9, MPa: 1e6, kPa: 1e3, Pa: 1 }, write: [["GPa", 1e9], ["MPa", 1e6], ["kPa", 1e3], ["Pa", 1]] },
-    "1/m^2": { what: "a number per area", read: { "1/um^2": 1e12, "1/mm^2": 1e6, "1/cm^2": 1e4, "1/m^2": 1 }, write: [["1/µm²", 1e12], ["1/mm²", 1e6], ["1/m²", 1]] },
-    "N/m": { write: [["MN/m", 1e6], ["kN/m", 1e3], ["N/m", 1], ["mN/m", 1e-3]] },
-    1: { what: "a number", read: { "": 1 }, write: [["", 1]] },
-  };
+  /* ---- inputs and results ---- */
 
   /** Inputs that are numbers: SI unit, words, those of the form under the name of the body, and the range of the slider. */
   const INPUTS = {
@@ -54,36 +45,8 @@ const Contact = ((Core, DATA) => {
   const START = { R: "5 mm", punch: "steel 52100", layer: "DLC a-C:H", h: "2 um", bonding: "bonded", body: "steel 52100",
     P: "10 N", micro: "smooth" };
 
-  const NUMBER = "[-+]?(?:\\d+\\.?\\d*|\\.\\d+)(?:[eE][-+]?\\d+)?";
-  const QUANTITY = new RegExp(`^(${NUMBER})\\s*([^±+\\s]*)\\s*(?:(?:±|\\+/-|\\+-)\\s*(${NUMBER})\\s*(%?)\\s*(\\S*))?$`);
-
-  /** {value, spread, word, size} in SI of a text such as "5 mm", "200 ± 10 GPa", "2 um ± 5 %"; an Error with a message. */
-  function parse(name, text) {
-    const { unit } = INPUTS[name] || STRENGTHS[name], { what, read } = UNITS[unit], example = Object.keys(read)[unit === "1" ? 0 : 2];
-    const wanted = unit === "1" ? "must be a number without a unit" : `must be ${what} with its unit: ${Object.keys(read).join(", ")}`;
-    const plain = String(text).trim().replace(/[µμ]/g, "u").replace(/²/g, "^2").replace(/−/g, "-"), found = QUANTITY.exec(plain);
-    if (!found) throw Error(plain.includes(",") ? `${name}: write the number with a decimal point` : `${name} = "${text}": ${wanted}`);
-    const [, number, first, more, percent, last] = found, word = first || last || "", other = last || first || "";
-    if (!(word in read) || !(other in read)) throw Error(`${name} = "${text}": ${word || plain in read ? wanted : `${wanted}, such as ${number} ${example}`}`);
-    const value = Number(number) * read[word];
-    const spread = !more ? 0 : percent ? Math.abs(value) * Number(more) / 100 : Number(more) * read[other];
-    if (spread < 0 || !Number.isFinite(value)) throw Error(`${name} = "${text}": ${wanted}`);
-    return { value, spread, word, size: read[word] };
-  }
-
-  /** A number with at most four digits, in the multiple of its SI unit that suits it: {text, unit, places}; `digits` are
-      what its error allows, and ± has two digits at most. */
-  function written(value, unit, digits = 4, spread = 0) {
-    const rows = UNITS[unit].write, [word, size] = rows.find((row) => Math.abs(value) >= row[1]) || rows[rows.length - 1];
-    const number = value / size, own = spread / size;
-    let places = digits - 1 - Math.floor(Math.log10(Math.abs(number)) + 1e-12);
-    if (own > 0) places = Math.min(places, 1 - Math.floor(Math.log10(own)));
-    const show = (v) => (places >= 0 ? (places > 6 ? v.toExponential(digits - 1) : v.toFixed(places)) : String(Math.round(v / 10 ** -places) * 10 ** -places));
-    const pm = own > 0 && Number(show(own)) > 0 ? ` ± ${show(own)}` : "";
-    return { text: show(number) + pm, unit: word, whole: `${show(number)}${pm} ${word}`.trim() };
-  }
-  const readable = (value, unit, digits = 3) => (Number.isFinite(value) ? written(value, unit, digits).whole : value > 0 ? "infinite" : "unknown");
-  const percent = (share) => `${(100 * share).toPrecision(2).replace(/\.?0+(e.*)?$/, (m) => (m.includes(".") ? "" : m))} %`;
+  /** {value, spread, word, size} in SI of the text of an input; an Error with a message. */
+  const parse = (name, text) => Numbers.parse(name, (INPUTS[name] || STRENGTHS[name]).unit, text);
 
   /* ---- from texts to a case ---- */
 
@@ -152,7 +115,7 @@ const Contact = ((Core, DATA) => {
       const [low, high] = DATA.bounds[name];
       if (!(value >= low && value <= high)) {
         const place = { n: "E1", m: "E_punch" }[name] || name;
-        found[place] = `${place} is beyond the bounds of the solver: ${name} = ${value.toPrecision(3)}, allowed ${low} to ${high} (docs/model.md, units R and E2*)`;
+        found[place] = `${place} is beyond the bounds of the solver: ${name} = ${short(value, 3)}, allowed ${low} to ${high} (docs/model.md, units R and E2*)`;
       }
     }
     return found;
@@ -247,7 +210,7 @@ const Contact = ((Core, DATA) => {
     const { p, unit } = case_, L = DATA.limits, E1 = p.layered ? p.n || 1 : 1, rows = [];
     const light = (name, title, ratio, size) => rows.push({ name, title, size, state: ratio > 1 ? "beyond" : ratio > 0.5 ? "near" : "good" });
     light("strain_not_small", "Small against the ball", q.a / L.STEEP,
-      `a/R = ${q.a.toPrecision(2)}, limit ${L.STEEP}. At the edge the ball is ${percent(q.a * q.a / 4)} deeper than the paraboloid that stands for it.`);
+      `a/R = ${short(q.a)}, limit ${L.STEEP}. At the edge the ball is ${percent(q.a * q.a / 4)} deeper than the paraboloid that stands for it.`);
     if (p.layered) {
       const given = Math.min(q.D / p.h, q.p0 / E1), pulled = E1 * Math.min(p.h, q.a) * q.a ** 2 / 8 / q.p0;
       light("strain_not_small", "Layer hardly compressed", given / L.COMPRESSED,
@@ -259,16 +222,16 @@ const Contact = ((Core, DATA) => {
       const b = Math.sqrt(q.lam0 / (Math.PI * p.Nbar)), spots = p.Nbar * Math.PI * q.a ** 2, Ec = E1 / (1 + p.m);
       const steep = Math.max(b / p.Ra, Math.PI / 2 * (q.p_max - q.p0) / Ec), pitch = 1 / Math.sqrt(p.Nbar) / p.h;
       light("few_spots", "Many spots", L.FEW_SPOTS / spots,
-        `${Number(spots.toPrecision(2)).toLocaleString("en")} asperities touch, at least ${L.FEW_SPOTS} are wanted: the model is an average, from which single contacts differ.`);
+        `${Numbers.count(spots)} asperities touch, at least ${L.FEW_SPOTS} are wanted: the model is an average, from which single contacts differ.`);
       light("spots_merging", "Spots apart", q.lam0 / L.MERGING,
-        `λ(0) = ${q.lam0.toPrecision(2)}, limit ${L.MERGING}: what the asperities yield is about ${percent(interpolated(DATA.merging, q.lam0))} above that of a square lattice.`);
+        `λ(0) = ${short(q.lam0)}, limit ${L.MERGING}: what the asperities yield is about ${percent(interpolated(DATA.merging, q.lam0))} above that of a square lattice.`);
       light("asperity_strain_not_small", "Asperities hardly strained", steep / L.STEEP_SPOT,
-        `b/Ra = ${steep.toPrecision(2)}, limit ${L.STEEP_SPOT}: a strain of about ${percent(0.2 * steep)} under an asperity.`);
+        `b/Ra = ${short(steep)}, limit ${L.STEEP_SPOT}: a strain of about ${percent(0.2 * steep)} under an asperity.`);
       if (p.layered) {
         light("spot_not_small_against_h", "Spots small against the layer", b / p.h / L.SPOT_OVER_LAYER,
-          `b/h = ${(b / p.h).toPrecision(2)}, limit ${L.SPOT_OVER_LAYER}. ${bySeen(pitch, p.n)}`);
+          `b/h = ${short(b / p.h)}, limit ${L.SPOT_OVER_LAYER}. ${bySeen(pitch, p.n)}`);
         light("pitch_not_small_against_h", "Asperities close against the layer", pitch / L.PITCH_OVER_LAYER,
-          `pitch 1/√N̄ = ${pitch.toPrecision(2)} h, limit ${L.PITCH_OVER_LAYER} h. ${bySeen(pitch, p.n)}`);
+          `pitch 1/√N̄ = ${short(pitch)} h, limit ${L.PITCH_OVER_LAYER} h. ${bySeen(pitch, p.n)}`);
       }
     }
     const real = ring ? ring.p_peak : q.p_max * unit, nominal = ring ? ring.p : q.p0 * unit;
@@ -353,5 +316,5 @@ const Contact = ((Core, DATA) => {
 
   return { solve, read, shown, words, readable, written, parse, percent, toHash, fromHash, used, COPIES, INPUTS, STRENGTHS, CHOICES, RESULTS,
     CONTROLS, BODIES, MATERIALS, UNITS };
-})(typeof module === "undefined" ? Core : require("./core.js"), typeof module === "undefined" ? DATA : globalThis.DATA);
+})(...(typeof module === "undefined" ? [Core, Numbers, DATA] : [require("./core.js"), require("./numbers.js"), globalThis.DATA]));
 if (typeof module !== "undefined") module.exports = Contact;

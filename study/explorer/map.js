@@ -151,7 +151,7 @@ const ContactMap = ((Contact, Drawing) => {
     const note = box.querySelector(".note"), { chosen, cells } = now, all = cells.filter(Boolean);
     if (!cell) {
       const hatched = all.filter((one) => one.beyond.length || !Number.isFinite(one.value)).length;
-      note.textContent = `Circle: this contact. Hatched, ${Math.round(100 * hatched / all.length)} % of the map: an assumption of the model fails there, or the page has no solution. A click takes a contact.`;
+      note.textContent = `Circle: this contact. Hatched, ${Contact.percent(hatched / all.length)} of the map: an assumption of the model fails there, or the page has no solution. A click takes a contact.`;
       return;
     }
     const numbers = Object.entries(cell.numbers).map(([name, value]) => `${name} = ${Contact.readable(value, Contact.INPUTS[name].unit)}`).join(", ");

@@ -235,7 +235,7 @@
   function stresses(found) {
     const own = Strength.stresses(found), { parts } = own, digits = Math.min(3, found.digits);
     $("stresses").innerHTML = Drawing.stresses(found, own, width);
-    const share = (row) => (row.share < 1 ? Contact.percent(row.share) : `${row.share < 100 ? row.share.toPrecision(2) : Math.round(row.share)} times`);
+    const share = (row) => Numbers.part(row.share);
     const state = (row) => (row.share > 1 ? "beyond" : row.share > 0.5 ? "near" : "good"), known = parts.filter((row) => Number.isFinite(row.strength));
     const rows = [
       ["largest von Mises stress", (row) => Contact.readable(row.mises, "Pa", digits)],

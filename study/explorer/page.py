@@ -19,7 +19,7 @@ from ..specimen import materials
 MARK = b"<!-- a page of roughcoat explore -->"
 #: Nodes of the two meshes that the page solves on; their difference is its error (tests/explorer/test_core.py).
 NODES = (16, 22)
-_SCRIPTS = ("core.js", "stress.js", "contact.js", "strength.js", "drawing.js", "map.js", "page.js")
+_SCRIPTS = ("core.js", "stress.js", "numbers.js", "contact.js", "strength.js", "drawing.js", "map.js", "page.js")
 #: Limits of assumptions and doubts, which the page looks at as the program does.
 _LIMITS = {
     assumptions: ("STEEP", "COMPRESSED", "STRETCHED", "FEW_SPOTS", "MERGING", "STEEP_SPOT", "SPOT_OVER_LAYER")

@@ -75,7 +75,7 @@ const Strength = ((Core, Stress, Contact, DATA) => {
     return ended(low);
   }
 
-  return { stresses, load, INPUTS };
+  return { stresses, strengths, load, INPUTS };
 })(...(typeof module === "undefined" ? [Core, Stress, Contact, DATA]
   : [require("./core.js"), require("./stress.js"), require("./contact.js"), globalThis.DATA]));
 if (typeof module !== "undefined") module.exports = Strength;

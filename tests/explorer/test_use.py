@@ -132,6 +132,22 @@ def test_stresses_and_loads_of_first_yield_are_shown(explorer):
     )
 
 
+def test_a_part_near_its_limit_is_said_to_be_near(explorer):
+    """99.7 % is 100 %, no 1 %; the contact yields at 929 N."""
+    for P, words in (
+        ("915", "99 % of its"),
+        ("918", "100 % of its"),
+        ("928", "100 % of its"),
+        ("930", "1.0 times its"),
+    ):
+        address = f"R=5 mm&punch=steel 52100&layer=DLC a-C:H&h=2 um&body=steel 52100&P={P} N"
+        explorer.evaluate(SHOWN, address.replace(" ", "%20"))
+        explorer.wait_for_selector("#stresses[aria-busy=false]")
+        assert words in explorer.inner_text("#verdict"), P
+    explorer.evaluate(SHOWN, "R=5%20mm&punch=steel%2052100&layer=PTFE&h=0.2%20mm&body=steel%2052100&P=5%20kN")
+    assert "gives way by about 100 %" in explorer.inner_text("#lights")
+
+
 def test_the_tension_of_a_coating_is_compared_with_its_fracture_strength(explorer):
     """1.344 GPa at the underside of ta-C on PEEK, and -306 MPa at the edge, by `study.stresses`."""
     explorer.evaluate(SHOWN, "R=5%20mm&punch=steel%2052100&layer=DLC%20ta-C&h=20%20um&body=PEEK&P=10%20N")

@@ -3,13 +3,15 @@
 import io
 import os
 from importlib.util import find_spec
+from math import isfinite, isnan
 from pathlib import Path
+from typing import Any
 
 from xarray import Dataset
 
 from ..api import load
 from ..data.frames import frames
-from ..figures.formats import write
+from ..figures.formats import guarded, write
 from ..files.access import Unusable
 from ..files.results_file import open_results
 from ..inputs.definition import StudyError
@@ -56,7 +58,7 @@ def write_rows(options, name: str) -> int:
     tables, stem = frames(dataset), Path(options.folder) / Path(name).stem
     if options.format == "csv":
         names = {kind: stem.with_name(f"{stem.name}{f'_{kind}' * (kind != 'contacts')}.csv") for kind in tables}
-        answer(*(write(names[kind], table.to_csv(index=False)) for kind, table in tables.items()))
+        answer(*(write(names[kind], _guarded(table).to_csv(index=False)) for kind, table in tables.items()))
         return 0
     for kind, table in tables.items():
         if len(table) > MOST_ROWS:
@@ -66,15 +68,32 @@ def write_rows(options, name: str) -> int:
     return 0
 
 
+def _guarded(table: Any) -> Any:
+    """The frame with no text that a spreadsheet computes."""
+    texts = {name: column.map(guarded) for name, column in table.items() if column.dtype.kind == "O"}
+    return table.assign(**texts).rename(columns=guarded)
+
+
 def _workbook(tables: dict) -> bytes:
     """A sheet for each table."""
     from openpyxl import Workbook  # an extra, found above
+    from openpyxl.cell import WriteOnlyCell
+    from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
 
     page, book = io.BytesIO(), Workbook(write_only=True)
+
+    def as_cell(value: Any) -> Any:
+        if isinstance(value, str) and (value[:1] in ("=", "#") or ILLEGAL_CHARACTERS_RE.search(value)):
+            cell = WriteOnlyCell(sheet, ILLEGAL_CHARACTERS_RE.sub("\ufffd", value))
+            cell.data_type = "s"  # openpyxl takes "=1+1" for a formula, "#N/A" for an error
+            return cell
+        if isinstance(value, float) and not isfinite(value):
+            return None if isnan(value) else str(value)  # a sheet has no infinite number
+        return value
+
     for kind, table in tables.items():
         sheet = book.create_sheet(kind)
-        sheet.append([*table.columns])
-        for row in table.itertuples(index=False):
-            sheet.append([None if cell != cell else cell for cell in row])
+        for row in ([*table.columns], *table.itertuples(index=False)):
+            sheet.append([*map(as_cell, row)])
     book.save(page)
     return page.getvalue()

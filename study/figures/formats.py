@@ -4,12 +4,15 @@ import csv
 import io
 import re
 from pathlib import Path
+from typing import Any
 
 from ..files.atomic import remove_temporary, replacing
 from .registry import Table
 
 STALE = 3600  # seconds after which nobody is writing a temporary file any more: a figure takes some
 """A younger one may be that of another program that draws the same figure."""
+#: How a text begins that spreadsheets compute when they open a CSV, some after blanks; the last four are wide letters.
+_FORMULA = re.compile("\\s*[=+\\-@\uff1d\uff0b\uff0d\uff20]|[\\t\\r\\n]")
 
 
 def as_text(table: Table, rows: list[tuple]) -> str:
@@ -47,10 +50,19 @@ def latex(cell: str) -> str:
 
 
 def csv_text(headings, rows) -> str:
-    """CSV with one line of headings."""
+    """CSV with one line of headings. A text that a spreadsheet would compute is `guarded`."""
     stream = io.StringIO()
-    csv.writer(stream, lineterminator="\n").writerows([headings, *rows])
+    lines = ([guarded(cell) for cell in row] for row in (headings, *rows))
+    csv.writer(stream, lineterminator="\n").writerows(lines)
     return stream.getvalue()
+
+
+def guarded(cell: Any) -> Any:
+    """A text that a spreadsheet takes for a formula, such as "=1+1", behind an apostrophe; numbers as they are."""
+    if not isinstance(cell, str):
+        return cell
+    text = re.sub("\r\n?", "\n", cell)  # csv quotes no \r, at which a row would end
+    return f"'{text}" if _FORMULA.match(cell) else text
 
 
 def write(path: Path, content: str | bytes) -> Path:

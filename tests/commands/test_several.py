@@ -10,6 +10,7 @@ from test_cli import GOOD, studies  # noqa: F401
 import study
 from study.__main__ import main
 from study.commands import rows
+from study.figures.formats import csv_text
 from study.in_words.columns import columns
 
 BALL = {"R": "5 mm", "E2": "70 ± 7 GPa", "nu2": 0.33, "base": "half_space", "micro": "smooth"}
@@ -136,6 +137,44 @@ def test_rows_of_xlsx(results, capsys):
     assert book.sheetnames == ["contacts", "profiles"]
     heads, *lines = book["contacts"].values
     assert [line[heads.index("a (R)")] for line in lines] == pytest.approx(results.a.values, rel=1e-15)
+
+
+LABELS = ["=1+1", "@SUM(1)", "+1+1", "-2+3", "\t=2+2", "\r=2", "  =3", "\uff1d4", "#N/A", "a=b", "5-3", "a\r=1"]
+FORMULAS = 8  # of the labels
+
+
+@pytest.fixture
+def labelled(studies):  # noqa: F811
+    """Results with labels that a spreadsheet would compute, numbers below 0 and infinite ones."""
+    rows = [{"label": label, "P": 1e-6 * (i + 1)} for i, label in enumerate(LABELS)]
+    ball = {"R": "1 mm", "punch": "rigid", "E2": "1 GPa", "nu2": -0.2, "base": "half_space", "micro": "smooth"}
+    contacts = study.solve(cases=[row | {"P": f"{row['P']} N"} for row in rows], **ball)
+    contacts.to_netcdf("labels.nc")
+    return contacts
+
+
+def test_no_text_of_a_csv_is_a_formula(labelled):
+    """Numbers stay numbers, those below 0 too."""
+    assert main(["table", "labels.nc"]) == 0
+    with open("tables/labels.csv", encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    plain = [text.replace("\r", "\n") for text in LABELS]
+    assert [row["label"] for row in rows] == [f"'{text}" for text in plain[:FORMULAS]] + plain[FORMULAS:]
+    assert {row["nu2"] for row in rows} == {"-0.2"} and {row["E_punch (Pa)"] for row in rows} == {"inf"}
+    figure = csv_text(["-x", "y"], [["=1+1", -1.0], ["b", -2]])
+    assert figure == "'-x,y\n'=1+1,-1.0\nb,-2\n"
+
+
+def test_no_text_of_a_sheet_is_a_formula(labelled):
+    openpyxl = pytest.importorskip("openpyxl")
+    assert main(["table", "labels.nc", "--format", "xlsx"]) == 0
+    heads, *rows = openpyxl.load_workbook("tables/labels.xlsx")["contacts"].rows
+    place = {cell.value: i for i, cell in enumerate(heads)}
+    labels = [row[place["label"]] for row in rows]
+    assert {cell.data_type for cell in labels} == {"s"}
+    assert [cell.value for cell in labels] == [text.replace("\r", "\n") for text in LABELS]  # as XML has it
+    assert {(row[place["nu2"]].value, row[place["nu2"]].data_type) for row in rows} == {(-0.2, "n")}
+    assert {row[place["E_punch (Pa)"]].value for row in rows} == {"inf"}
 
 
 def test_what_cannot_be_written_as_rows(results, monkeypatch, capsys):

@@ -72,6 +72,33 @@ def test_profiles(found):
         np.testing.assert_array_equal(line.y, found.p.sel(n=0.5, bonding="bonded", P=P))
 
 
+EDGES = {  # contact, whose profile ends like sqrt(1 - x^2), flatter, or at infinity; error of its curve, over p(0)
+    "hertz": ({"base": "half_space", "micro": "smooth"}, 1e-3),
+    "layer": ({"h": 0.02, "n": 0.5, "bonding": "bonded", "micro": "smooth"}, 1e-3),
+    "cone": ({"base": "half_space", "micro": "smooth", "shape": "cone", "half_angle": 85}, 6e-3),
+    "rough": ({"h": 0.02, "n": 0.5, "bonding": "bonded", "Nbar": 250_000, "Ra": 0.004}, 8e-3),
+    "adhesive": ({"base": "half_space", "micro": "smooth", "w_adhesion": 1e-5}, 1e-2),
+}
+
+
+@pytest.mark.parametrize("kind", EDGES)
+def test_the_curve_of_a_profile_has_no_corner_at_the_edge(kind):
+    """33 points of it are solved; straight lines between them were 6 % of p(0) off at r/a = 0.99 of a smooth punch."""
+    given, error = EDGES[kind]
+    fine = np.sin(np.linspace(0, np.pi / 2, 1200))
+    contact, many = (study.solve(a=0.04, **given, x=x) for x in (33, [*fine[:-1], 1.0]))
+    figure, columns = shown(contact, "x", "p")
+    line, p = lines(figure.axes[0])[0], contact.p.values  # the second line is of valid contacts
+    there, scale = np.isfinite(line.y), np.abs(p[np.isfinite(p)]).max()
+    drawn = (fine >= line.x[there][0]) & (fine <= line.x[there][-1])
+    angles = np.arcsin(line.x[there])  # steps of the line are even over these
+    curve = np.interp(np.arcsin(fine[drawn]), angles, line.y[there])
+    np.testing.assert_allclose(curve, many.p.values[drawn], rtol=0, atol=error * scale)
+    np.testing.assert_array_equal(columns["p"], p)  # the numbers are those that were solved
+    at = np.isin(line.x, contact.x) & there
+    np.testing.assert_allclose(line.y[at], p[np.isfinite(p)], rtol=1e-12, atol=1e-15)
+
+
 def test_physical_results_have_units_that_are_read_easily(physical):
     figure, columns = shown(physical, "P", "a", "h")
     assert frame(figure.axes[0])[0:3:2] == ("$P$, N", "$a$, µm")

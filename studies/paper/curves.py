@@ -19,8 +19,10 @@ PAPER = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9, "zorder": 1.5}
 LAYER_THIN = """The layer is the paper's thin one. It is said where it is not thin: the largest relative error of a, P,
 D, p(0), pmax and Ar/An against the exact layer then exceeds 10 %, as `model_error` estimates it."""
 LAYER_EXACT = "The layer is exact; thin dotted lines: the same on the paper's thin layer."
-OVER_LOADS = """P0 is the load of figures 3, 7 and 10. Grey: loads at which an assumption of the model does not hold,
-for the curves named in the legend."""
+LOAD = """P0 = 2.704e-5 E2* R² presses contact 1 to a0 = 0.04 R. The paper prints 2.72e-5 for it, 0.6 % more: its
+successive approximations end before they have converged (docs/tradeoff.md)."""
+OVER_LOADS = f"""{LOAD} It is the load of figures 3, 7 and 10. Grey: loads at which an assumption
+of the model does not hold, for the curves named in the legend."""
 PAPER_LABEL = "thin layer (the paper)"
 OVER_LOAD = ("load_sweep", "main_case")  # the studies of figures 4, 5, 6 and 8
 SIZE, HIGH = (ONE_COLUMN, 3.0), (ONE_COLUMN, 3.6)  # the second has four curves
@@ -87,19 +89,19 @@ def main_case(axes, main: xr.Dataset, sides: dict[str, str], exact: bool) -> Col
     return pressures(axes, shown, float(pick(main, label=CURVES["1"])["a"]), PAPER_LABEL * exact)
 
 
-@with_companion(figure("fig03", "main_case", size=SIZE), figure("fig03_layered", "main_case", size=SIZE))
+@with_companion(figure("fig03", "main_case", size=SIZE), figure("fig03_layered", "main_case", size=SIZE), LOAD)
 def rough_pressures(axes, main: xr.Dataset, exact: bool) -> Columns:
     """Nominal pressure under the rough punch with a layer (1) and without (2); a0 is the radius of contact 1."""
     return main_case(axes, main, {"1": "above", "2": "above"}, exact)
 
 
-@with_companion(figure("fig07", "main_case", size=SIZE), figure("fig07_layered", "main_case", size=SIZE))
+@with_companion(figure("fig07", "main_case", size=SIZE), figure("fig07_layered", "main_case", size=SIZE), LOAD)
 def rough_and_smooth_pressures(axes, main: xr.Dataset, exact: bool) -> Columns:
     """Nominal pressure, rough and smooth (primes), with a layer (1) and without (2); a0: radius of 1."""
     return main_case(axes, main, {"1": "below", "2": "below", "1′": "above", "2′": "above"}, exact)
 
 
-@with_companion(figure("fig10", "spot_density", size=SIZE), figure("fig10_layered", "spot_density", size=SIZE))
+@with_companion(figure("fig10", "spot_density", size=SIZE), figure("fig10_layered", "spot_density", size=SIZE), LOAD)
 def densities(axes, contacts: xr.Dataset, exact: bool) -> Columns:
     """Nominal pressure for three densities of asperities, B and β as in Table 1; a0: radius of 1."""
     paper = [pick(contacts, Nbar=Nbar, base="thin_layer") for Nbar in (250_000, 62_500, 15_625)]

@@ -3,9 +3,15 @@
 import numpy as np
 import xarray as xr
 
+from study.figures.annotate import note_violations
+from study.figures.labels import multiple
 from study.figures.registry import TWO_COLUMNS, Columns, figure, joined
 
-IN, OUT = "#2166ac", "#b2182b"  # colours of approach and retraction
+LOOKS = {
+    "approach": {"color": "#0072B2", "linestyle": "-", "linewidth": 1.1},
+    "retraction": {"color": "#D55E00", "linestyle": "--", "linewidth": 1.1},
+}
+"""Colours and dashes of all figures, told apart in grey."""
 EDGE = 0.2  # of the depths, what is drawn beyond the loop
 
 
@@ -26,27 +32,30 @@ def paths(case: xr.Dataset) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     return {"approach": approach, "retraction": (leaving, np.concatenate([P[before][::-1], [P_off, 0.0, 0.0]]))}
 
 
-@figure("bead_on_gel", "bead_on_gel", size=(TWO_COLUMNS, 3.0), panels=(1, 2))
+@figure("bead_on_gel", "bead_on_gel", size=(TWO_COLUMNS, 2.8), panels=(1, 2))
 def loop(panels, contacts: xr.Dataset) -> Columns:
     """Load on a bead over its depth in a gel that sticks. Grey: all contacts, also those that no cantilever holds. The
-    bead jumps in where the surfaces meet (blue), and comes off where the cantilever cannot hold it any more (red): (a)
-    on a soft cantilever, (b) on a stiff one, which follows the curve farther. Dotted:
-    -1.5 π w R, the pull-off load on a half-space.
+    bead jumps in where the surfaces meet, and comes off where the cantilever cannot hold it any more: (a) on a soft
+    cantilever, (b) on a stiff one, which follows the curve farther. Dotted: -1.5 π w R, the pull-off load on a
+    half-space. Above the panels stands which assumption of the model the contacts do not keep to: where the strain is
+    not small, linear elasticity is roughly right at best.
 
     The area of a loop is the energy that it takes.
     """
     parts = []
+    (metre, micro), (newton, nano) = (multiple(contacts[name]) for name in ("D", "P"))
     held = -1.5 * np.pi * float(contacts["w_adhesion"] * contacts["R"])
-    for axes, letter, k in zip(panels, "ab", contacts["k_machine"].values.tolist(), strict=True):
+    for axes, k in zip(panels, contacts["k_machine"].values.tolist(), strict=True):
         case = contacts.sel(k_machine=k)
-        axes.plot(case["D"] * 1e6, case["P"] * 1e9, color="0.75", linewidth=3, linestyle="-", label="all contacts")
-        ways = paths(case)
-        for (name, (D, P)), colour in zip(ways.items(), (IN, OUT), strict=True):
-            axes.plot(D * 1e6, P * 1e9, color=colour, linewidth=1.1, linestyle="-", label=name)
-            where = np.full(len(D), ("approach", "retraction").index(name))
+        axes.plot(case["D"] / micro, case["P"] / nano, color="0.75", linewidth=3, linestyle="-", label="all contacts")
+        for name, (D, P) in paths(case).items():
+            axes.plot(D / micro, P / nano, label=name, **LOOKS[name])
+            where = np.full(len(D), [*LOOKS].index(name))
             parts.append({"k (N/m)": np.full(len(D), k), "retraction": where, "D (m)": D, "P (N)": P})
-        axes.axhline(held * 1e9, color="k", linewidth=0.7, linestyle=(0, (1, 1.5)))
-        axes.set(title=f"({letter}) k = {k:g} N/m", xlabel="depth D, µm", ylabel="load P, nN")
-        axes.set(xlim=(-1.8, 1.2), ylim=(1.2 * float(contacts["P"].min()) * 1e9, 20))
-    panels[0].legend(fontsize=7, frameon=False, loc="upper left")
+        axes.axhline(held / nano, color="k", linewidth=0.7, linestyle=(0, (1, 1.5)))
+        axes.annotate(f"$k$ = {k:g} N/m", (0.97, 0.05), xycoords="axes fraction", ha="right", fontsize=8)
+        axes.set(xlabel=f"$D$, {metre}", ylabel=f"$P$, {newton}")
+        axes.set(xlim=(-1.8e-6 / micro, 1.2e-6 / micro), ylim=(1.2 * float(contacts["P"].min()) / nano, 20e-9 / nano))
+        note_violations(axes, {"all contacts": case["validity"]})
+    panels[0].legend(loc="upper left")
     return joined(parts)

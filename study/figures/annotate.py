@@ -12,12 +12,16 @@ MOST = 0.75  # of the axis: more is not shaded, the curves and the legend would 
 def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", align: str = "center") -> None:
     """Write the name of a curve at the abscissa `at`, `align`ed there (left, center, right).
 
-    It stands "above" or "below" all the lines that belong to the curve, in the colour of the first.
+    It stands "above" or "below" all the lines that belong to the curve, in the colour of the first, to which a short
+    stroke joins it where others are between.
     """
     heights = [np.interp(at, *line.get_data()) for line in lines]
     gap, anchor, height = (1, "bottom", max(heights)) if side == "above" else (-1, "top", min(heights))
-    look = {"ha": align, "va": anchor, "color": lines[0].get_color(), "textcoords": "offset points"}
-    axes.annotate(text, (at, height), (0, gap), path_effects=[withStroke(linewidth=2, foreground="white")], **look)
+    colour, halo = lines[0].get_color(), [withStroke(linewidth=2, foreground="white")]
+    look = {"ha": align, "va": anchor, "color": colour, "textcoords": "offset points"}
+    axes.annotate(text, (at, height), (0, gap), path_effects=halo, **look)
+    if height != heights[0]:
+        axes.vlines(at, *sorted((height, heights[0])), color=colour, linewidth=0.7)
 
 
 def name_panels(panels) -> None:
@@ -50,7 +54,8 @@ def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> 
         where = np.any(list(of_curves.values()), axis=0)
         along = [(1e5 * start, 1e5 * stop) for start, stop in bands(P, where)]
         if sum(stop - start for start, stop in along) > MOST * 1e5 * P[-1]:
-            loads = ", ".join(f"${low:.3g} < P < {high:.3g}$" if low else f"$P < {high:.3g}$" for low, high in along)
+            ends = (f"{low:.3g} < P < {high:.3g}" if low else f"P < {high:.3g}" for low, high in along)
+            loads = ", ".join(rf"${both} \times 10^{{-5}} E_2^* R^2$" for both in ends)
             noted.append((meaning, of_curves, "" if where.all() else f", {loads}"))
             continue
         label = f"not valid: {RULES[meaning].text} ({', '.join(of_curves)})"

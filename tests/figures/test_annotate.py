@@ -30,10 +30,11 @@ def test_shading_names_the_assumption_and_its_curves():
     shade_violations(axes, P, {"3": one, "4": nowhere, "5": two})
     assert axes.get_title("left") == f"3, 5: {WORDS[1]}\n5: {WORDS[2]}"
     shade_violations(axes, P, {"6": first.copy(data=[1, 1, 1, 0])})
-    assert axes.get_title("left") == f"6: {WORDS[1]}, $P < 0.35$", "in 1e-5 E2* R²"
+    unit = r"\times 10^{-5} E_2^* R^2$"
+    assert axes.get_title("left") == f"6: {WORDS[1]}, $P < 0.35 {unit}"
     gaps = xr.DataArray([2, 2, 0, 2, 2, 2], dims="P", attrs=attributes)
     shade_violations(axes, 1e-5 * np.arange(1, 7), {"7": gaps})
-    assert axes.get_title("left") == f"7: {WORDS[2]}, $P < 2.5$, $3.5 < P < 6$"
+    assert axes.get_title("left") == f"7: {WORDS[2]}, $P < 2.5 {unit}, $3.5 < P < 6 {unit}"
     assert len(axes.get_legend_handles_labels()[1]) == 2
     assert len(axes.patches) == bands_so_far
 
@@ -109,3 +110,14 @@ def test_panels_have_letters_unless_their_titles_have():
     panels[2].legend(title="(c) Ra = 1")
     name_panels(panels)
     assert [[text.get_text() for text in axes.texts] for axes in panels] == [["(a)"], [], [], ["(d)"]]
+
+
+def test_a_stroke_joins_a_name_to_its_curve_where_others_are_between():
+    axes = Figure().subplots()
+    curve, dotted = axes.plot([0, 2], [3, 3], color="red") + axes.plot([0, 2], [1, 1])
+    name_curve(axes, [curve, dotted], "over", 1.0)
+    assert not axes.collections
+    name_curve(axes, [curve, dotted], "under", 1.0, side="below")
+    (stroke,) = axes.collections
+    np.testing.assert_array_equal(stroke.get_segments(), [[[1, 1], [1, 3]]])
+    assert stroke.get_color()[0, :3].tolist() == [1, 0, 0]

@@ -8,6 +8,7 @@ from drawn import WORDS, bands, frame, legend, lines, texts
 
 from solver import fit_power_law
 from solver.laws.disc_cell import displacement
+from study.figures.registry import entry
 
 CASES = {"1": "rough, layered", "2": "rough, homogeneous", "1′": "smooth, layered", "2′": "smooth, homogeneous"}
 EXACT = {"1": "rough, exact layer", "1′": "smooth, exact layer"}
@@ -111,7 +112,8 @@ def test_loads_are_shaded_where_a_curve_breaks_an_assumption(drawing, results, n
             everywhere[mask] = whose
             last = int(somewhere.sum())
             assert somewhere[:last].all(), "from the smallest load on"
-            loads[mask] = "" if somewhere.all() else f", $P < {(P[last - 1] + P[last]) / 2:.3g}$"
+            unit = r" \times 10^{-5} E_2^* R^2$"
+            loads[mask] = "" if somewhere.all() else f", $P < {(P[last - 1] + P[last]) / 2:.3g}{unit}"
         elif whose:
             colour = entries.pop(f"not valid: {words}")
             shaded = np.any([(a <= trial) & (trial < b) for a, b, c in bands(axes) if c == colour], axis=0)
@@ -231,3 +233,10 @@ def test_figure_9_shows_the_exact_law_and_its_fit(drawing):
         assert axes.get_xlim() == (0, pytest.approx(0.025))
         assert axes.get_ylim()[0] == 0 and axes.get_ylim()[1] > 1.2 * drawn[-3].y.max(), "room for the legend"
     assert set(columns) == heads
+
+
+def test_captions_say_why_the_load_is_not_the_printed_one():
+    """Of all figures at P0, or over loads with P0 marked."""
+    for name in ("fig03", "fig04", "fig05", "fig06", "fig07", "fig08", "fig10"):
+        for caption in (entry("figure", name).caption, entry("figure", f"{name}_layered").caption):
+            assert "P0 = 2.704e-5 E2* R²" in caption and "The paper prints 2.72e-5" in caption, name

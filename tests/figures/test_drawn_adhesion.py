@@ -28,4 +28,5 @@ def test_the_loop_of_a_bead():
         for line, way in ((approach, 0), (retraction, 1)):
             shown = (columns["k (N/m)"] == float(k)) & (columns["retraction"] == way)
             np.testing.assert_allclose(line.x, columns["D (m)"][shown] * 1e6, rtol=1e-12)
-    assert [text.get_text() for text in panels[0].get_legend().get_texts()] == ["all contacts", "approach", "retraction"]
+    entries = [text.get_text() for text in panels[0].get_legend().get_texts()]
+    assert entries == ["all contacts", "approach", "retraction"]

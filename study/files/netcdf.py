@@ -96,7 +96,7 @@ class File:
             for name, size in sizes.items():
                 if name not in self._file.dimensions:
                     self._file.createDimension(name, size)
-            self._file.setncatts(attributes)
+            self._file.setncatts(_as_characters(attributes))
 
     def add(self, name: str, kind, dims: tuple[str, ...], attributes: dict, options: dict) -> None:
         """Make a variable without values. options : of netCDF4's createVariable"""
@@ -106,13 +106,20 @@ class File:
             made.set_auto_chartostring(False)
             if "chunksizes" in options:
                 made.set_var_chunk_cache(size=1, nelems=1)  # each chunk is written once, whole: no cache of 64 MB
-            made.setncatts(attributes)
+            made.setncatts(_as_characters(attributes))
 
     def write(self, name: str, array: np.ndarray, window: dict[str, slice] | None = None) -> None:
         """The values of a variable, or of its part within a window."""
         with self._access():
             variable, window = self._file[name], window or {}
             variable[tuple(window.get(dim, slice(None)) for dim in variable.dimensions)] = array
+
+
+def _as_characters(attributes: dict) -> dict:
+    """Attributes whose texts become characters in UTF-8 (NC_CHAR). netCDF4 makes a text that is not ASCII an NC_STRING,
+    at which the netcdf package of Octave gives up."""
+    return {name: text.encode() if isinstance(text, str) and not text.isascii() else text
+            for name, text in attributes.items()}  # fmt: skip
 
 
 def _attributes(of: netCDF4.Dataset | netCDF4.Variable) -> dict:

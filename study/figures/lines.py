@@ -204,7 +204,7 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
         spread = {name: np.broadcast_to(curve[name].values, len(up)) for name in (f"{banded}_spread",) if name in curve}
         points = across / sizes[0], up / sizes[1], np.where(valid, up, np.nan) / sizes[1]
         halves = [half / sizes[banded != x] for half in spread.values()]
-        if along == "x":
+        if along == "x" and "status" in curve:  # x of another program is no radius over a
             radii, profiles = between(curve["x"].values, [*points, *halves])
             points, halves = (radii / sizes[0] if x == "x" else profiles[0], *profiles[1:3]), profiles[3:]
         for half in halves:

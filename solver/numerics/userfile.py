@@ -51,6 +51,18 @@ def content(path, most=LARGEST):
         return file.read(os.fstat(file.fileno()).st_size)
 
 
+def begins(path, most=LARGEST, size=65_536):
+    """The first bytes of a file, unpacked where gzip has packed them. Raises as `opened`."""
+    with opened(path, most) as file:
+        raw = file.read(size)
+    if raw.startswith(_GZIP):
+        try:
+            return gzip.GzipFile(fileobj=io.BytesIO(raw)).read1(size)
+        except (OSError, EOFError, zlib.error):  # who reads it all says so
+            return b""
+    return raw
+
+
 def unpacked(raw, most=LARGEST):
     """The bytes of a file, unpacked where gzip has packed them. Raises ValueError for a damaged packing, and
     :class:`TooLarge` for more than `most` bytes, of which no more are unpacked."""

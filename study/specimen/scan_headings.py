@@ -73,6 +73,8 @@ def check_units(table: NumberTable, unit: str, height_unit: str, places: list, n
     width = table.numbers.shape[1]
     columns, line = _column_units(table, width)
     of_heights, its_line = _value_unit(table)
+    if of_heights and length(of_heights) is None and any(f.search(line) for _, line in table.heading for f in _FACTORS):
+        of_heights = ""  # "data unit=rad" before the factor that makes metres of it
     for i, place in enumerate(places):
         argument, value = ("height_unit", height_unit) if i == len(places) - 1 else ("unit", unit)
         words, said = ([of_heights], its_line) if of_heights and argument == "height_unit" else (columns, line)

@@ -4,13 +4,13 @@ What stands in the heading is read by scan_headings.
 """
 
 import csv
-import gzip
 import re
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
+from solver.numerics import userfile
 
 from .scan import FEWEST
 
@@ -51,12 +51,12 @@ class NumberTable:
 
 def text_of(path: Path) -> str | None:
     """The text of a file in UTF-8, UTF-16 or Latin-1, unpacked if it is gzip; None if it is no text."""
-    raw = path.read_bytes()
-    if raw.startswith(b"\x1f\x8b"):
-        try:
-            raw = gzip.decompress(raw)
-        except (OSError, EOFError, zlib.error) as error:
-            raise ValueError(f"{path.name}: the packed file is damaged: {error}") from error
+    try:
+        is_text = not _BINARY.search(userfile.begins(path).decode("latin-1"))  # nor one in UTF-16
+        most = userfile.LARGEST_TEXT if is_text else userfile.LARGEST
+        raw = userfile.unpacked(userfile.content(path, most), most)
+    except ValueError as error:  # of the door
+        raise ValueError(f"{path.name}: {error}") from error
     if raw.startswith(b"ISO 5436"):  # separated by zeros
         raw = raw.replace(b"\0", b" ")
     zeros = [raw[parity::2].count(0) for parity in (0, 1)]

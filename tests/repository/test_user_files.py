@@ -3,7 +3,9 @@
 import ast
 import gzip
 import os
+import re
 import zipfile
+from functools import cache
 
 import pytest
 from conftest import ROOT
@@ -26,12 +28,13 @@ OPENERS |= {
     "loadmat",
     "read_array",
 }
-#: Modules whose `load` reads a file.
-LOADING = {"np", "numpy", "json", "tomllib", "pickle", "marshal", "joblib", "yaml"}
+WORDS = re.compile(rf"\b({'|'.join(OPENERS - {'load', 'Dataset', 'File'})}|load\(|netCDF4|h5py)\b")
+#: Of names that mean something else too, the modules in which they open a file.
+MODULES = {"load": {"np", "numpy", "json", "tomllib", "pickle", "marshal", "joblib", "yaml"}, "Dataset": {"netCDF4"}}
+MODULES |= {"File": {"h5py", "h5netcdf"}}
 #: Where the program opens what is its own, or what the door has let through.
 OWN = {
     "solver/laws/lattice.py": "a table of the package",
-    "solver/numerics/profiles.py": "a table of the package",
     "solver/numerics/special.py": "a table of the package",
     "study/explorer/page.py": "scripts of the package",
     "study/inputs/places.py": "the book in the package",
@@ -44,9 +47,8 @@ OWN = {
     "study/catalogue.py": "pictures that are drawn by hand, in the book",
     "study/figures/record.py": "the record of drawn figures, whose kind and size it has looked at",
     "study/files/": "results: whoever reads them looks for pipes and folders (tests/files/test_unusable.py)",
+    "study/work/processes.py": "the pipe to a process of its own",
     "study/store/": "blocks of results: likewise",
-    "study/api.py": "results, by study/files",
-    "study/figures/": "results, by study/api.py",
     "study/inverse/afm/reading.py": "by afmformats, what the door has checked",
     "study/specimen/scan_files.py": "by SurfaceTopography, what the door has checked",
     "study/specimen/scan_grids.py": "numpy, from a file that the door has opened",
@@ -55,15 +57,17 @@ OWN = {
 }
 
 
+@cache
 def opening() -> dict[str, set[str]]:
     """File -> the openers that it calls, or hands on."""
     calls: dict[str, set[str]] = {}
     for path in [*(ROOT / "solver").rglob("*.py"), *(ROOT / "study").rglob("*.py")]:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        text = path.read_text(encoding="utf-8")
+        for node in ast.walk(ast.parse(text)) if WORDS.search(text) else ():
             name, base = (node.attr, node.value) if isinstance(node, ast.Attribute) else (getattr(node, "id", ""), None)
             of = getattr(base, "id", "")
-            if name == "load" and of not in LOADING or (name == "open" and of in ("study", "self")):
-                continue  # the load of a contact, the results of a study
+            if of not in MODULES.get(name, {of}) or (name == "open" and of in ("study", "self")):
+                continue  # the load of a contact, a Dataset of xarray, the results of a study
             if name in OPENERS and isinstance(node.ctx, ast.Load):
                 calls.setdefault(path.relative_to(ROOT).as_posix(), set()).add(name)
     return calls

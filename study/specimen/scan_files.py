@@ -48,8 +48,9 @@ def read(
     where commas do not separate, a comma. What stands before the first line of numbers, or behind # and %, is a
     comment. An empty field, nan, Bad, ***, -- and - are missing points. Text may be UTF-8, UTF-16 or packed (.gz).
 
-    SDF, SMD and PRF in text, and every other ending (.sur, .opd, .x3p, .gwy, …), have their lengths in the file. The
-    package SurfaceTopography reads the formats of instruments: pip install 'roughcoat[topography]'.
+    SDF, SMD and PRF in text, netCDF, X3P and every other ending (.sur, .opd, .gwy, …) have their lengths in the file.
+    The package SurfaceTopography reads the formats of instruments: pip install 'roughcoat[topography]'. Axes of netCDF
+    are told by the names of the dimensions, x and y. A mask of Gwyddion marks points, and takes none away.
 
     Parameters
     ----------

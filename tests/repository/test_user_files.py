@@ -10,6 +10,7 @@ from functools import cache
 import pytest
 from conftest import ROOT
 
+import study
 from solver.numerics import userfile
 from solver.numerics.userfile import NoFile, TooLarge, begins, checked, content, unpacked
 
@@ -120,3 +121,28 @@ def test_what_is_packed_is_not_unpacked_beyond_the_limit(tmp_path):
     with pytest.raises(TooLarge, match="^has 1000000 bytes once unpacked: must have at most 10000$"):
         checked(tmp_path / "a.zip", 10_000)
     assert userfile.LARGEST_TEXT < userfile.LARGEST
+
+
+READERS = {
+    "curves": study.curves,
+    "fit": lambda path: study.fit(path, free=["E2"], R="1 mm", base="half_space", micro="smooth"),
+    "scan": lambda path: study.roughness.read(path, unit="um"),
+    "materials": study.materials.read,
+    "study file": study.load,
+    "tip": lambda path: study.solve(P=1e-5, base="half_space", micro="smooth", shape=f"table:{path}"),
+    "graded layer": lambda path: study.solve(
+        P=1e-5, base="stack", micro="smooth", layers=[{"h": 0.1, "nu": 0.3, "profile": f"table:{path}"}]
+    ),
+    "law": lambda path: study.solve(P=1e-5, base="half_space", micro=f"table:{path}"),
+}
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes")
+@pytest.mark.parametrize("name", READERS)
+def test_each_reader_comes_through_it(tmp_path, name):
+    """A pipe was waited for, /dev/zero read until the memory was full."""
+    os.mkfifo(tmp_path / "pipe.toml")
+    (tmp_path / "zero.toml").symlink_to("/dev/zero")
+    for path in (str(tmp_path / "pipe.toml"), str(tmp_path / "zero.toml")):
+        with pytest.raises(ValueError, match="is no file but a pipe or device|is no regular file"):
+            READERS[name](path)

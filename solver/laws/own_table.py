@@ -7,13 +7,12 @@ that goes through the first two rows. A table with the columns z and share is a 
 
 import csv
 import hashlib
-import os
-import stat
 from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
 
+from ..numerics.userfile import NoFile, TooLarge, content
 from . import heights
 from .tabulated import LawTable, fitted, law_of, t_of
 
@@ -63,23 +62,17 @@ def read(name):
 
 
 def _text_of(path):
-    """The text of a file of numbers. Raises ValueError for a pipe, which would be waited for, a device, which may have
-    no end, and a file that is too large; OSError where it cannot be read."""
-    _check_file(path.stat())  # before it is opened: to open a device may do something
-    with open(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)), "rb") as file:
-        status = os.fstat(file.fileno())
-        _check_file(status)  # it may have become a pipe
-        # no more than its size: files of /proc, some of which have no end, have the size 0
-        return file.read(status.st_size).decode("utf-8-sig")
-
-
-def _check_file(status):
-    """Raise ValueError for an `os.stat_result` that no table can have."""
-    if not stat.S_ISREG(status.st_mode):
-        what = "folder" if stat.S_ISDIR(status.st_mode) else "pipe or device"
-        raise ValueError(f"is no file but a {what}: a table is a text file of numbers")
-    if status.st_size > LARGEST:
-        raise ValueError(f"has {status.st_size} bytes: must have at most {LARGEST}, some 100,000 rows")
+    """The text of a file of numbers. Raises ValueError for what is no file and for one that is too large; OSError where
+    it cannot be read."""
+    no_table = "a table is a text file of numbers"
+    try:
+        return content(path, LARGEST).decode("utf-8-sig")
+    except IsADirectoryError:
+        raise ValueError(f"is no file but a folder: {no_table}") from None
+    except NoFile as error:
+        raise ValueError(f"{error}: {no_table}") from None
+    except TooLarge as error:
+        raise ValueError(f"{error}, some 100,000 rows") from None
 
 
 @lru_cache(maxsize=16)

@@ -2,9 +2,12 @@
 
 import csv
 import hashlib
+import io
 from typing import NamedTuple
 
 import numpy as np
+
+from .userfile import content
 
 __all__ = ["GRADED", "PREFIX", "TABLES", "WORDS", "Table", "identity", "read"]
 
@@ -13,8 +16,8 @@ WORDS = ("uniform", "exponential", "linear")
 GRADED = WORDS[1:]
 #: "table:" and the path of a CSV file is a profile too.
 PREFIX = "table:"
-#: Most rows of a table, and its least and largest modulus.
-_ROWS, _LEAST, _MOST = 10_000, 1e-9, 1e9
+#: Most rows of a table, most bytes of the file, and its least and largest modulus.
+_ROWS, _LARGEST, _LEAST, _MOST = 10_000, 10_000_000, 1e-9, 1e9
 
 
 class Table(NamedTuple):
@@ -36,11 +39,11 @@ def read(word):
     """
     path = word.removeprefix(PREFIX)
     try:
-        with open(path, newline="", encoding="utf-8") as file:
-            lines = [line for line in csv.reader(file) if line and not line[0].lstrip().startswith("#")]
+        text = io.StringIO(content(path, _LARGEST).decode("utf-8-sig"), newline="")
+        lines = [line for line in csv.reader(text) if line and not line[0].lstrip().startswith("#")]
         lines = lines[1:] if lines and not is_number(lines[0][0]) else lines
         rows = np.array([[float(cell) for cell in line] for line in lines[: _ROWS + 1]])
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, csv.Error) as error:
         raise ValueError(f"profile {word}: cannot be read: {error}") from None
     if rows.ndim != 2 or rows.shape[1] != 2 or not 2 <= len(rows) <= _ROWS:
         raise ValueError(f"profile {word}: must have two columns, z/h and E*/E2*, and 2 to {_ROWS} rows")

@@ -7,12 +7,14 @@ not meet the rows.
 
 import csv
 import hashlib
+import io
 import re
 from typing import NamedTuple
 
 import numpy as np
 
 from ..numerics.profiles import is_number
+from ..numerics.userfile import content
 from ..parameters import Parameter
 from .lines import Series, series_of
 from .shape import Kind, column, load_by_quadrature
@@ -22,8 +24,9 @@ PREFIX = "table:"
 TABLE_UNIT = Parameter(
     interval="(0, inf)", powers=(0, 1), instead="", long_name="length that 1 in the table of the shape stands for"
 )
-#: Most rows, and by which part of the largest a slope may fall: the rounding of a table that is straight there.
-_ROWS, _FALLS = 1_000, 1e-9
+#: Most rows, most bytes of the file, and by which part of the largest a slope may fall: the rounding of a table that is
+#: straight there.
+_ROWS, _LARGEST, _FALLS = 1_000, 10_000_000, 1e-9
 #: A change of f'' below this part of the largest f'' is rounding, and no kink.
 _STRAIGHT = 1e-9
 #: Units of length that a header may name, in m.
@@ -170,10 +173,9 @@ def _bound(word, table_unit):
 def _rows(word):
     path = word.removeprefix(PREFIX)
     try:
-        with open(path, newline="", encoding="utf-8-sig") as file:
-            reader = csv.reader(file)
-            lines = [(reader.line_num, line) for line in reader if line and not line[0].lstrip().startswith("#")]
-    except (OSError, ValueError) as error:
+        reader = csv.reader(io.StringIO(content(path, _LARGEST).decode("utf-8-sig"), newline=""))
+        lines = [(reader.line_num, line) for line in reader if line and not line[0].lstrip().startswith("#")]
+    except (OSError, ValueError, csv.Error) as error:
         message = f"cannot be read: {error}" if path else 'names no file: "table:tip.csv"'
         raise ValueError(f"shape {word}: {message}") from None
     header = lines.pop(0)[1] if lines and not is_number(lines[0][1][0]) else []

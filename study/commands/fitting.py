@@ -17,6 +17,7 @@ from ..figures.lines import plot
 from ..in_words import summary
 from ..inputs.definition import StudyError
 from ..inputs.vocabulary import ROWS, absent, suggest
+from ..inverse.curves import curves
 from ..inverse.fit import fit as fitted_by
 from ..terminal import answer, say
 from .arguments import SWITCH
@@ -25,6 +26,7 @@ from .point import parameters_of
 _RANGE = re.compile(r"\s*\.\.\s*")
 _SWITCHES = ("contact_point", "baseline", "tilt")
 _OPTIONS = (*_SWITCHES, "x", "y", "sigma", "loss", "intervals", "level", "free")
+_READING = ("part", "curve", "spring_constant", "sensitivity")  # of `study.curves`
 _PYTHON = ("plan", "progress")  # options of `study.fit` that a terminal does not have
 
 
@@ -38,14 +40,15 @@ def fit(options, texts: list[str]) -> int:
     path, *words = texts
     if "=" in path and not Path(path).exists():
         raise StudyError([f"{path}: the file of the curve comes first, then what is known: fit curve.csv {path} ..."])
-    free, settings, parameters = asked(words)
+    reading = _reading([word for word in words if _name(word) in _READING])
+    free, settings, parameters = asked([word for word in words if _name(word) not in _READING])
     picture = options.plot
     if picture and not picture.lower().endswith((".png", ".pdf", ".svg")):
         raise StudyError([f"--plot {picture}: must end with one of .png, .pdf, .svg"])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the summary says it
         try:
-            fitted = fitted_by(path, free=free, **settings, **parameters)
+            fitted = fitted_by(curves(path, **reading) if reading else path, free=free, **settings, **parameters)
         except StudyError as error:
             raise StudyError(message.removeprefix("fit: ") for message in error.messages) from None
     code = answer(as_json(fitted) if options.json else summary(fitted))
@@ -55,6 +58,21 @@ def fit(options, texts: list[str]) -> int:
         say(f"figure: {write(Path(picture), page.getvalue()).as_posix()}", sys.stderr)
     usable = fitted["fit_status"].isin([0, 1, 3, 4])
     return code or int(not usable.all())
+
+
+def _name(word: str) -> str:
+    return word.partition("=")[0].strip()
+
+
+def _reading(words: list[str]) -> dict[str, Any]:
+    """The options of `study.curves`. StudyError for one that is given twice."""
+    names = [_name(word) for word in words]
+    if errors := [f"{name} is given twice" for name in _READING if names.count(name) > 1]:
+        raise StudyError(errors)
+    reading: dict[str, Any] = {_name(word): word.partition("=")[2].strip() for word in words}
+    if re.fullmatch(r"-?\d{1,9}", reading.get("curve", "")):
+        reading["curve"] = int(reading["curve"])
+    return reading
 
 
 def asked(words: list[str]) -> tuple[Any, dict, dict]:
@@ -92,7 +110,7 @@ def _no_option(name: str) -> str:
     """What is said of a name that is like an option but none; "" of others."""
     if name in _PYTHON:
         return f"{name} is an option of study.fit in Python alone (docs/fit.md): leave it out"
-    near = "" if name in (*_OPTIONS, *ROWS) or absent(name) else suggest(name, _OPTIONS)
+    near = "" if name in (*_OPTIONS, *ROWS) or absent(name) else suggest(name, (*_OPTIONS, *_READING))
     return f'"{name}" is neither an option nor an input{near}' if "did you mean" in near else ""
 
 

@@ -15,6 +15,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
 
+from solver.numerics.userfile import LARGEST_TEXT, content
+
 from ..inputs.definition import StudyError
 from ..inputs.places import BOOK, STUDIES, chapters, packaged, root_of
 from ..inputs.vocabulary import suggest
@@ -70,7 +72,7 @@ def names_in(file: Path) -> dict[tuple[str, str], bool]:
 def read(path: Path, _: tuple) -> Text:
     """What stands in a file; the second argument changes when the file does. Raises StudyError if it is no Python."""
     try:
-        nodes = list(ast.walk(ast.parse(path.read_bytes())))
+        nodes = list(ast.walk(ast.parse(content(path, LARGEST_TEXT))))
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:  # some of a null byte, or of deep brackets
         line = f"line {error.lineno}: " if isinstance(error, SyntaxError) and error.lineno else ""
         raise StudyError([f"{path.as_posix()}: is no Python: {line}{getattr(error, 'msg', error)}"]) from None

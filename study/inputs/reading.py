@@ -6,12 +6,15 @@ follows `NAME_spread`.
 """
 
 import errno
+import math
 import re
 import tomllib
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import Any
+
+from solver.numerics.userfile import NoFile, opened
 
 from ..terminal import on_one_line, shown
 from .definition import LARGE, MOST_VALUES, Definition, StudyError, refusal, settings
@@ -166,10 +169,11 @@ def _table(tables: dict, section: str, keys: tuple[str, ...] | None, errors: lis
 
 def text_in(path: Path) -> str:
     """The text of a study file. Raises OSError, or ValueError for wrong UTF-8 and keys of too many parts."""
-    if path.exists() and not path.is_file() and not path.is_dir():  # opening a folder has a message of its own
-        raise OSError(errno.EINVAL, "is no regular file")
-    with open(path, "rb") as file:
-        raw = file.read(LARGEST_FILE + 1)
+    try:
+        with opened(path, math.inf) as file:
+            raw = file.read(LARGEST_FILE + 1)
+    except NoFile:
+        raise OSError(errno.EINVAL, "is no regular file") from None
     if len(raw) > LARGEST_FILE:
         raise OSError(errno.EFBIG, f"is larger than {LARGEST_FILE // 1_000_000} MB; ranges and [sample] keep it small")
     text = raw.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")

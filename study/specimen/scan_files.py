@@ -1,18 +1,21 @@
 """Scans from files: text and CSV, .npy, and the formats of instruments by the package SurfaceTopography."""
 
 import contextlib
-import gzip
 import io
 import re
 import warnings
 from collections.abc import Sequence
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
 import numpy as np
 
+from solver.numerics.userfile import begins, checked, content, unpacked
+
+from .formats import netcdf, x3p
 from .scan import FEWEST, Scan, metres, number
-from .scan_grids import columns_of, npy_table, on_grid, scan_of
+from .scan_grids import columns_of, npy_table, on_grid, scan_of, without_holes
 from .scan_headings import check_units, height_metres, stated, without_no_data
 from .scan_texts import NumberTable, table_of, text_of
 
@@ -45,8 +48,9 @@ def read(
     where commas do not separate, a comma. What stands before the first line of numbers, or behind # and %, is a
     comment. An empty field, nan, Bad, ***, -- and - are missing points. Text may be UTF-8, UTF-16 or packed (.gz).
 
-    SDF, SMD and PRF in text, and every other ending (.sur, .opd, .x3p, .gwy, …), have their lengths in the file. The
-    package SurfaceTopography reads the formats of instruments: pip install 'roughcoat[topography]'.
+    SDF, SMD and PRF in text, netCDF, X3P and every other ending (.sur, .opd, .gwy, …) have their lengths in the file.
+    The package SurfaceTopography reads the formats of instruments: pip install 'roughcoat[topography]'. Axes of netCDF
+    are told by the names of the dimensions, x and y. A mask of Gwyddion marks points, and takes none away.
 
     Parameters
     ----------
@@ -70,19 +74,41 @@ def read(
     ImportError : the format of an instrument, and SurfaceTopography is not installed
     """
     path = Path(path)
-    if path.exists() and not path.is_file() and not path.is_dir():  # a pipe would be waited for, a device has no end
-        raise ValueError(f"{path.name}: is no file but a pipe or device")
+    try:
+        if path.exists():  # who reads it says that it is not there
+            checked(path)
+    except ValueError as error:
+        raise ValueError(f"{path.name}: {error}") from None
     ending, how = path.suffix.lower(), {"missing": missing, "steep": steep, "huge": huge}
     arguments = {"unit": unit, "height_unit": height_unit, "dx": dx, "dy": dy, "columns": columns}
     arguments = {name: value for name, value in arguments.items() if value is not None}
     text = text_of(path) if ending in TEXT else None
     if ending != ".npy" and text is None:
-        return _instrument(path, arguments, channel, crop, how)
+        scan = _of_own_format(path, arguments, channel, crop, how)
+        return scan if scan is not None else _instrument(path, arguments, channel, crop, how)
     if text is not None:
         return _of_text(path.name, text, arguments, channel, crop, how)
     if channel is not None:
         raise ValueError(f"{path.name}: channel = {channel!r}: .npy has no channels; leave it out")
     return _of_table(path.name, npy_table(path), arguments, crop, how)
+
+
+def _of_own_format(path: Path, arguments: dict, channel: str | None, crop, how: dict) -> Scan | None:
+    """The scan of a netCDF or X3P file; None if it is neither."""
+    name, head = path.name, begins(path) if path.exists() else b""
+    if head.startswith(netcdf.MAGIC):
+        if more := [key for key in arguments if key == "columns"]:
+            raise ValueError(f"{name}: the format states its lengths itself; leave out {more[0]}")
+        heights = netcdf.read(unpacked(content(path)), arguments, channel, name)
+        return None if heights is None else scan_of(name, **heights._asdict(), crop=crop, how=how)
+    if not head.startswith(b"PK") or (surface := x3p.read(unpacked(content(path)), name)) is None:
+        return None
+    if arguments or channel is not None:
+        more = ", ".join([*arguments, *["channel"] * (channel is not None)])
+        raise ValueError(f"{name}: the format states its lengths itself; leave out {more}")
+    z, steps = surface
+    positions = [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
+    return scan_of(name, z, positions, steps=steps, crop=crop, how=how)
 
 
 def _of_text(name: str, text: str, arguments: dict, channel: str | None, crop, how: dict) -> Scan:
@@ -127,6 +153,8 @@ def _of_table(name: str, table: NumberTable, arguments: dict, crop, how: dict) -
             f"text and .npy{said}"
         )
     unit, height_unit = arguments["unit"], arguments.get("height_unit", arguments["unit"])
+    cleaned, holes = without_holes(table.numbers)
+    table = replace(table, numbers=cleaned, notes=table.notes + holes)
     columns, places = columns_of(table, arguments, name)
     dx = number(f"{name}: dx", arguments["dx"], unit) if "dx" in arguments else None
     dy = number(f"{name}: dy", arguments["dy"], unit) if "dy" in arguments else dx
@@ -177,6 +205,9 @@ def _instrument(path: Path, arguments: dict, channel: str | None, crop, how: dic
         raise ValueError(f"{name}: the format states its lengths itself; leave out {', '.join(more)}")
     if "dx" in lacks and not {"dx", "unit"} <= arguments.keys():
         raise ValueError(f"{name}: the file states no distance of its points: give dx (and dy) and unit")
+    if kind == "h5" and channel is None and len(channels) > 1:
+        named = ", ".join(repr(each.channel_id) for each in channels)
+        raise ValueError(f"{name}: the file has the data sets {named}: choose the heights with channel=")
     how_read = {"channel_index": chosen.index} if chosen and chosen is not default else {}
     if "dx" in lacks:
         steps = (
@@ -186,7 +217,33 @@ def _instrument(path: Path, arguments: dict, channel: str | None, crop, how: dic
         how_read["physical_sizes"] = tuple(n * step for n, step in zip(chosen.nb_grid_pts, steps, strict=False))
     with _as_value_error(refused, ending):
         topography = library.read_topography(_source(path), **how_read)
+        if kind == "gwy":
+            topography, of_mask = _without_mask(library, topography, chosen)
+            notes += of_mask
     return _of_instrument(topography, name, arguments, crop, notes, how, refused)
+
+
+def _without_mask(library, topography, channel) -> tuple:
+    """A map of Gwyddion with the heights under its mask, and a note of them.
+
+    The mask is what somebody has marked, grains or dust, and the heights below it are measured. Only where Gwyddion
+    itself has replaced missing points, all by the mean of the others, it says what is missing: then it stays.
+    """
+    measured = topography
+    while hasattr(measured, "parent_topography"):  # the heights as they are in the file, without a scale
+        measured = measured.parent_topography
+    z = np.ma.asarray(measured.heights())
+    mask, data = np.ma.getmaskarray(z), np.ma.getdata(z)
+    if not mask.any() or mask.all():
+        return topography, ()
+    there = data[~mask]
+    if np.allclose(data[mask], there.mean(), rtol=0, atol=1e-6 * (np.ptp(there) or 1.0)):
+        return topography, (
+            "the points under the mask have the mean height: Gwyddion has put it where they are missing",
+        )
+    note = f"{mask.sum()} of {mask.size} points are under a mask of Gwyddion, which marks them: their heights are taken"
+    whole = library.Topography(data.copy(), measured.physical_sizes, unit=channel.unit)
+    return whole.scale(channel.height_scale_factor or 1.0), (note,)
 
 
 def _of_instrument(topography, name: str, arguments: dict, crop, notes: tuple, how: dict, refused: str) -> Scan:
@@ -195,9 +252,12 @@ def _of_instrument(topography, name: str, arguments: dict, crop, notes: tuple, h
     if (topography.unit is None) == (unit is None):
         said = "no unit of length; give unit" if unit is None else f"the unit {topography.unit!r}; leave out unit"
         raise ValueError(f"{name}: the file states {said}")
-    with _as_value_error(refused, ""):
+    with _as_value_error(refused, ""), np.errstate(over="ignore"):
         topography = topography if unit else topography.to_unit("m")
         z = np.ma.filled(np.ma.asarray(topography.heights()).astype(float), np.nan).T
+        if re.search("label|mask", str(notes[:1]).partition(" of ")[0], re.IGNORECASE) and (z % 1 == 0).all():
+            raise ValueError(f"{notes[0]} has labels, which are no heights")
+        z = np.where(np.isinf(z), np.copysign(1e300, z), z)  # the largest number times a scale: `scan_of` says so
         steps = [float(step) for step in np.atleast_1d(topography.pixel_size)][::-1] if topography.is_uniform else None
         positions = None if steps else [np.asarray(topography.positions(), dtype=float)]
     units = (unit, arguments.get("height_unit", unit)) if unit else ("m", "m")
@@ -207,7 +267,7 @@ def _of_instrument(topography, name: str, arguments: dict, crop, notes: tuple, h
 
 def _source(path: Path):
     """The path, or the unpacked content of a .gz file."""
-    return str(path) if path.suffix.lower() != ".gz" else io.BytesIO(gzip.decompress(path.read_bytes()))
+    return str(path) if path.suffix.lower() != ".gz" else io.BytesIO(unpacked(content(path)))
 
 
 @contextlib.contextmanager

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.lib.format import MAGIC_PREFIX
 
+from solver.numerics.userfile import begins, opened
+
 from .foreign import plain
 from .quantities import has_unit, quantity
 from .scan import FEWEST, UNEVEN, Scan, height_map, metres, number, profile
@@ -17,23 +19,36 @@ from .scan_texts import NumberTable
 FULL = 0.25
 #: A position may be off the grid by its last written digit, if that is at most this share of the whole length.
 COARSE = 0.01
+#: A number this large is no height in any unit, and finite: programs mark missing points with the largest number that
+#: they have, 1.7e38, 3.4e38 or 1.8e308, times the scale of the heights perhaps.
+NO_HEIGHT = 1e20
 
 
 def npy_table(path: Path) -> NumberTable:
     """The numbers in a .npy file. Raises ValueError: it is none, whatever its name, or no array of real numbers."""
     refused = f"{path.name}: not a .npy file of real numbers"
-    with open(path, "rb") as file:
-        begins = file.read(len(MAGIC_PREFIX))
-    if begins != MAGIC_PREFIX:  # numpy would open a zip, and speak of pickled data of all else
-        zipped = "a zip file: save one array of it by numpy.save" if begins.startswith(b"PK") else "of another format"
-        raise ValueError(f"{refused}: it is {zipped if begins else 'empty'}")
+    head = begins(path, size=len(MAGIC_PREFIX))
+    if head != MAGIC_PREFIX:  # numpy would open a zip, and speak of pickled data of all else
+        zipped = "a zip file: save one array of it by numpy.save" if head.startswith(b"PK") else "of another format"
+        raise ValueError(f"{refused}: it is {zipped if head else 'empty'}")
     try:
-        numbers = np.load(path, allow_pickle=False).astype(float, casting="same_kind")
+        with opened(path) as file:
+            numbers = np.load(file, allow_pickle=False).astype(float, casting="same_kind")
     except Exception as error:  # numpy takes the header for Python, and allocates what it says
         raise ValueError(f"{refused}: {(str(error).splitlines() or [type(error).__name__])[0][:200]}") from error
     if numbers.ndim not in (1, 2) or not numbers.size:
         raise ValueError(f"{path.name}: an array of shape {numbers.shape}; allowed are one or two dimensions")
     return NumberTable(numbers.reshape(len(numbers), -1))
+
+
+def without_holes(z: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
+    """The numbers, NaN where one is too large for a height, and a note of them."""
+    holes = np.isfinite(z) & (np.abs(z) >= NO_HEIGHT)
+    if not holes.any():
+        return z, ()
+    return np.where(holes, np.nan, z), (
+        f"{holes.sum()} of {z.size} heights are larger than any: they are missing points",
+    )
 
 
 def columns_of(table: NumberTable, arguments: dict, name: str) -> tuple[np.ndarray, list]:
@@ -173,6 +188,8 @@ def scan_of(name, z, positions, *, steps=None, units=("m", "m"), crop=None, note
     notes : sentences about how the file was read
     how : missing, steep and huge of `height_map`
     """
+    z, holes = without_holes(z)
+    notes = (*notes, *holes)
     how = how | {"unit": units[0], "height_unit": units[1], "name": name}
     if crop is not None:
         part = _part(crop, positions, units[0], name)

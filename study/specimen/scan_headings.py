@@ -73,6 +73,8 @@ def check_units(table: NumberTable, unit: str, height_unit: str, places: list, n
     width = table.numbers.shape[1]
     columns, line = _column_units(table, width)
     of_heights, its_line = _value_unit(table)
+    if of_heights and length(of_heights) is None and any(f.search(line) for _, line in table.heading for f in _FACTORS):
+        of_heights = ""  # "data unit=rad" before the factor that makes metres of it
     for i, place in enumerate(places):
         argument, value = ("height_unit", height_unit) if i == len(places) - 1 else ("unit", unit)
         words, said = ([of_heights], its_line) if of_heights and argument == "height_unit" else (columns, line)
@@ -120,12 +122,12 @@ def height_metres(table: NumberTable, height_unit: str, name: str) -> tuple[floa
     A factor that the heading states with its unit ("height conversion factor (-> m)=6.3e-008", "Bit2nm = 0.012") is
     applied where height_unit is this unit. Any other line that looks like a scale raises ValueError.
     """
-    size, notes = metres(height_unit, name), ()
+    size, notes, value_unit = metres(height_unit, name), (), _value_unit(table)[0]
     has_column_unit = any(re.search(rf"\(\s*{_UNIT}\s*\)", line) for _, line in table.heading)
     for number, line in table.heading:
         if has_column_unit and line.lstrip('#%" ').startswith("\\"):  # of a Nanoscope, whose table has "Height(nm)"
             continue
-        said, conversion = f'{name}, line {number}: "{line[:80]}"', _factor(table, line)
+        said, conversion = f'{name}, line {number}: "{line[:80]}"', _factor(table, line, value_unit)
         if not conversion:
             _no_scale(line[:300], size, said)
             continue
@@ -143,12 +145,12 @@ def height_metres(table: NumberTable, height_unit: str, name: str) -> tuple[floa
     return size, notes
 
 
-def _factor(table: NumberTable, line: str) -> tuple[float, str] | None:
+def _factor(table: NumberTable, line: str, value_unit: str) -> tuple[float, str] | None:
     """The factor that a line states, and the unit that it leads to."""
     if table.heading[0][1].startswith("Wyko ASCII"):
         return _wyko(table) if re.match(r"wavelength\s", line, re.IGNORECASE) else (1.0, "nm")
     match = next((match for pattern in _FACTORS if (match := pattern.search(line))), None)
-    if not match or (match["unit"] == "nm" and "2nm" in line.lower() and _value_unit(table)[0]):
+    if not match or (match["unit"] == "nm" and "2nm" in line.lower() and value_unit):
         return None  # SPIP leaves open whether a file with a z-unit has been multiplied
     return float(match["factor"].replace(",", ".")), match["unit"]
 
@@ -183,7 +185,7 @@ def without_no_data(table: NumberTable, columns: np.ndarray, name: str) -> tuple
 
     Raises ValueError: a map has other rows or columns than the heading says.
     """
-    notes = ()
+    notes, marks = (), set()
     for number, line in table.heading:
         size = _SIZE.match(line)
         shape = dict(zip(("rows", "columns"), table.numbers.shape, strict=True))
@@ -195,6 +197,9 @@ def without_no_data(table: NumberTable, columns: np.ndarray, name: str) -> tuple
                 )
         if match := _NO_DATA.search(line):
             value = float(match[1].replace(",", "."))
+            if value in marks:
+                continue
+            marks.add(value)
             bad = np.isclose(columns, value, rtol=1e-6, atol=0)
             columns = np.where(bad, np.nan, columns)
             notes += (f"{bad.sum()} heights of {value:g} are missing points, as line {number} says",) * bool(bad.any())

@@ -4,19 +4,24 @@ What stands in the heading is read by scan_headings.
 """
 
 import csv
-import gzip
 import re
-import zlib
+from array import array
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+
+from solver.numerics import userfile
 
 from .scan import FEWEST
 
 #: (separator, decimal mark) of a text file. The first pair that fits its first line of numbers is taken; if only whole
 #: numbers stand there, the first line with a decimal mark shows it. (",", ",") fits fields in quotation marks alone.
 DIALECTS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","), (",", ","))
+#: Rows that are packed into an array at a time.
+_BLOCK = 10_000
 #: What stands for a missing point in a row of numbers, in small letters.
 MISSING = ("", "nan", "bad", "***", "--", "-")
 #: "1,024": this comma may be no decimal mark.
@@ -51,12 +56,12 @@ class NumberTable:
 
 def text_of(path: Path) -> str | None:
     """The text of a file in UTF-8, UTF-16 or Latin-1, unpacked if it is gzip; None if it is no text."""
-    raw = path.read_bytes()
-    if raw.startswith(b"\x1f\x8b"):
-        try:
-            raw = gzip.decompress(raw)
-        except (OSError, EOFError, zlib.error) as error:
-            raise ValueError(f"{path.name}: the packed file is damaged: {error}") from error
+    try:
+        is_text = not _BINARY.search(userfile.begins(path).decode("latin-1"))  # nor one in UTF-16
+        most = userfile.LARGEST_TEXT if is_text else userfile.LARGEST
+        raw = userfile.unpacked(userfile.content(path, most), most)
+    except ValueError as error:  # of the door
+        raise ValueError(f"{path.name}: {error}") from error
     if raw.startswith(b"ISO 5436"):  # separated by zeros
         raw = raw.replace(b"\0", b" ")
     zeros = [raw[parity::2].count(0) for parity in (0, 1)]
@@ -82,32 +87,14 @@ def table_of(text: str, name: str, channel: str | None = None) -> NumberTable:
     Raises ValueError: no numbers; a row with another number of fields, or with a word, which the message names with
     its line; channels of which none is chosen, or another.
     """
-    lines, said = _of_channel(list(enumerate(text.split("\n"), 1)), name, channel)
-    contents = [(number, _content(full)) for number, full in lines]
+    lines, said = _of_channel(Lines(text.split("\n"), 1), name, channel)
+    contents = Lines([_content(full) for full in lines.texts], lines.first)
     if text.startswith("Zygo XYZ") and (mark := next((i for i, (_, full) in enumerate(lines) if full == "#"), 0)):
-        contents[:mark] = [(number, "") for number, _ in contents[:mark]]  # numbers of the instrument
+        contents.texts[:mark] = [""] * mark  # numbers of the instrument
     first, dialect, counts = _first_row(contents, name)
     before = _missing_rows(contents[:first], dialect, len(_fields(contents[first][1], dialect[0])))
     first -= before
-    rows, numbers = [], []
-    for number, content in contents[first:]:
-        fields = _fields(content, dialect[0])
-        if not any(fields) and len(fields) < FEWEST:
-            continue
-        values = _values(fields, dialect[1])
-        if None in values and _whole(rows) and not _THOUSAND.search(content):  # rows such as "0;0" do not show the mark
-            dialect = dialect[0], ","
-            values = _values(fields, ",")
-        if None in values:
-            raise ValueError(
-                f"{name}, line {number}: {content.strip()[:60]!r} has something else than numbers: "
-                f"{fields[values.index(None)][:30]!r}. Missing points may be empty fields, nan, Bad, ***, -- or -; "
-                "take out what is no row of the table"
-            )
-        rows.append(values)
-        numbers.append(number)
-        cut = fields[-1] == "" and len(values) == 2
-    table = _even(rows, numbers, name)
+    table, numbers, dialect, cut = _rows(contents[first:], dialect, name)
     if cut and table.shape[1] == 2:
         raise ValueError(f"{name}, line {numbers[-1]}: 1 number(s) after lines of 2: the file may be cut off")
     _no_rows_in_heading(contents[:first], dialect, table, name)
@@ -121,12 +108,62 @@ def table_of(text: str, name: str, channel: str | None = None) -> NumberTable:
     for number, content in counts:
         _check_counts(number, content, table.shape, name)
     notes = tuple(f"line {line}, {content.strip()!r}, is taken for the size of the table" for line, content in counts)
-    taken = set(numbers)
-    heading = tuple((number, full.strip()) for number, full in lines if full.strip() and number not in taken)
+    taken = np.zeros(len(lines.texts), dtype=bool)
+    taken[numbers - lines.first] = True
+    rest = ((lines.first + int(i), lines.texts[i].strip()) for i in np.flatnonzero(~taken))
+    heading = tuple((number, full) for number, full in rest if full)
     return NumberTable(table, heading, dialect[0], said, notes)
 
 
-def _of_channel(lines: list, name: str, channel: str | None) -> tuple[list, str]:
+def _rows(contents: "Lines", dialect: tuple, name: str) -> tuple[np.ndarray, np.ndarray, tuple, bool]:
+    """The rows (rows, columns), the numbers of their lines, their dialect, and whether the last one may be cut off.
+
+    Raises ValueError for a row with a word or with another number of fields.
+    """
+    table, numbers, cut = _Table(name), array("q"), False
+    for number, content in contents:
+        fields = _fields(content, dialect[0])
+        if not any(fields) and len(fields) < FEWEST:
+            continue
+        values = _values(fields, dialect[1])
+        # rows such as "0;0" do not show the mark
+        if None in values and table.is_whole() and not _THOUSAND.search(content):
+            dialect = dialect[0], ","
+            values = _values(fields, ",")
+        if None in values:
+            raise ValueError(
+                f"{name}, line {number}: {content.strip()[:60]!r} has something else than numbers: "
+                f"{fields[values.index(None)][:30]!r}. Missing points may be empty fields, nan, Bad, ***, -- or -; "
+                "take out what is no row of the table"
+            )
+        table.add(values, number)
+        numbers.append(number)
+        cut = fields[-1] == "" and len(values) == 2
+    return table.even(), np.array(numbers), dialect, cut
+
+
+class Lines:
+    """Lines of a text, as pairs of their number and text; a tuple for each would be larger than a line is."""
+
+    def __init__(self, texts: list[str], first: int):
+        self.texts, self.first = texts, first
+
+    def __getitem__(self, i: int | slice) -> Any:
+        if isinstance(i, slice):
+            return Lines(self.texts[i], self.first + i.indices(len(self.texts))[0])
+        return self.first + i, self.texts[i]
+
+    def __iter__(self) -> Iterator[tuple[int, str]]:
+        return enumerate(self.texts, self.first)
+
+    def __reversed__(self) -> Iterator[tuple[int, str]]:
+        return ((self.first + i, self.texts[i]) for i in reversed(range(len(self.texts))))
+
+    def __len__(self) -> int:
+        return len(self.texts)
+
+
+def _of_channel(lines: Lines, name: str, channel: str | None) -> tuple[Lines, str]:
     """The lines of one channel, and its name: Gwyddion writes several into one file, one below the other."""
     starts = [(i, match[1]) for i, (_, full) in enumerate(lines) if (match := _CHANNEL.match(full))]
     names = [said for _, said in starts]
@@ -183,7 +220,7 @@ def _dialect(content: str) -> tuple | None:
     return None
 
 
-def _first_row(contents: list, name: str) -> tuple[int, tuple, list]:
+def _first_row(contents: Lines, name: str) -> tuple[int, tuple, list]:
     """Where the rows begin, their dialect, and the lines of one or two numbers before them, which say how many."""
     counts = []
     clean = ((i, fits) for i, (_, content) in enumerate(contents) if (fits := _dialect(content)))
@@ -206,7 +243,7 @@ def _check_counts(number: int, content: str, shape: tuple, name: str) -> None:
         )
 
 
-def _missing_rows(contents: list, dialect: tuple, width: int) -> int:
+def _missing_rows(contents: Lines, dialect: tuple, width: int) -> int:
     """How many lines right before the first clean row are rows of missing points alone."""
     rows = 0
     for _, content in reversed(contents):
@@ -219,28 +256,66 @@ def _missing_rows(contents: list, dialect: tuple, width: int) -> int:
     return rows
 
 
-def _whole(rows: list) -> bool:
-    return all(value != value or value % 1 == 0 for row in rows for value in row)
+def _whole(values: np.ndarray) -> bool:
+    return bool((np.isnan(values) | (values % 1 == 0)).all())
 
 
-def _even(rows: list, numbers: list, name: str) -> np.ndarray:
-    """The rows as an array. Empty fields behind the last column that has a number are trailing separators."""
-    lengths = np.array([len(row) for row in rows])
-    table = np.full((len(rows), lengths.max()), np.nan)
-    for length in np.unique(lengths):
-        table[lengths == length, :length] = [row for row in rows if len(row) == length]
-    last = np.max(~np.isnan(table) * np.arange(1, lengths.max() + 1), axis=1)  # column with a number, from 1
-    width, allowed = last.max(), min(last.max(), lengths[0])
-    wrong = np.flatnonzero((last > lengths[0]) | (lengths < allowed))
-    if wrong.size:
+class _Table:
+    """Rows as they come, as wide as the first. Empty fields behind the last number are trailing separators."""
+
+    def __init__(self, name: str):
+        self.name, self.width = name, 0
+        self.blocks: list[np.ndarray] = []  # a number of Python takes three times as much memory
+        self.rows: list[list[float]] = []
+        self.lengths, self.numbers = array("q"), array("q")
+
+    def add(self, values: list[float], number: int) -> None:
+        """Take a row. Raises ValueError for one with more numbers than the first has fields."""
+        self.width = self.width or len(values)
+        last = next((i for i in range(len(values), self.width, -1) if values[i - 1] == values[i - 1]), 0)
+        self.lengths.append(len(values))
+        self.numbers.append(number)
+        self.rows.append((values + [np.nan] * (self.width - len(values)))[: self.width])
+        if last:
+            self._check(self.width, last)
+        if len(self.rows) == _BLOCK:
+            self._pack()
+
+    def _pack(self) -> None:
+        if self.rows:
+            self.blocks.append(np.array(self.rows))
+            self.rows = []
+
+    def is_whole(self) -> bool:
+        """Whether all numbers so far are whole."""
+        self._pack()
+        return all(map(_whole, self.blocks))
+
+    def _check(self, allowed: int, last: int = 0) -> None:
+        """Raise ValueError for the first row with fewer fields, or else the last one, which has `last` numbers."""
+        short = np.flatnonzero(np.array(self.lengths) < allowed)
+        if not short.size and not last:
+            return
+        i = short[0] if short.size else -1
+        if short.size:
+            self._pack()
+            row = np.concatenate(self.blocks)[i]
+            last = int(np.max(np.flatnonzero(~np.isnan(row)), initial=-1)) + 1
         raise ValueError(
-            f"{name}, line {numbers[wrong[0]]}: {last[wrong[0]]} number(s) after lines of {allowed}; take out what is "
+            f"{self.name}, line {self.numbers[i]}: {last} number(s) after lines of {allowed}; take out what is "
             "no row of the table"
         )
-    return table[:, :width]
+
+    def even(self) -> np.ndarray:
+        """All rows, up to the last column that has a number. Raises ValueError for one with fewer fields."""
+        self._pack()
+        table = np.concatenate(self.blocks)
+        width = int(np.max(np.flatnonzero(~np.isnan(table).all(axis=0)), initial=-1)) + 1
+        self._check(width)
+        return table[:, :width]
 
 
-def _no_rows_in_heading(contents: list, dialect: tuple, table: np.ndarray, name: str) -> None:
+def _no_rows_in_heading(contents: Lines, dialect: tuple, table: np.ndarray, name: str) -> None:
     """Raise ValueError for a line of the heading that is a row of the table but for a word in it."""
     width = table.shape[1]
     for number, content in contents:

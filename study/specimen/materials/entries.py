@@ -6,7 +6,12 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
+from solver.numerics.userfile import NoFile, TooLarge, content
+
 from ...terminal import shown
+
+LARGEST = 10_000_000
+"""Most bytes of a file of materials, some 30,000 of them."""
 
 SOFTEST, STIFFEST = 1e3, 2e12
 """Bounds of E in Pa. Each E of the table, 8.6 kPa to 1143 GPa, is between them; one in GPa by mistake is below."""
@@ -107,9 +112,11 @@ def read(path: str | os.PathLike) -> dict[str, Material]:
     """
     path = Path(path)
     try:
-        sections = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        sections = tomllib.loads(content(path, LARGEST).decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n"))
     except UnicodeDecodeError as error:
         raise ValueError(f"{path.name} is not UTF-8 (byte {error.start}): save it with the encoding UTF-8") from None
+    except (NoFile, TooLarge) as error:
+        raise ValueError(f"{path.name} {error}") from None
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path.name} is no TOML file: {error}") from None
     return of_sections(sections, path.name)

@@ -96,12 +96,14 @@ def which_yields(contacts: xr.Dataset) -> str:
         again = Again.of(contacts, "summary")
     except StudyError:  # of a mean, say
         return ""
-    some = np.flatnonzero(flags)
+    some, known = np.flatnonzero(flags), strengths(contacts, again, {})
+    if not any(np.isfinite(known[body]).any() for body in ("layer", "body")) or no_stresses(again):
+        return ""
     problem = again.problem.take(some)
     stress, parts = of_contacts(problem, solve(problem), names=("mises1", "mises2")), []
-    for who, name, limit in (("the layer", "mises1", "Y1"), ("the body", "mises2", "Y2")):
-        count = int((stress[name][0] > problem.parameters[limit]).sum())
-        parts += [f"in {count} it is {who}" if len(flags) > 1 else f"it is {who}"] * bool(count)
+    for body, name in (("layer", "mises1"), ("body", "mises2")):
+        count = int((stress[name][0] > known[body][some]).sum())
+        parts += [f"in {count} it is the {body}" if len(flags) > 1 else f"it is the {body}"] * bool(count)
     return f"{_capital(', '.join(parts))}." if parts else ""
 
 

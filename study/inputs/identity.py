@@ -26,6 +26,8 @@ from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY
 
 #: Strengths, with which answers are compared: no case depends on them, but the flags in a results file do.
 STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
+#: In the digests of studies with strengths, also of named materials: raised when the masks that compare with them do.
+_OF_STRENGTHS = "2"
 #: Stresses depend on these even where the contact does not, as on nu2 of a body on which the layer slides.
 RATIOS = ("nu1", "nu2")
 #: In the keys of cases that have another shape than the paraboloid, or that stick, beside NUMERICS_VERSION: raised when
@@ -71,7 +73,8 @@ def digest_of(definition) -> str:
     content["values"] = {name: digests for name, digests in content["values"].items() if digests}
     content |= {"shapes": _OF_SHAPES} if {"shape", "w_adhesion"} & {*content["values"], *grid.sizes} else {}
     compared = [name for name in STRENGTHS if name in grid.values and name not in grid.sizes]
-    content |= {"strengths": {name: digest_of_array(along(grid, name)) for name in compared}} if compared else {}
+    strengths = {name: digest_of_array(along(grid, name)) for name in compared}
+    content |= {"strengths": strengths | {"masks": _OF_STRENGTHS}} if compared else {}
     content |= {"stresses": _digest_of_ratios(grid)} if definition.stresses else {}
     content |= {"laws": law_versions(grid)} if law_versions(grid) else {}
     digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
@@ -95,6 +98,7 @@ def _digest_of_scene(digest: str, scene, at_default: list[str]) -> str:
         for name, value in sorted(table.items()):
             content.append((name + end, getattr(value, "dims", ()), digest_of_array(np.asarray(value))))
     content += [at_default] if at_default else []
+    content += [_OF_STRENGTHS, sorted(scene.strengths.items())] if scene.strengths else []
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 

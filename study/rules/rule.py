@@ -94,9 +94,16 @@ def validity_of(variables: Mapping, times: float = 1.0) -> Labelled:
     violated = (np.int32(mask) * RULES[name].condition(v, times) for mask, name in ASSUMPTIONS.items())
     flags = sum(violated, np.zeros(status.shape, np.int32))
     about = attributes("validity") | validity_attributes()
+    about |= {"strength_from": text} if (text := _strength_from(v)) else {}
     if "w_adhesion" in variables and not {"z0", "sigma0"} & {*variables}:
         about["comment"] = "not_jkr: not known, since neither z0 nor sigma0 is given"
     return Labelled(status.dims, flags, about)
+
+
+def _strength_from(v: Mapping) -> str:
+    from .strength import strength_from  # here: it puts rules into this table
+
+    return strength_from(v)
 
 
 def numbers(variables: Mapping) -> Mapping:

@@ -111,7 +111,7 @@ def _exceeded(limit, low, high, stress):
     stress : of the cases `index` with their limits, (index, limits) -> their stresses; NaN: not known
     """
     known = np.isfinite(limit)
-    exceeded = known & (low > limit)
+    exceeded = np.array(known & (low > limit))  # of one case an array, too
     index = np.flatnonzero(known & ~exceeded & ~(high <= limit))
     if len(index):
         exceeded.flat[index] = stress(index, limit.flat[index]) > limit.flat[index]

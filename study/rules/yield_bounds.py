@@ -25,7 +25,7 @@ _LAYER = 1.5
 #: In the body below a layer it is at most _BODY times the pressure (1.00), and times P/h² (0.91).
 _BODY = 1.25
 #: At least this part of the pressure: in a layer thicker than a (0.39 was seen); in a thinner soft one this times
-#: (1 - 2 nu)/(1 - nu), which is its stress where it cannot give way sideways (0.59); in a hard one times 1 - 2 nu (0.6).
+#: (1 - 2 nu)/(1 - nu), its stress where it cannot give way sideways (0.59); in a hard one times 1 - 2 nu (0.6).
 _THICK, _SOFT, _HARD = 0.3, 0.5, 0.4
 #: Largest pressure of a hard layer, in a ring, over that of the centre (2.6 over the larger of p(0) and the mean).
 _RING = 4.0
@@ -75,12 +75,16 @@ def of_asperities(v) -> Bounds:
     return Bounds(np.fmin(bounds.low, alone), np.fmin(bounds.high, alone))
 
 
-@np.errstate(all="ignore")
 def one_asperity(v) -> np.ndarray:
     """The stress below an asperity that bears the whole load: none bears more; NaN without its radius Ra."""
     E = np.where(v["layered"], v["E1*"], 1.0) / (1 + v["m"])  # of asperities and of what they touch in series
-    peak = np.cbrt(6 * v["P"] * E**2 / (np.pi**3 * v.get("Ra", np.nan) ** 2))
-    return peak / yield_pressure(_nu(v))
+    return stress_below_one(v["P"], E, v.get("Ra", np.nan), _nu(v))
+
+
+@np.errstate(all="ignore")
+def stress_below_one(P, E, Ra, nu):
+    """Largest von Mises stress below a sphere of radius Ra under the load P: Hertz's p(0) over q; NaN where P < 0."""
+    return np.where(P >= 0, np.cbrt(6 * P * E**2 / (np.pi**3 * Ra**2)), np.nan) / yield_pressure(nu)
 
 
 @np.errstate(all="ignore")

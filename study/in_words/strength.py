@@ -355,7 +355,7 @@ def _place(again: Again, r: float, z: float, a: float) -> str:
 def _with_unit(again: Again, value: float, length: int = 0, spread: float = 0.0) -> str:
     """A stress, or with length = 2 a load, with ± if it has a spread."""
     if not again.scene:
-        return f"{value:.2g}{f' ± {spread:.1g}' * (spread > 0)} E2*{' R^2' * (length == 2)}"
+        return f"{value:.2g} E2*{' R^2' * (length == 2)}"
     scale = float(of_all_cases(again.scene.unit, (), ())[0]) * float(of_all_cases(again.scene.R, (), ())[0]) ** length
     unit = "N" if length else "Pa"
     if spread > 0:

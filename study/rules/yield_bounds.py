@@ -71,7 +71,8 @@ def of_asperities(v) -> Bounds:
     low = (p_max - p0) / yield_pressure(nu) - further
     high = disc * p_max * np.where(layered & (v["n"] > 1), _RING, 1.0) + further
     high = np.where(2 * p0 < pressure, np.inf, high)  # of a ring the centre says little
-    bounds, alone = _where(_known(v) & (nu >= 0), Bounds(low, high)), one_asperity(v)
+    small = ~layered | (v["b"] < v["h"])  # else the spot is deeper than the layer
+    bounds, alone = _where(_known(v) & small & (nu >= 0), Bounds(low, high)), one_asperity(v)
     return Bounds(np.fmin(bounds.low, alone), np.fmin(bounds.high, alone))
 
 

@@ -1,4 +1,4 @@
-"""Whether a contact holds, in words: what is nearest to its limit, by what factor, and at which load it is there."""
+"""Whether a contact holds, in words: what is closest to its limit, by what factor, and at which load it is there."""
 
 from __future__ import annotations
 
@@ -303,15 +303,20 @@ def _at_which_load(looked: _Looked, first: _Compared, case: xr.Dataset) -> list[
     spread = P * slope * limit.spread / limit.strength
     text = f"P = {_with_unit(again, P, 2, spread)}"
     who, verb, begin = limit.who, limit.verb, "begin" if limit.plural else "begins"
-    few = limit.stress == _SPOTS and float(looked.problem.Nbar[0] * np.pi * solution.a[0] ** 2)
-    if limit.stress == _SPOTS and few < FEW_SPOTS:
-        E, nu = _below(looked.problem)
-        alone = (limit.strength * yield_pressure(nu)[0]) ** 3 * np.pi**3 * looked.problem.Ra[0] ** 2 / (6 * E[0] ** 2)
-        if abs(P / alone - 1) < 3 * _SAME:
-            return [f"One asperity alone {'begins to yield' if share > 1 else 'would yield'} at about {text}."]
-        one = _with_unit(again, alone, 2, 3 * alone * limit.spread / limit.strength)
-        text = f"{text}, where {few:.2g} asperities touch; one asperity alone yields at about P = {one}"
-    return [f"At about {text} {who} {begin} to {verb}." if share > 1 else f"{who} would {verb} at about {text}."]
+    if limit.stress != _SPOTS or not (touching := _spots_of(looked.problem, solution)) < FEW_SPOTS:
+        return [f"At about {text} {who} {begin} to {verb}." if share > 1 else f"{who} would {verb} at about {text}."]
+    E, nu = _below(looked.problem)
+    alone = (np.pi * limit.strength * yield_pressure(nu)[0]) ** 3 * looked.problem.Ra[0] ** 2 / (6 * E[0] ** 2)
+    if abs(P / alone - 1) < 3 * _SAME:
+        return [f"One asperity alone {'begins to yield' if share > 1 else 'would yield'} at about {text}."]
+    one = _with_unit(again, alone, 2, 3 * alone * limit.spread / limit.strength)
+    where = f"{text}, where {touching:.2g} of them touch; one asperity alone yields at about P = {one}"
+    return [f"They begin to yield at about {where}." if share > 1 else f"They would yield at about {where}."]
+
+
+def _spots_of(problem: Problem, solution: Any) -> float:
+    """How many asperities touch; NaN of a law that does not know their number."""
+    return float(problem.Nbar[0] * np.pi * solution.a[0] ** 2)
 
 
 def _load(looked: _Looked, first: _Compared, case: xr.Dataset) -> tuple[float, float, Any] | None:

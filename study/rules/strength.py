@@ -11,7 +11,7 @@ from solver.yields.contact import of_contacts
 
 from ..inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS
 from . import yield_bounds
-from .rule import have, rule
+from .rule import WORDS, have, rule
 
 _BODIES = {"Y1": "mises1", "Y2": "mises2"}
 #: The coarse grid misses at most this part of a stress, and has at most so much more: between, the stress is computed.
@@ -93,6 +93,9 @@ def strength_from(v) -> str:
             words[who] = " and ".join(_SOURCES[i] for i in some.tolist())
     alike = {*words.values()}
     return alike.pop() if len(alike) == 1 else ", ".join(f"{who}: {word}" for who, word in words.items())
+
+
+WORDS["strength_from"] = strength_from
 
 
 def _of_material(v, name):

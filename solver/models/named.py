@@ -13,7 +13,6 @@ from ..shapes import shaped
 from ..smooth_contact.contact import kinds_of
 from ..solution import Model, Solution
 from ..status import Status
-from .cell_error import cell_error
 from .range_of_law import edge_error, outside_law
 from .thin_layer_error import largest_error
 
@@ -58,11 +57,9 @@ def solve_named(problem, x):
 
 
 def with_model_error(problem, solution):
-    """The solution with a `model_error` of at least :func:`~.range_of_law.edge_error` and
-    :func:`~.cell_error.cell_error`. Cases at pressures that their law does not know lose their numbers. `solution` and
-    result are in the units of the problem."""
+    """The solution with a `model_error` of at least :func:`~.range_of_law.edge_error`. Cases at pressures that their
+    law does not know lose their numbers. `solution` and result are in the units of the problem."""
     error = np.maximum(solution.model_error, edge_error(problem, solution))
-    error = np.maximum(error, cell_error(problem, solution))
     return replace(solution, model_error=error).refused(outside_law(problem, solution), Status.OUTSIDE_LAW)
 
 

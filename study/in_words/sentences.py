@@ -70,9 +70,9 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
     found += of_shape(case) + of_adhesion(case)
     beyond = doubts(case)
     found += [f"Beware: {sentence}" for sentence in beyond]
+    strength, exceeded = holds(case) if word == "converged" else ([], False)
+    found += [EXCEEDED if exceeded else NOT_VIOLATED] * (not beyond and word == "converged")
     if word == "converged":
-        strength, exceeded = holds(case)
-        found += [EXCEEDED if exceeded else NOT_VIOLATED] * (not beyond)
         found += [f"Strength: {' '.join(strength)}"] * bool(strength)
         unchecked = ["adhesion"] * (not sticks(case)) + ["whether the bodies stay elastic"] * (not strength)
         found += [f"Not checked (docs/model.md, Limits): {', and '.join(unchecked)}."] * bool(unchecked)

@@ -53,7 +53,7 @@ def _far_apart(grid: Grid) -> np.ndarray:
     """Where asperities stand on a layer that is thinner than their pitch; shape as of `acts`."""
     if not {"h", "Nbar"} <= {*grid.values}:
         return np.False_
-    on_layer = np.isin(along(grid, "base"), ("layered", "stack", "auto"))
+    on_layer = np.isin(along(grid, "base"), ("layered", "stack"))
     far = along(grid, "Nbar") * along(grid, "h") ** 2 < 1
     return on_layer & far & acts(grid, "Nbar") & acts(grid, "h")
 

@@ -63,15 +63,19 @@ def of_asperities(v):
     elastic = have("rough", v["micro"]) & ~one_of(v["micro"], [name for name, law in LAWS.items() if law.yielded])
     named = [_of_material(v, name) for name in ("Y1", "Y2", "Y_punch")]
     call = first([v.get("yield_strength", np.nan), 0], [v.get("hardness", np.nan) / TABOR, 0])
+    # of one surface whose strength is not known the other's serves: what exceeds that exceeds the lower of both
+    named[2] = first(named[2], [np.where(v["m"] > 0, np.inf, np.nan), 0])
+    named[:2] = [first(strength, [np.inf, 0]) for strength in named[:2]]
     value, source = first(call, softer(*named, ~v["layered"], v["m"] > 0))
+    value = np.where(np.isinf(value), np.nan, value)
     return np.where(elastic, value, np.nan), source
 
 
 def softer(layer, body, punch, bare, elastic_punch):
-    """Of two surfaces the one with the lower strength: the layer, or a bare body, and an elastic punch. Each is a
-    sequence of the strength, NaN where it is not known, and of whatever goes with it; so is the result."""
+    """Of two surfaces the one with the lower strength: the layer, or a bare body, and an elastic punch; NaN where one
+    of both is not known. Each is a sequence of the strength and of whatever goes with it; so is the result."""
     touched = [np.where(bare, *pair) for pair in zip(body, layer, strict=True)]
-    by_punch = elastic_punch & ((punch[0] < touched[0]) | np.isnan(touched[0]))
+    by_punch = elastic_punch & ((punch[0] < touched[0]) | np.isnan(punch[0]))
     return [np.where(by_punch, *pair) for pair in zip(punch, touched, strict=True)]
 
 

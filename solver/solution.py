@@ -73,7 +73,8 @@ class Solution:
     profile_error : >= error; estimated error of the profiles at any radius, over the largest p or λ. It may exceed rtol
     model_error : >= 0; estimated relative error, over the same six, of the model used against the exact layer with its
         asperities. 0 for the exact layer, and for a half-space that was asked for by name; with "auto" at most
-        `accuracy`. The error of a law that comes from a table is part of it, and may alone be above `accuracy`
+        `accuracy`. The error of a law that comes from a table is part of it, and may alone be above `accuracy`. Of
+        asperities farther apart than the layer is thick it is that of p_max, not of "auto" and thin layers
     status, model_used : int8; a :class:`~solver.status.Status` and a :class:`Model`
     iterations, nodes : int32; iterations in all, and nodes of the last mesh; 0 nodes: a closed form
     stable : bool; under adhesion, a >= a_off; else True

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from .body.graded import is_graded
 from .models.auto import cheapest
+from .models.cell_error import cell_error
 from .models.graded import solve_graded
 from .models.model_error import judged
 from .models.named import model_of, solve_named
@@ -78,6 +79,7 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
     if shaped(problem).any():
         beyond = ~invalid & beyond_table(scaled, solution)
         solution = solution.refused(beyond, Status.OUTSIDE_LAW)
+    solution = replace(solution, model_error=np.maximum(solution.model_error, cell_error(problem, solution)))
     if yields:
         solution = replace(solution, plastic_share=plastic_share(problem, solution.lam[:, len(x) :]))
     profiles = {name: getattr(solution, name)[:, : len(x)] for name in ("p", "lam")}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -13,7 +14,9 @@ from solver.laws.elastic_plastic import TABOR
 from solver.shapes import PARABOLOID, SHAPES
 
 from .arrays import xarray_later as xr
+from .data.dataset import STRENGTHS
 from .data.one_case import is_contact
+from .data.si import OF_USERS
 from .inputs.definition import StudyError
 from .inputs.laws import recall
 from .inputs.punch.shapes import MICROMETRE, in_metres
@@ -25,7 +28,8 @@ from .inputs.scene.scales import make_dimensionless
 from .inputs.scene.scene import Scene, over
 from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
 from .rules.rule import has_units
-from .specimen.materials import Material, strength_of
+from .rules.strength import first, softer
+from .specimen.materials import Material, Strength, known_strength
 from .terminal import shown
 
 
@@ -127,10 +131,6 @@ def of_all_cases(value: Any, dims: tuple, shape: tuple[int, ...]) -> np.ndarray:
     return np.broadcast_to(over(value, dims), shape).ravel()
 
 
-STRENGTHS = {"layer": "Y1", "body": "Y2", "punch": "Y_punch"}
-"""Body -> the input that is its yield strength."""
-
-
 def strengths(contact: xr.Dataset, again: Again, materials: Mapping[str, Material], spread: bool = False) -> dict:
     """Yield strength of the layer, body, punch and asperities, (B,) each in the unit of E2; NaN where it is not known.
 
@@ -139,46 +139,49 @@ def strengths(contact: xr.Dataset, again: Again, materials: Mapping[str, Materia
     materials : those of the call by name; the table of materials need not have them
     spread : give standard deviations instead, 0 for an input without one
     """
-    unit = _of_all(again, again.scene.unit) if again.scene else 1.0
-    named = {
-        body: [_of_materials(contact, again, body, materials, which) / unit for which in (False, True)]
-        for body in STRENGTHS
-    }
-    inputs = {name: [again.problem.parameters[name], _spread(contact, again, name) / unit] for name in _INPUTS}
-    yields = {body: _first(inputs[name], named[body]) for body, name in STRENGTHS.items()}
-    bare = again.problem.base == "half_space"
-    softer = [np.where(bare, *pair) for pair in zip(named["body"], named["layer"], strict=True)]
-    punch = (again.problem.m > 0) & ((named["punch"][0] < softer[0]) | np.isnan(named["punch"][0]))
-    softer = [np.where(punch, *pair) for pair in zip(named["punch"], softer, strict=True)]
-    hard = [values / TABOR for values in inputs["hardness"]]
-    yields |= {"asperities": _first(_first(inputs["yield_strength"], hard), softer)}
-    return {who: np.where(np.isnan(pair[0]), np.nan, pair[spread]) for who, pair in yields.items()}
+    known = known_strengths(contact, again, materials)
+    return {who: np.where(np.isnan(value), np.nan, (value, sd)[spread]) for who, (value, sd, _) in known.items()}
+
+
+def known_strengths(contact: xr.Dataset, again: Again, materials: Mapping[str, Material]) -> dict[str, list]:
+    """The same as a list of the strength, its standard deviation and whether it is from hardness, (B,) each."""
+    named = {body: _of_materials(contact, again, body, materials) for body in STRENGTHS}
+    no = np.zeros(len(again.problem), dtype=bool)
+    inputs = {name: [again.problem.parameters[name], _spread(contact, again, name), no] for name in _INPUTS}
+    yields = {body: first(inputs[name], named[body]) for body, name in STRENGTHS.items()}
+    bare, elastic = again.problem.base == "half_space", again.problem.m > 0
+    hard = [inputs["hardness"][0] / TABOR, inputs["hardness"][1] / TABOR, ~no]
+    of_spots = softer(named["layer"], named["body"], named["punch"], bare, elastic)
+    return yields | {"asperities": first(first(inputs["yield_strength"], hard), of_spots)}
 
 
 _INPUTS = (*STRENGTHS.values(), "hardness", "yield_strength")
-
-
-def _first(pair: list, fallback: list) -> list:
-    """The pair of value and spread, or the fallback where the value is NaN."""
-    return [np.where(np.isnan(pair[0]), other, part) for part, other in zip(pair, fallback, strict=True)]
 
 
 def _of_all(again: Again, value: Any) -> np.ndarray:
     return of_all_cases(value, again.dims, again.shape).astype(float)
 
 
+def _unit(again: Again) -> Any:
+    return _of_all(again, again.scene.unit) if again.scene else 1.0
+
+
 def _spread(contact: xr.Dataset, again: Again, name: str) -> np.ndarray:
+    """In the unit of E2, (B,)."""
     name = f"{name}_spread"
     spreads = _of_all(again, _without_coordinates(contact[name]) if name in contact.coords else 0.0)
-    return np.nan_to_num(spreads)
+    return np.nan_to_num(spreads) / _unit(again)
 
 
-def _of_materials(
-    contact: xr.Dataset, again: Again, body: str, materials: Mapping[str, Material], spread: bool
-) -> np.ndarray:
-    """In Pa, (B,)."""
+def _of_materials(contact: xr.Dataset, again: Again, body: str, materials: Mapping[str, Material]) -> list:
+    """Strength, standard deviation and whether it is from hardness, (B,) each, the first two in the unit of E2."""
     if body not in contact.coords or again.scene is None:
-        return np.full(len(again.problem), np.nan)
+        return [np.full(len(again.problem), np.nan), np.zeros(len(again.problem)), np.zeros(len(again.problem), bool)]
     names = of_all_cases(_without_coordinates(contact[body]), again.dims, again.shape).astype(str)
-    yields = {name: strength_of(materials.get(name, name), spread) for name in np.unique(names)}
-    return np.array([yields[name] for name in names])
+    of_users = {name: Strength(*row) for name, row in json.loads(contact[body].attrs.get(OF_USERS, "{}")).items()}
+    known = {
+        name: known_strength(materials[name]) if name in materials else of_users.get(name) or known_strength(name)
+        for name in np.unique(names).tolist()
+    }
+    values, spreads, hard = (np.array(column) for column in zip(*(known[name] for name in names), strict=True))
+    return [values / _unit(again), spreads / _unit(again), hard.astype(bool)]

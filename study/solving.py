@@ -56,7 +56,8 @@ def solve(
     h, n : thickness of the layer, and E1*/E2*; needed by every base but "half_space"
     m : E1*/E3* of layer and punch (E2*/E3* without a layer); 0 is a rigid punch
     nu1, nu2 : Poisson ratios of the layer and of the body under it
-    Y1, Y2, Y_punch : yield strengths of layer, body and punch, if they are known. They change no result of these
+    Y1, Y2, Y_punch : yield strengths of layer, body and punch, if they are known; else those of the materials that are
+        named. They change no number, and set `validity`
     bonding : the interface of layer and body
     base : what lies under the punch
     layers : in place of h, n, nu1 and bonding a stack of layers, the one at the surface first: a list of dictionaries

@@ -13,28 +13,28 @@ import numpy as np
 
 import roughcoat as rc
 
-scene = {"R": "5 mm", "punch": "steel 52100", "body": "steel 52100", "bonding": "bonded", "P": "5 N"}
+scene = {"R": "50 mm", "punch": "steel 52100", "body": "steel 52100", "bonding": "bonded", "P": "10 N"}
 layers = ["PTFE", "PEEK", "PMMA"]
 thickness = [f"{h:.4g} um" for h in np.geomspace(5, 500, 20)]
 with warnings.catch_warnings():
-    warnings.simplefilter("ignore")  # thin layers are strained too much: `feasible` takes these out
-    contacts = rc.solve(**scene, layer=layers, h=thickness, Nbar="1e5 1/mm^2", Ra="2 um", profiles=False)
+    warnings.simplefilter("ignore")  # thin PTFE flows: `feasible` takes it out
+    contacts = rc.solve(**scene, layer=layers, h=thickness, micro="smooth", profiles=False)
 
-good = rc.feasible(contacts, p_max="< 1.3 GPa", D="< 10 um", validity=0)
-chosen = rc.front(contacts.where(good), least=["p_max", "D"])
+good = rc.feasible(contacts, D="< 10 um", validity=0)
+chosen = rc.front(contacts.where(good), least=["p0", "D"])
 
 # %%
-# PTFE has the least pressures, PMMA the least depths; PEEK is beaten by PMMA everywhere. Thin linings are strained
-# beyond the model and do not count.
+# PTFE has the least pressures, PMMA and PEEK the least depths. Linings of PTFE that yield, by the strength of the
+# material, do not count: their `validity` is not 0.
 best = chosen.on_front
 count = dict(zip(layers, best.sum("h").values.tolist(), strict=True))
-assert count["PTFE"] > 1 and count["PMMA"] > 5 and count["PEEK"] == 0 and not (best & ~good).any()
+assert min(count.values()) > 10 and not (best & ~good).any() and not good.sel(layer="PTFE").all()
 
 figure, axes = plt.subplots(figsize=(6, 4), layout="constrained")
 for name in layers:
     one = contacts.sel(layer=name)
-    (line,) = axes.plot(one.D * 1e6, one.p_max / 1e6, ".:", alpha=0.5, label=name)
+    (line,) = axes.plot(one.D * 1e6, one.p0 / 1e6, ".:", alpha=0.5, label=name)
     front = one.where(best.sel(layer=name), drop=True)
-    axes.plot(front.D * 1e6, front.p_max / 1e6, "o", color=line.get_color())
-axes.set(xlabel="depth D, µm", ylabel="largest pressure p_max, MPa", xscale="log")
+    axes.plot(front.D * 1e6, front.p0 / 1e6, "o", color=line.get_color())
+axes.set(xlabel="depth D, µm", ylabel="pressure in the centre p(0), MPa", xscale="log")
 axes.legend(title="circles: on the front")

@@ -138,6 +138,8 @@ def as_numbers(contact: xr.Dataset) -> dict:
         for name in dict.fromkeys((*all_inputs(), *SHOWN, *OF_PULL_OFF, *_DERIVED))
         if name in contact
     }
+    yields = "plastic_share" in contact and np.isfinite(contact["plastic_share"])
+    shown |= {"plastic_share": described(contact, "plastic_share")} if yields else {}
     shown |= {"stable": bool(contact["stable"])} if "stable" in contact and contact["status"] == 0 else {}
     shown |= {name: number(contact[name]) for name in ("error", "model_error")}
     shown |= {name: decode(contact[name]).item() for name in ("status", "model_used")}

@@ -30,7 +30,7 @@ from ..inputs.vocabulary import (
     names,
 )
 from ..rules.rule import validity_attributes, validity_of, whole
-from ..specimen.materials import strength_of
+from ..rules.strength import FROM_HARDNESS, OF_MATERIAL
 from .provenance import provenance
 
 
@@ -53,6 +53,10 @@ def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:
     arrays |= {name: np.zeros(size, dtype) for name, dtype in whole_numbers.items()}
     arrays["status"][:] = NOT_RUN
     return arrays
+
+
+STRENGTHS = {"layer": "Y1", "body": "Y2", "punch": "Y_punch"}
+"""Body -> the input that is its yield strength."""
 
 
 class Parts(NamedTuple):
@@ -105,21 +109,22 @@ def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -
     variables["status"].attrs |= status_attributes()
     variables["model_used"].attrs |= model_attributes()
     radii = definition.scene.radii() if definition.scene else {}
-    strengths = _strengths(definition) if definition.stresses and definition.scene else {}
+    strengths = _strengths(definition) if definition.scene else {}
     variables["validity"] = validity_of(strengths | variables | made.coords | radii)
     return made
 
 
 def _strengths(definition: Definition) -> dict[str, Labelled]:
-    """Yield strengths of the materials that are named, over the unit of moduli; NaN of those that have none."""
-    scene, strengths = definition.scene, {}
-    for body, name in (("layer", "Y1"), ("body", "Y2")):
-        if body in scene.names:
-            dim, texts = scene.names[body]
-            values = np.array([strength_of(text) for text in texts])
-            strengths[name] = Labelled(dim, values) if dim else Labelled((), values[0])
-            strengths[name] = strengths[name] / bare_variable(scene.unit)
-    return strengths
+    """Yield strengths of the materials that are named, over the unit of moduli, and whether they are from hardness."""
+    scene, variables = definition.scene, {}
+    for body, name in STRENGTHS.items():
+        if body in scene.strengths:
+            dim, known = scene.strengths[body]
+            values, _, hard = zip(*known, strict=True)
+            dims, place = (dim, slice(None)) if dim else ((), 0)
+            variables[f"{name}{OF_MATERIAL}"] = Labelled(dims, np.array(values)[place]) / bare_variable(scene.unit)
+            variables[f"{name}{FROM_HARDNESS}"] = Labelled(dims, np.array(hard)[place])
+    return variables
 
 
 def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:

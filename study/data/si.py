@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,11 +13,15 @@ from ..arrays.labelled import Labelled
 from ..inputs.definition import Definition
 from ..inputs.scene.scene import Scene, bare_variable
 from ..inputs.vocabulary import ROWS, VOCABULARY
+from ..specimen.materials import Strength, known_strength
 from .dataset import Parts
 from .spreads import spreads_of
 from .units import PHYSICAL_SCALE, physical_attributes, with_unit
 
 ASSUMED = "not given: the default"
+OF_USERS = "strengths"
+"""Attribute of the names of materials: as JSON name -> [yield strength in Pa, spread, whether it is from hardness], of
+materials of the user's own."""
 SAME_PIECE = "same_piece: bodies of one material are one piece of it"
 
 
@@ -60,8 +66,9 @@ def results(definition: Definition, parts: Parts) -> Parts:
         coords[f"{name}_spread"] = _coordinate(name, value, f"standard deviation of {name}, as given")
     for body, (dim, texts) in scene.names.items():
         values = texts if dim else texts[0]
-        comment = {"comment": SAME_PIECE} if scene.same_piece and scene.spreads else {}
-        coords[body] = Labelled(dim or (), values, {"long_name": f"material of the {body}"} | comment)
+        about = {"long_name": f"material of the {body}"}
+        about |= {"comment": SAME_PIECE} if scene.same_piece and scene.spreads else {}
+        coords[body] = Labelled(dim or (), values, about | _of_users(texts, scene.strengths.get(body, ("", ()))[1]))
     for name, cases in scene.cases_of.items():
         if name in coords:
             none = "" if name == "layer" else np.nan
@@ -74,6 +81,12 @@ def results(definition: Definition, parts: Parts) -> Parts:
     correlations = {"correlations": "; ".join(pairs)} if pairs else {}
     attributes = parts.attributes | correlations | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
     return Parts(_renamed(scene, results), _renamed(scene, coords), attributes)
+
+
+def _of_users(texts: list[str], known: Sequence[Strength]) -> dict[str, str]:
+    """The attribute OF_USERS; {} where each name has the strength that the table of materials has."""
+    others = {text: one for text, one in zip(texts, known, strict=False) if repr(one) != repr(known_strength(text))}
+    return {OF_USERS: json.dumps(others)} if others else {}
 
 
 def _renamed(scene: Scene, variables: dict[str, Labelled]) -> dict[str, Labelled]:

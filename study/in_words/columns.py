@@ -10,11 +10,13 @@ from ..arrays import xarray_later as xr
 from ..data.dataset import decode
 from ..inputs.laws import smooth_laws
 from .numbers import given_text, result_text
+from .strength import closest
 from .text import MOST_CASES, OF_ASPERITIES, SHOWN
 
 
 def columns(contacts: xr.Dataset) -> str:
-    """A line for each contact of a grid: what differs, the results that `summary` has, status and validity.
+    """A line for each contact of a grid: what differs, the results that `summary` has, status, where strengths are
+    known what is closest to its limit with its share of that, and validity.
 
     contacts : of `study.solve`, over one dimension or more; above 20 the last lines are counted, not written
     """
@@ -23,9 +25,9 @@ def columns(contacts: xr.Dataset) -> str:
     shown = [cases.isel(case=i) for i in range(min(cases.sizes["case"], MOST_CASES))]
     smooth = all(case["micro"].values in smooth_laws() for case in shown)
     names = [name for name in SHOWN if name not in dims and not (smooth and name in OF_ASPERITIES)]
-    rows = [[*dims, *names, "status", "validity"], *(_row(case, dims, names) for case in shown)]
-    if not any(row[-1] for row in rows[1:]):
-        rows = [row[:-1] for row in rows]
+    rows = [[*dims, *names, "status", "strength", "validity"], *(_row(case, dims, names) for case in shown)]
+    left = [-1] * (not any(row[-1] for row in rows[1:])) + [-2] * all(row[-2] == "-" for row in rows[1:])
+    rows = [[cell for place, cell in enumerate(row, -len(row)) if place not in left] for row in rows]
     widths = [max(map(len, cells)) for cells in zip(*rows, strict=True)]
     lines = ["  ".join(f"{cell:{w}}" for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows]
     more = cases.sizes["case"] - len(shown)
@@ -36,4 +38,5 @@ def _row(case: xr.Dataset, dims: list, names: list[str]) -> list[str]:
     """The cells of one contact. A result that is not known stands as "-"."""
     inputs = [re.sub(rf"^{re.escape(dim)} (= |of )?", "", given_text(case, dim)) for dim in dims]
     results = ["-" if np.isnan(case[name]) else result_text(case, name) for name in names]
-    return [*inputs, *results, str(decode(case["status"]).values), str(decode(case["validity"]).values)]
+    flags = [str(decode(case[name]).values) for name in ("status", "validity")]
+    return [*inputs, *results, flags[0], closest(case), flags[1]]

@@ -27,6 +27,7 @@ _BASES = {
 }
 MODELS = {base: f"{words} under the asperities" for base, words in _BASES.items()}
 MODELS |= {f"smooth_{base}": f"{words}, without asperities" for base, words in _BASES.items()}
+EXCEEDED = "None of the assumptions that `validity` checks is violated, except that a strength is exceeded, as follows."
 NOT_VIOLATED = "None of the assumptions that are checked is violated (docs/model.md, Four answers)."
 #: Behind a model with asperities.
 WHOSE = " The asperities are the punch's; a rough surface under a polished punch is the same contact, and of two rough \
@@ -44,11 +45,10 @@ def doubts(contact: xr.Dataset) -> list[str]:
     return found + falling(contact)
 
 
-def sentences(case: xr.Dataset, judged: list[str], alone: bool) -> list[str]:
-    """How well the case is solved, by which model, and which assumptions it violates.
+def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
+    """How well the case is solved, by which model, which assumptions it violates, and whether it holds.
 
     judged : the quantities shown of which `error` is the largest error; p_max is among them where there are asperities
-    alone : whether it is no case of many; then it is said whether it holds
     """
     word, used = (flag_words(case[name]).item() for name in ("status", "model_used"))
     if word == "converged":
@@ -70,9 +70,9 @@ def sentences(case: xr.Dataset, judged: list[str], alone: bool) -> list[str]:
     found += of_shape(case) + of_adhesion(case)
     beyond = doubts(case)
     found += [f"Beware: {sentence}" for sentence in beyond]
-    found += [NOT_VIOLATED] * (not beyond and word == "converged")
+    strength, exceeded = holds(case) if word == "converged" else ([], False)
+    found += [EXCEEDED if exceeded else NOT_VIOLATED] * (not beyond and word == "converged")
     if word == "converged":
-        strength = holds(case) if alone else []
         found += [f"Strength: {' '.join(strength)}"] * bool(strength)
         unchecked = ["adhesion"] * (not sticks(case)) + ["whether the bodies stay elastic"] * (not strength)
         found += [f"Not checked (docs/model.md, Limits): {', and '.join(unchecked)}."] * bool(unchecked)

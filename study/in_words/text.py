@@ -130,7 +130,7 @@ def _summary_of_case(case: xr.Dataset, dims=()) -> str:
     width = max(len(label) for label, _, _ in rows)
     lines = [f"  {label:{width}}  {symbol:6} = {text}" for label, symbol, text in rows]
     judged = [name for name in names if name in _JUDGED]
-    return "\n".join([*given(case, dims), "", *lines, "", *sentences(case, judged, not dims)])
+    return "\n".join([*given(case, dims), "", *lines, "", *sentences(case, judged)])
 
 
 def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:

@@ -26,6 +26,10 @@ from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY
 
 #: Strengths, with which answers are compared: no case depends on them, but the flags in a results file do.
 STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
+#: In the digests of studies with strengths, also of named materials: raised when the masks that compare with them do.
+_OF_STRENGTHS = "2"
+#: In the keys of rough cases on layers thinner than the pitch: raised when their `model_error` changes.
+_OF_CELLS = "asperities far apart on a layer, 1"
 #: Stresses depend on these even where the contact does not, as on nu2 of a body on which the layer slides.
 RATIOS = ("nu1", "nu2")
 #: In the keys of cases that have another shape than the paraboloid, or that stick, beside NUMERICS_VERSION: raised when
@@ -43,6 +47,15 @@ def counts(grid: Grid, name: str) -> np.ndarray:
     value, default = along(grid, name), VOCABULARY[name].parameter.default
     changed = ~np.isnan(value) if default is None else value != default
     return changed & acts(grid, name)
+
+
+def _far_apart(grid: Grid) -> np.ndarray:
+    """Where asperities stand on a layer that is thinner than their pitch; shape as of `acts`."""
+    if not {"h", "Nbar"} <= {*grid.values}:
+        return np.False_
+    on_layer = np.isin(along(grid, "base"), ("layered", "stack"))
+    far = along(grid, "Nbar") * along(grid, "h") ** 2 < 1
+    return on_layer & far & acts(grid, "Nbar") & acts(grid, "h")
 
 
 def law_versions(grid: Grid) -> list[str]:
@@ -71,9 +84,11 @@ def digest_of(definition) -> str:
     content["values"] = {name: digests for name, digests in content["values"].items() if digests}
     content |= {"shapes": _OF_SHAPES} if {"shape", "w_adhesion"} & {*content["values"], *grid.sizes} else {}
     compared = [name for name in STRENGTHS if name in grid.values and name not in grid.sizes]
-    content |= {"strengths": {name: digest_of_array(along(grid, name)) for name in compared}} if compared else {}
+    strengths = {name: digest_of_array(along(grid, name)) for name in compared}
+    content |= {"strengths": strengths | {"masks": _OF_STRENGTHS}} if compared else {}
     content |= {"stresses": _digest_of_ratios(grid)} if definition.stresses else {}
     content |= {"laws": law_versions(grid)} if law_versions(grid) else {}
+    content |= {"cells": _OF_CELLS} if _far_apart(grid).any() else {}
     digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
     if definition.scene is None:
         return digest
@@ -95,6 +110,7 @@ def _digest_of_scene(digest: str, scene, at_default: list[str]) -> str:
         for name, value in sorted(table.items()):
             content.append((name + end, getattr(value, "dims", ()), digest_of_array(np.asarray(value))))
     content += [at_default] if at_default else []
+    content += [_OF_STRENGTHS, sorted(scene.strengths.items())] if scene.strengths else []
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
@@ -132,6 +148,8 @@ def case_keys(grid: Grid, stresses: bool = False) -> np.ndarray:
         counted = counts(grid, name)
         if counted.any():
             lanes += np.where(counted, _hashed(name, along(grid, name)), np.uint64(0))
+    if (far := _far_apart(grid)).any():
+        lanes += np.where(far, _hashed("cells", np.array(_OF_CELLS).reshape((1,) * len(grid.shape))), np.uint64(0))
     for name in RATIOS if stresses else ():
         lanes += _hashed(f"{name} of stresses", along(grid, name))
     return np.ascontiguousarray(lanes.reshape(2, -1).T)

@@ -38,6 +38,9 @@ RULES: dict[str, Rule] = {}
 ASSUMPTIONS: dict[int, str] = {}
 """Mask -> name of its rule."""
 
+WORDS: dict[str, Callable] = {}
+"""Attribute of `validity` -> a function of the `numbers` of a dataset -> its text, "" for none."""
+
 
 def rule(mask=0, text="", grey="0.85", *, size=None) -> Callable:
     """Decorator of a condition: puts a `Rule` into the table. Raises ValueError for a mask or name that is taken."""
@@ -94,6 +97,7 @@ def validity_of(variables: Mapping, times: float = 1.0) -> Labelled:
     violated = (np.int32(mask) * RULES[name].condition(v, times) for mask, name in ASSUMPTIONS.items())
     flags = sum(violated, np.zeros(status.shape, np.int32))
     about = attributes("validity") | validity_attributes()
+    about |= {name: text for name, word in WORDS.items() if (text := word(v))}
     if "w_adhesion" in variables and not {"z0", "sigma0"} & {*variables}:
         about["comment"] = "not_jkr: not known, since neither z0 nor sigma0 is given"
     return Labelled(status.dims, flags, about)

@@ -10,52 +10,139 @@ from solver.yields import spots
 from solver.yields.contact import of_contacts
 
 from ..inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS
-from .rule import have, rule
+from . import yield_bounds
+from .rule import WORDS, have, rule
 
 _BODIES = {"Y1": "mises1", "Y2": "mises2"}
 #: The coarse grid misses at most this part of a stress, and has at most so much more: between, the stress is computed.
 _MISSED, _MORE = 0.15, 1e-3
+OF_MATERIAL, FROM_HARDNESS = "_of_material", "_from_hardness"
+"""Y1, Y2 and Y_punch with these ends: of the material that is named, and whether that is its hardness over 2.84."""
+_OF_ASPERITIES = {"yield_strength", "hardness", *(f"{name}{OF_MATERIAL}" for name in ("Y1", "Y2", "Y_punch"))}
+_SOURCES = ("call", "material", "hardness")
 
 
 @rule(512, "a body would yield", "0.63")
 def body_yields(v, times):
     """A body would yield: von Mises' stress in it exceeds its yield strength. The results are those of bodies that stay
     elastic."""
-    known = [name for name in _BODIES if np.isfinite(v[name]).any()]
+    limits = {name: _limit(v, times * of_body(v, name)[0]) for name in _BODIES if {*v} & {name, f"{name}{OF_MATERIAL}"}}
+    limits = {_BODIES[name]: limit for name, limit in limits.items() if np.isfinite(limit).any()}
+    bounds = yield_bounds.of_bodies(v) if {*limits} - {*v} else {}
     found = np.False_
-    for name in known:
-        limit = times * np.broadcast_to(v[name], v["status"].shape)
-        stored = _BODIES[name] in v
-        found = found | ((v[_BODIES[name]] if stored else _stress(v, _BODIES[name], limit)) > limit)
+    for extreme, limit in limits.items():
+        if extreme in v:
+            found = found | (v[extreme] > limit)
+            continue
+        low, high = bounds[extreme]
+        found = found | _exceeded(limit, low, high, lambda index, limit, name=extreme: _stress(v, name, index, limit))
     return found
 
 
 @rule(1024, "asperities would yield", "0.65")
 def asperities_yield(v, times):
-    """The asperities would yield: on the axis of a spot the stress exceeds the yield strength, from hardness or
-    yield_strength. The real area is then larger than this one, and pmax smaller (micro = "elastic_plastic")."""
-    Y = np.where(np.isnan(v["yield_strength"]), v["hardness"] / TABOR, v["yield_strength"])
-    elastic = have("rough", v["micro"]) & ~one_of(v["micro"], [name for name, law in LAWS.items() if law.yielded])
-    limit = np.broadcast_to(np.where(elastic, times * Y, np.nan), v["status"].shape)
-    index = np.flatnonzero(np.isfinite(limit))
-    if not len(index):
+    """The asperities would yield: on the axis of a spot the stress exceeds the yield strength. The real area is then
+    larger than this one, and pmax smaller (micro = "elastic_plastic")."""
+    limit = _limit(v, times * of_asperities(v)[0])
+    if not np.isfinite(limit).any():
         return np.False_
-    problem, solution = again(v, index)
-    found = np.zeros(limit.shape, dtype=bool)
-    found.flat[index] = spots.of_contacts(problem, solution)[0] > limit.flat[index]
-    return found
+    return _exceeded(limit, *yield_bounds.of_asperities(v), lambda index, _: _stress_of_spots(v, index))
 
 
-def _stress(v, name, limit):
+def of_body(v, name):
+    """Yield strength of a body by its input, "Y1" of the layer and so on, in E2*: the value, NaN where it is not known,
+    and its source, a place in `_SOURCES`; v : `numbers` of a dataset, with those of named materials."""
+    value, source = first([v.get(name, np.nan), 0], _of_material(v, name))
+    return np.where(v["layered"] if name == "Y1" else True, value, np.nan), source
+
+
+def of_asperities(v):
+    """The same of asperities that are elastic: given in the call, or that of the softer of the two surfaces."""
+    if not {*v} & _OF_ASPERITIES:
+        return np.array(np.nan), np.array(0)
+    elastic = have("rough", v["micro"]) & ~one_of(v["micro"], [name for name, law in LAWS.items() if law.yielded])
+    named = [_of_material(v, name) for name in ("Y1", "Y2", "Y_punch")]
+    call = first([v.get("yield_strength", np.nan), 0], [v.get("hardness", np.nan) / TABOR, 0])
+    # of one surface whose strength is not known the other's serves: what exceeds that exceeds the lower of both
+    named[2] = first(named[2], [np.where(v["m"] > 0, np.inf, np.nan), 0])
+    named[:2] = [first(strength, [np.inf, 0]) for strength in named[:2]]
+    value, source = first(call, softer(*named, ~v["layered"], v["m"] > 0))
+    value = np.where(np.isinf(value), np.nan, value)
+    return np.where(elastic, value, np.nan), source
+
+
+def softer(layer, body, punch, bare, elastic_punch):
+    """Of two surfaces the one with the lower strength: the layer, or a bare body, and an elastic punch; NaN where one
+    of both is not known. Each is a sequence of the strength and of whatever goes with it; so is the result."""
+    touched = [np.where(bare, *pair) for pair in zip(body, layer, strict=True)]
+    by_punch = elastic_punch & ((punch[0] < touched[0]) | np.isnan(punch[0]))
+    return [np.where(by_punch, *pair) for pair in zip(punch, touched, strict=True)]
+
+
+def first(values, fallback):
+    """A strength and what goes with it, or the fallback where the strength is NaN."""
+    return [np.where(np.isnan(values[0]), other, part) for part, other in zip(values, fallback, strict=True)]
+
+
+def strength_from(v) -> str:
+    """Where the strengths are from with which the masks compare: "call", "material" or "hardness", of a material of
+    which no yield strength is known; "layer: call, asperities: hardness" where they differ, "" where none is known."""
+    words = {}
+    if not {*v} & {*_BODIES, *_OF_ASPERITIES}:
+        return ""
+    strengths = {"layer": of_body(v, "Y1"), "body": of_body(v, "Y2"), "asperities": of_asperities(v)}
+    for who, (value, source) in strengths.items():
+        some = np.unique(np.broadcast_to(source, np.shape(value))[np.isfinite(value)])
+        if len(some):
+            words[who] = " and ".join(_SOURCES[i] for i in some.tolist())
+    alike = {*words.values()}
+    return alike.pop() if len(alike) == 1 else ", ".join(f"{who}: {word}" for who, word in words.items())
+
+
+WORDS["strength_from"] = strength_from
+
+
+def _of_material(v, name):
+    """The strength of the material of a body and its source; NaN where none is known."""
+    return v.get(f"{name}{OF_MATERIAL}", np.nan), np.where(v.get(f"{name}{FROM_HARDNESS}", False), 2, 1)
+
+
+def _limit(v, strength):
+    """The strength of the cases that are solved, NaN of others, over all of them."""
+    return np.where(v["status"] == Status.CONVERGED, np.broadcast_to(strength, v["status"].shape), np.nan)
+
+
+def _exceeded(limit, low, high, stress):
+    """bool: the stress is above the limit, by its bounds; between these it is computed.
+
+    stress : of the cases `index` with their limits, (index, limits) -> their stresses; NaN: not known
+    """
+    known = np.isfinite(limit)
+    exceeded = np.array(known & (low > limit))  # of one case an array, too
+    index = np.flatnonzero(known & ~exceeded & ~(high <= limit))
+    if len(index):
+        exceeded.flat[index] = stress(index, limit.flat[index]) > limit.flat[index]
+    return exceeded
+
+
+def _stress(v, name, index, limit):
     """The largest stress of a body, where it is near the limit; elsewhere that of the coarse grid."""
-    index, found = np.flatnonzero(np.isfinite(limit)), np.full(limit.shape, np.nan)
     problem, solution = again(v, index)
     value = of_contacts(problem, solution, names=(name,), coarse=True)[name][0]
-    near = np.flatnonzero((value < (1 + _MORE) * limit.flat[index]) & (value > (1 - _MISSED) * limit.flat[index]))
+    near = np.flatnonzero((value < (1 + _MORE) * limit) & (value > (1 - _MISSED) * limit))
     if len(near):
         value[near] = of_contacts(problem.take(near), solution.take(near), names=(name,))[name][0]
-    found.flat[index] = value
-    return found
+    return value
+
+
+def _stress_of_spots(v, index):
+    """The stress on the axis of spots; where it is not computed, as of a law of one's own, that of the spot alone."""
+    shape = v["status"].shape
+    alone = np.broadcast_to(yield_bounds.spot_alone(v), shape).flat[index]
+    least = np.broadcast_to(yield_bounds.one_asperity(v), shape).flat[index]
+    problem, solution = again(v, index)
+    value = spots.of_contacts(problem, solution)[0]
+    return np.fmin(np.where(np.isnan(value), alone, value), least)
 
 
 def again(v, index, x=(0.0, 1.0)):

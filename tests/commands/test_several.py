@@ -34,6 +34,27 @@ def test_a_list_is_a_table_of_the_contacts(capsys):
         assert all(f"= {text.strip()}\n" in alone for text in found) and status.strip() == "converged"
 
 
+def test_a_table_says_what_is_closest_to_its_limit(capsys):
+    """And its share of that, as the words of that contact alone; a column without any is left out."""
+    ball = ["R=5 mm", "punch=rigid", "body=PMMA", "base=half_space", "micro=smooth"]
+    assert main(["point", *ball, "P=0.1 N, 50 N"]) == 0
+    head, *lines = capsys.readouterr().out.splitlines()
+    assert head.split()[-3:] == ["status", "strength", "validity"]
+    shown = [[cell.strip() for cell in cells(line)] for line in lines]
+    assert shown[0][-1] == "body 0.2" and shown[1][-2:] == ["body 1.6", "body_yields"]
+    assert main(["point", *ball, "P=50 N"]) == 0
+    assert "is 1.6 times the yield strength, 63.0 ± 6.0 MPa" in capsys.readouterr().out
+
+
+def test_a_share_that_has_yielded_is_a_number(capsys):
+    given = ["P=1e-5", "base=half_space", "Nbar=250000", "Ra=0.004", "micro=elastic_plastic", "hardness=0.03"]
+    assert main(["point", "--json", *given]) == 0
+    share = json.loads(capsys.readouterr().out)["plastic_share"]
+    assert share["unit"] == "1" and 0 < share["value"] < 1
+    assert main(["point", "--json", "P=1e-5", "base=half_space", "micro=smooth"]) == 0
+    assert "plastic_share" not in json.loads(capsys.readouterr().out)
+
+
 def test_what_a_table_assumes_is_said_beside_it(capsys):
     """Once, however many contacts there are, and nothing of a table that assumes nothing."""
     ball = ["R=5 mm", "E1=2 MPa", "h=0.5 mm", "E2=70 GPa", "micro=smooth", "P=1 mN, 2 mN"]

@@ -258,3 +258,29 @@ def test_what_changes_no_number_is_not_in_the_digest():
     assert {digest_of(replace(base(), **new)) for new in same} == {digest_of(base())}
     whole, real = (replace(base(), **changed("values", "nodes", (), zero)) for zero in (0, -0.0))
     assert digest_of(whole) == digest_of(real)
+
+
+def test_asperities_far_apart_on_a_layer_have_keys_of_their_own(monkeypatch):
+    """Of these alone `model_error` has changed; those of others stay. So do the digests."""
+    model, keys, digests = {"n": 0.5, "Nbar": 250000.0, "Ra": 0.004, "bonding": "bonded", "P": 1e-5}, [], []
+    for word in ("as it was", "raised"):
+        monkeypatch.setattr(identity, "_OF_CELLS", word)
+        studies = [
+            from_tables({"model": model, "axes": {"h": h}}, "one", "", "one")
+            for h in ([0.0019, 0.0021], [0.0021, 0.02])
+        ]
+        keys.append(case_keys(studies[0].grid))
+        digests.append([study.digest for study in studies])
+    assert (keys[0] != keys[1]).any(axis=1).tolist() == [True, False]
+    assert [one != other for one, other in zip(*digests, strict=True)] == [True, False]
+
+
+def test_strengths_of_materials_are_in_the_digest(monkeypatch):
+    """The flags in a file compare with them: of materials without a strength nothing has changed."""
+    model = {"R": "5 mm", "punch": "rigid", "base": "half_space", "micro": "smooth", "P": "1 N"}
+    for body, counts in (("PMMA", True), ("copper", False)):
+        digests = []
+        for word in ("2", "raised"):
+            monkeypatch.setattr(identity, "_OF_STRENGTHS", word)
+            digests.append(from_tables({"model": model | {"body": body}}, "one", "", "one").digest)
+        assert (digests[0] != digests[1]) == counts

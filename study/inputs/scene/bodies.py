@@ -17,12 +17,13 @@ _MAY_BE_RIGID = ("punch", "body")
 _SHAPES = ("sphere", "ball", "paraboloid", "cone", "berkovich", "vickers", "flat", "cylinder", "pyramid")
 
 
-def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict]:
-    """The inputs with E and ν in place of materials, and body -> (dimension or "", names of its materials).
+def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict, dict]:
+    """The inputs with E and ν in place of materials; body -> (dimension or "", names of its materials); and the same
+    with their strengths, as a Scene has them.
 
     E and ν have the spreads of the table of materials; messages are appended to `errors`.
     """
-    inputs, names = dict(inputs), {}
+    inputs, names, strengths = dict(inputs), {}, {}
     for body, follows in BODIES.items():
         entry = inputs.pop(body, None)
         if entry is None:
@@ -32,7 +33,7 @@ def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict]:
         if entry.is_wrong:
             continue
         try:
-            texts, *columns = of_names(body, entry.values if entry.array is None else entry.array)
+            texts, *columns, known = of_names(body, entry.values if entry.array is None else entry.array)
         except LookupError as error:
             errors.append(str(error.args[0]))
             continue
@@ -40,11 +41,13 @@ def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict]:
         for name, column in zip(follows, columns, strict=False):
             inputs[name] = replace(entry, name=name, values=list(column), array=None)
         names[body] = "".join(entry.dims), list(texts)
-    return inputs, names
+        if any(strength == strength for strength, *_ in known):
+            strengths[body] = "".join(entry.dims), list(known)
+    return inputs, names, strengths
 
 
 def of_names(body: str, names: Any) -> list[tuple]:
-    """Names, E and ν of the materials of a body. Raises LookupError for what is no material.
+    """Names, E, ν and strengths of the materials of a body. Raises LookupError for what is no material.
 
     names : a list; a DataArray if they come from results
     """
@@ -85,14 +88,15 @@ def _checked(name: Any) -> str | materials.Material:
     return name
 
 
-def _material(body: str, name: str | materials.Material) -> tuple[str, Quantity, Quantity]:
-    """Name, E and ν of a material, or of a name. Raises LookupError for a name that is not in the table."""
+def _material(body: str, name: str | materials.Material) -> tuple[str, Quantity, Quantity, materials.Strength]:
+    """Name, E, ν and strength of a material, or of a name. Raises LookupError for a name that is not in the table."""
     if body in _MAY_BE_RIGID and str(name).lower() in RIGID_TEXTS:
-        return "rigid", Quantity(np.inf), Quantity(0.3)
+        return "rigid", Quantity(np.inf), Quantity(0.3), materials.Strength()
     if body == "punch" and str(name).lower() in _SHAPES:
         shape = "the punch is a ball of radius R, other shapes are not in the model"
         raise LookupError(f'{shown(name)} is no material, such as "steel 52100"; {shape}')
     material = materials.get(name) if isinstance(name, str) else name  # one of the user's own
     if not all(map(finite, (material.E, material.nu, material.E_spread, material.nu_spread))):
         raise LookupError(f"{shown(material.name)}: E, nu and their spreads must be finite numbers, E in Pa")
-    return material.name, Quantity(material.E, material.E_spread), Quantity(material.nu, material.nu_spread)
+    E, nu = Quantity(material.E, material.E_spread), Quantity(material.nu, material.nu_spread)
+    return material.name, E, nu, materials.known_strength(material)

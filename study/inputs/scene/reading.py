@@ -46,7 +46,7 @@ def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scen
     """
     scene, errors = Scene(same_piece=request.same_piece, labels=request.labels), request.errors
     before = len(errors)
-    inputs, scene.names = with_materials(_filled(request, scene), errors)
+    inputs, scene.names, scene.strengths = with_materials(_filled(request, scene), errors)
     # a list of h in µm is an axis "h in SI": h/R changes along the dimensions of R too
     in_si = {name: dim_of(name) for name, entry in inputs.items() if entry.dims == (name,)}
     inputs = {n: replace(entry, dims=tuple(in_si.get(dim, dim) for dim in entry.dims)) for n, entry in inputs.items()}

@@ -22,6 +22,8 @@ class Scene:
     dims : dimension while the cases are solved -> name of it in the results
     labels : of the dimension `case`
     names : punch, layer, body -> (dimension or "", names of materials along it)
+    strengths : likewise -> (dimension or "", (strength in Pa, its spread, whether it is from hardness) along it), NaN
+        of materials of which none is known; only of bodies with some that is known
     cases_of : coordinate -> the cases that have it, a DataArray of bool; a case without a layer may lack it
     assumed : Poisson ratios and the interface, where they matter and have their defaults since nobody gave them
     same_piece : whether bodies of one material are one piece of it
@@ -36,6 +38,7 @@ class Scene:
     dims: dict = field(default_factory=dict)
     labels: list = field(default_factory=list)
     names: dict = field(default_factory=dict)
+    strengths: dict = field(default_factory=dict)
     cases_of: dict = field(default_factory=dict)
     assumed: tuple = ()
     same_piece: bool = False
@@ -69,10 +72,12 @@ class Scene:
         tables = ("values", "spreads", "cases_of", "parameters", "correlations")
         changed = {table: {name: cut(v) for name, v in getattr(self, table).items()} for table in tables}
         labels = self.labels[window["case"]] if self.labels else []
-        names = {body: (dim, texts[window[dim]] if dim else texts) for body, (dim, texts) in self.names.items()}
-        return replace(
-            self, **changed, labels=labels, names=names, R=cut(self.R), unit=cut(self.unit), metres=cut(self.metres)
+        names, strengths = (
+            {body: (dim, entries[window[dim]] if dim else entries) for body, (dim, entries) in table.items()}
+            for table in (self.names, self.strengths)
         )
+        changed |= {"names": names, "strengths": strengths, "labels": labels}
+        return replace(self, **changed, R=cut(self.R), unit=cut(self.unit), metres=cut(self.metres))
 
 
 def over(value: Any, dims: tuple[str, ...]) -> np.ndarray:

@@ -13,6 +13,7 @@ import tomllib
 from collections.abc import Mapping
 from functools import cache
 from importlib import resources
+from typing import NamedTuple
 
 from solver.laws.elastic_plastic import TABOR
 
@@ -56,21 +57,31 @@ def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
     raise LookupError(f"{written(name)} is no material; {hint}")
 
 
-def strength_of(material: Material | str, spread: bool = False) -> float:
-    """The yield strength of a material or of its name, in Pa, else its hardness over 2.84; NaN where none is known.
+class Strength(NamedTuple):
+    """A yield strength in Pa, NaN where none is known; its standard deviation; whether it is the hardness over 2.84."""
 
-    spread : the standard deviation of that instead
-    """
+    value: float = math.nan
+    spread: float = 0.0
+    from_hardness: bool = False
+
+
+def known_strength(material: Material | str) -> Strength:
+    """The yield strength of a material or of its name, else its hardness over 2.84."""
     if isinstance(material, str):
         try:
             material = get(material)
         except LookupError:  # of a file of the user
-            return math.nan
-    if spread and material.yield_strength:
-        return material.yield_strength_spread
-    if spread and material.hardness:
-        return material.hardness_spread / TABOR
-    return material.yield_strength or (material.hardness or math.nan) / TABOR
+            return Strength()
+    if material.yield_strength:
+        return Strength(material.yield_strength, material.yield_strength_spread)
+    if material.hardness:
+        return Strength(material.hardness / TABOR, material.hardness_spread / TABOR, True)
+    return Strength()
+
+
+def strength_of(material: Material | str) -> float:
+    """The same, the value in Pa alone; NaN where none is known."""
+    return known_strength(material).value
 
 
 def names() -> tuple[str, ...]:

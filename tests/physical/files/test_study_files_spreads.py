@@ -106,6 +106,7 @@ profiles = false
 """
 
 
+@pytest.mark.filterwarnings("ignore:this contact is beyond")
 def test_a_sample_with_units_and_spreads(tmp_path):
     made = of(SAMPLE, tmp_path)
     assert made.run(workers=1).complete

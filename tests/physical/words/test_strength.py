@@ -27,16 +27,20 @@ def sizes(text: str) -> list[float]:
 def test_what_is_nearest_to_its_limit_and_at_which_load_it_is_there():
     found = quiet(**DLC, P="10 N", Nbar="0.1 1/um^2", Ra="20 um")
     text, yields = strength(found), first_yield("asperities", **DLC, Nbar="0.1 1/um^2", Ra="20 um")
-    assert text.startswith("Nearest to its limit is what meets at the asperities: the largest von Mises stress, ")
-    load = re.search(r"What meets at the asperities would yield at about P = ([\d.]+ m?N)\.", text)[1]
-    assert sizes(load) == pytest.approx([yields.P_Ya.item()], rel=0.06), "two digits"
-    assert re.search(r"Less near: .*the body 0\.\d+ of its yield strength", text)
+    assert text.startswith("The asperities are closest to yielding: the largest von Mises stress, ")
+    assert "of the yield strength from hardness, 2.82 ± 0.23 GPa." in text, "52100 has a hardness"
+    load, spread = sizes(
+        re.search(r"The asperities would yield at about P = ([\d.]+) ± (\d+ m?N)\.", text).expand(r"\1 N, \2")
+    )
+    assert load == pytest.approx(yields.P_Ya.item(), rel=0.06), "two digits"
+    assert spread == pytest.approx(yields.P_Ya_spread.item(), rel=0.06)
+    assert re.search(r"Less close: .*the body 0\.\d+ of its yield strength", text)
 
 
 def test_the_stress_its_place_and_the_share_are_those_of_the_extremes():
     found = quiet(**DLC, P="100 N", micro="smooth", Y2="800 MPa")
     text, extremes = strength(found), largest(found, "mises2")
-    assert text.startswith("Nearest to its limit is the body: ") and " on the axis " in text
+    assert text.startswith("The body is beyond yielding: ") and " on the axis " in text
     stress, depth, limit = sizes(text.split(". Less")[0])
     assert stress == pytest.approx(extremes.mises2.item(), rel=0.06) and limit == 8e8
     assert depth == pytest.approx(extremes.mises2_z.item() * found.a.item(), rel=0.06)
@@ -78,12 +82,13 @@ def test_strengths_that_are_not_known_are_asked_for():
 def test_where_no_strength_is_wanted(given):
     found = quiet(**given)
     assert strength(found) == "" and study.summary(found).endswith("adhesion, and whether the bodies stay elastic.")
-    assert strength(quiet(**given, Y2=0.01 if "R" not in given else "1 MPa")).startswith("Nearest to its limit is the ")
+    assert strength(quiet(**given, Y2=0.01 if "R" not in given else "1 MPa")).startswith("The body is closest to ")
 
 
-def test_of_many_contacts_it_is_not_said():
+def test_of_many_contacts_it_is_said_of_each():
     found = quiet(**DLC, P=["1 N", "10 N"], micro="smooth")
-    assert "Strength: " not in study.summary(found) and strength(found.isel(P=0))
+    lines = [line for line in study.summary(found).splitlines() if line.startswith("Strength: ")]
+    assert lines == [f"Strength: {strength(found.isel(P=i))}" for i in (0, 1)]
 
 
 def test_films_say_who_computes_their_stresses():
@@ -104,10 +109,51 @@ def test_a_body_that_yields_is_named_in_the_warning():
     assert (many.validity.values & 512 > 0).tolist() == [False, True]
 
 
+def test_of_few_asperities_it_is_the_load_at_which_one_yields():
+    """The model may have less than one asperity, which bears more than the load. Hertz: P = (pi q Y)^3 Ra^2/(6 E^2)."""
+    ball = {"R": "1 mm", "punch": "rigid", "E2": "3 GPa", "nu2": 0.3, "base": "half_space", "Nbar": "0.01 1/um^2"}
+    ball |= {"Ra": "5 um", "yield_strength": "63 MPa"}
+    P = (np.pi * 1.612797 * 63e6) ** 3 * 25e-12 / 6 / (3e9 / 0.91) ** 2
+    weak, strong = (quiet(**ball, P=f"{part * P} N") for part in (0.98, 1.02))
+    assert not weak.validity.item() & 1024 and strong.validity.item() & 1024
+    assert weak.a.item() ** 2 * np.pi * 1e10 < 1.5, "asperities"
+    for contact, words in ((weak, "would yield"), (strong, "begins to yield")):
+        load = re.search(rf"One asperity alone {words} at about P = ([\d.]+) µN\.", strength(contact))[1]
+        assert float(load) == pytest.approx(1e6 * P, rel=0.06)
+    assert "0.99 of the yield strength, 63 MPa" in strength(weak)
+
+
+def test_of_a_law_of_ones_own_pmax_is_compared(tmp_path):
+    """A table has no radius of asperities: their stress is that of a sphere under the same pressure."""
+    c = np.geomspace(0.01, 0.9, 60)  # the disc cell
+    B, Ra = 1 / np.sqrt(np.pi * 2e7), 5e-4
+    q = c**3 / (np.arccos(c) + c * np.sqrt(1 - c * c))
+    p, A = 2 * B / (3 * Ra) * q, B * B / Ra * (c * c - 4 / 3 * q * np.sqrt(1 - c * c))
+    rows = np.c_[p, A, c * c, 2 * B * c / np.pi / Ra + 2 / np.pi * p * np.arcsin(c)]
+    np.savetxt(tmp_path / "law.csv", rows, delimiter=",", header="p,A,lam,p_max", comments="")
+    found = quiet(**DLC | {"R": "10 mm"}, P=["1 uN", "30 N"], micro=f"table:{tmp_path / 'law.csv'}")
+    text = strength(found.isel(P=1))
+    assert text.startswith("The asperities are beyond yielding: the stress as of a sphere under pmax, ")
+    assert "The law of the asperities does not say what is below them" in text
+    share = (found.p_max - found.p0).values / 1.5547 / (8e9 / 2.84)
+    assert float(re.search(r"([\d.]+) times the", text)[1]) == pytest.approx(share[1], rel=0.06)
+    assert (found.validity.values & 1024 > 0).tolist() == (share > 1).tolist() == [False, True]
+
+
+def test_no_sentence_contradicts_the_next():
+    """The mask 512 does not know the punch, and asperities that flow are not those of an elastic law."""
+    text = study.summary(quiet(R="5 mm", punch="PMMA", body=STEEL, base="half_space", P="100 N", micro="smooth"))
+    assert "except that a strength is exceeded" in text and "The punch is beyond yielding: " in text
+    assert "None of the assumptions that are checked is violated" not in text
+    rough = {"Nbar": "0.2 1/um^2", "Ra": "5 um", "micro": "elastic_plastic", "hardness": "8 GPa"}
+    text = strength(quiet(R="5 mm", punch=STEEL, body=STEEL, base="half_space", P="1 N", **rough))
+    assert re.match(r"The asperities have yielded on \d+ % of the nominal contact area\. The ", text)
+
+
 def test_without_strengths_no_stress_is_computed(monkeypatch):
     from study.rules import strength as rules
 
     monkeypatch.setattr(rules, "solve", None)
     study.solve(P=1e-5, h=0.02, n=5.0, Nbar=250000.0, Ra=0.004)
     with pytest.raises(TypeError):
-        study.solve(P=1e-5, h=0.02, n=5.0, Nbar=250000.0, Ra=0.004, Y1=np.float64(0.1))
+        study.solve(P=1e-5, h=0.02, n=5.0, Nbar=250000.0, Ra=0.004, Y1=0.01)

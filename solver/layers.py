@@ -13,7 +13,7 @@ import numpy as np
 from .numerics import profiles
 from .parameters import BONDINGS, PARAMETERS, STACKED, Parameter
 
-__all__ = ["LAYER", "MOST", "expanded", "full_name", "numbers_of", "register"]
+__all__ = ["LAYER", "MOST", "expanded", "full_name", "numbers_of", "row", "table"]
 
 #: Most layers of a stack.
 MOST = 16
@@ -60,36 +60,41 @@ def full_name(number: int, field: str) -> str:
 
 def numbers_of(names) -> int:
     """The number of layers of a stack, of the `names` of its parameters; 0 if there is no name of a layer."""
-    names = [name for name in names if name.startswith("layers.") or name == "sublayers"]
+    names = [name for name in names if isinstance(name, str) and name.startswith(("layers.", "sublayers"))]
     matches = (_NAME.fullmatch(name) for name in names)
     return max((int(match[1]) for match in matches if match), default=int(bool(names)))
 
 
-def register(count: int) -> None:
-    """Put the parameters of stacks of `count` layers into the table of parameters, if they are not there."""
-    for number in range(1, count + 1):
-        for field, row in LAYER.items():
-            name = full_name(number, field)
-            if name not in PARAMETERS:
-                used = row.used_by
-                if field in ("n_bottom", "nu_bottom"):
-                    used = full_name(number, "profile"), profiles.GRADED
-                PARAMETERS[name] = row._replace(needed_by=STACKED, used_by=used)
-        name, choices = full_name(number, "profile"), (*profiles.WORDS, *profiles.TABLES)
-        PARAMETERS[name] = PARAMETERS[name]._replace(choices=choices)
-    if count:
-        PARAMETERS["sublayers"] = _SUBLAYERS
+def row(name: object) -> Parameter | None:
+    """The row of a parameter of a layer, or of `sublayers`, in the table of parameters.
+
+    Parameters
+    ----------
+    name : of the parameter
+
+    Returns
+    -------
+    solver.parameters.Parameter, or None if it is no name of a layer, or that of the first one in a case with one layer
+    """
+    if not isinstance(name, str) or not name.startswith(("layers.", "sublayers")):
+        return None
+    if name.endswith(".profile") and name in _ROWS:
+        return _ROWS[name]._replace(choices=(*profiles.WORDS, *list(profiles.TABLES)))
+    return _ROWS.get(name)
+
+
+def _row(number: int, field: str) -> Parameter:
+    of_bottom = field in ("n_bottom", "nu_bottom")
+    used = (full_name(number, "profile"), profiles.GRADED) if of_bottom else LAYER[field].used_by
+    return LAYER[field]._replace(needed_by=STACKED, used_by=used)
 
 
 def table(count: int) -> dict[str, Parameter]:
     """The table of parameters of stacks of `count` layers; 0 : without those of stacks."""
-    if "sublayers" not in PARAMETERS:
-        return PARAMETERS
-    others = {name: row for name, row in PARAMETERS.items() if not name.startswith("layers.") and name != "sublayers"}
     if not count:
-        return others
+        return PARAMETERS
     names = [full_name(number, field) for number in range(1, count + 1) for field in LAYER]
-    return others | {name: PARAMETERS[name] for name in (*names, "sublayers")}
+    return PARAMETERS | {name: PARAMETERS[name] for name in (*names, "sublayers")}
 
 
 def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
@@ -132,7 +137,6 @@ def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
     count = max(count, len(parameters.get("layers", [])))
     if count > MOST:
         raise ValueError(f"layers: {count} layers: at most {MOST}")
-    register(count)
     return _with_base(others) | _on_base(stack, parameters.get("rigid_base", False))
 
 
@@ -230,3 +234,13 @@ def _on_base(stack, rigid):
     if "n" in stack and not np.all(np.asarray(stack["n"]) == 1):
         raise ValueError(f"layers.1.n = {stack['n']}: on a rigid base n is E_j*/E1*, so that of the first layer is 1")
     return stack | {"n": 0.0}
+
+
+#: Name of each parameter of a layer that is no parameter of a case with one layer -> its row.
+_ROWS = {
+    name: _row(number, field)
+    for number in range(1, MOST + 1)
+    for field in LAYER
+    if (name := full_name(number, field)).startswith("layers.")
+} | {"sublayers": _SUBLAYERS}
+PARAMETERS.further = row

@@ -1,5 +1,6 @@
 """What describes a case: the one table of bounds, defaults and choices, and of which cases need and use a parameter."""
 
+from collections.abc import Callable, ItemsView, Iterator, KeysView, ValuesView
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -49,6 +50,47 @@ class Parameter(NamedTuple):
     long_name: str = ""
 
 
+class Register(dict):
+    """Rows by name. Threads may go through the rows while another thread registers one: they see those of the moment.
+
+    Attributes
+    ----------
+    further : a function: the row of a name that follows from the name itself, such as "layers.2.h", or None. Such a row
+        can be looked up, and is not among the rows that are listed
+    """
+
+    further: Callable = staticmethod(lambda name: None)
+
+    def __missing__(self, name):
+        row = self.further(name)
+        if row is None:
+            raise KeyError(name)
+        return row
+
+    def __contains__(self, name: object) -> bool:
+        return super().__contains__(name) or self.further(name) is not None
+
+    def get(self, name, default=None):
+        row = super().get(name)
+        row = self.further(name) if row is None else row
+        return default if row is None else row
+
+    def _now(self) -> dict:
+        return dict(list(super().items()))  # one step: no other thread comes between
+
+    def __iter__(self) -> Iterator:
+        return iter(list(super().keys()))
+
+    def keys(self) -> KeysView:
+        return self._now().keys()
+
+    def values(self) -> ValuesView:
+        return self._now().values()
+
+    def items(self) -> ItemsView:
+        return self._now().items()
+
+
 #: The conditions that a case has a layer, and that it is bonded.
 LAYERED = ("base", tuple(base for base in BASES if base != "half_space"))
 BONDED = ("bonding", ("bonded",))
@@ -70,37 +112,39 @@ CONTROL = {
 
 #: All other parameters; their meanings and units are in :class:`~solver.problem.Problem`. A law declares its own:
 #: `laws.register` adds them here, and the name of the law to the choices of `micro`; so does `shapes.register`.
-#: `schemes` adds those of `scheme`.
+#: `schemes` adds those of `scheme`. Rows of the layers of a stack, "layers.2.h", follow from their names: `layers.row`.
 #: Keys of cases leave defaults out (study/inputs/identity.py): whoever changes a default changes `NUMERICS_VERSION`.
-PARAMETERS = {
-    "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED, powers=(0, 1)),
-    "n": Parameter(interval="[1e-9, 1e9]", also=(0,), needed_by=LAYERED),  # 0: a rigid base
-    "m": Parameter(0.0, interval="[0, 1e9]"),
-    "nu1": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=COUPLED),
-    "nu2": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=COUPLED),
-    "Y1": STRENGTH._replace(needed_by=LAYERED),
-    "Y2": STRENGTH,
-    "Y_punch": STRENGTH,
-    "bonding": Parameter("frictionless", BONDINGS, needed_by=LAYERED),
-    "base": Parameter("layered", BASES),
-    "accuracy": Parameter(1e-2, interval="(0, 1)", needed_by=("base", ("auto",))),
-    "model_check": Parameter("closed_form", MODEL_CHECKS, needed_by=("base", ("thin_layer",))),
-    "micro": Parameter("disc_cell"),
-    "shape": Parameter("paraboloid", ("paraboloid",)),
-    "w_adhesion": Parameter(0.0, interval="[0, 1e3]", powers=(1, 1)),
-    "adhesion": Parameter("jkr", ADHESIONS),
-    "sigma0": Parameter(interval="[1e-15, 1e15]", powers=(1, 0), instead=""),
-    "z0": Parameter(interval="[1e-15, 1e3]", powers=(0, 1), instead=""),
-    "branch": Parameter("stable", BRANCHES),
-    "k_machine": Parameter(interval="[0, inf]", powers=(1, 1), instead=""),
-    "scheme": Parameter("newton"),
-    "k": Parameter(1.0, interval="[0, 1e6]", used_by=("scheme", ("picard",))),
-    "rtol": Parameter(1e-6, interval="[1e-15, 1)"),
-    "nodes": Parameter(0, whole=True, interval="[4, 256]", also=(0,)),
-    "max_iterations": Parameter(0, whole=True, interval="[1, 100000]", also=(0,)),
-    "R": Parameter(1.0, interval="(0, inf)"),
-    "E2": Parameter(1.0, interval="(0, inf)"),
-}
+PARAMETERS = Register(
+    {
+        "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED, powers=(0, 1)),
+        "n": Parameter(interval="[1e-9, 1e9]", also=(0,), needed_by=LAYERED),  # 0: a rigid base
+        "m": Parameter(0.0, interval="[0, 1e9]"),
+        "nu1": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=COUPLED),
+        "nu2": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=COUPLED),
+        "Y1": STRENGTH._replace(needed_by=LAYERED),
+        "Y2": STRENGTH,
+        "Y_punch": STRENGTH,
+        "bonding": Parameter("frictionless", BONDINGS, needed_by=LAYERED),
+        "base": Parameter("layered", BASES),
+        "accuracy": Parameter(1e-2, interval="(0, 1)", needed_by=("base", ("auto",))),
+        "model_check": Parameter("closed_form", MODEL_CHECKS, needed_by=("base", ("thin_layer",))),
+        "micro": Parameter("disc_cell"),
+        "shape": Parameter("paraboloid", ("paraboloid",)),
+        "w_adhesion": Parameter(0.0, interval="[0, 1e3]", powers=(1, 1)),
+        "adhesion": Parameter("jkr", ADHESIONS),
+        "sigma0": Parameter(interval="[1e-15, 1e15]", powers=(1, 0), instead=""),
+        "z0": Parameter(interval="[1e-15, 1e3]", powers=(0, 1), instead=""),
+        "branch": Parameter("stable", BRANCHES),
+        "k_machine": Parameter(interval="[0, inf]", powers=(1, 1), instead=""),
+        "scheme": Parameter("newton"),
+        "k": Parameter(1.0, interval="[0, 1e6]", used_by=("scheme", ("picard",))),
+        "rtol": Parameter(1e-6, interval="[1e-15, 1)"),
+        "nodes": Parameter(0, whole=True, interval="[4, 256]", also=(0,)),
+        "max_iterations": Parameter(0, whole=True, interval="[1, 100000]", also=(0,)),
+        "R": Parameter(1.0, interval="(0, inf)"),
+        "E2": Parameter(1.0, interval="(0, inf)"),
+    }
+)
 
 
 def is_ratio(name):

@@ -6,7 +6,8 @@ from weakref import WeakSet
 
 import numpy as np
 
-from ..parameters import CONTROL, COUPLED, LAYERED, PARAMETERS
+from ..numerics.locks import shared_lock
+from ..parameters import CONTROL, COUPLED, LAYERED, PARAMETERS, Register
 from . import disc_cell, elastic_plastic, heights, lattice, own_table, power_law, trial
 from .law import Bound, Curve, Law, Spots
 
@@ -33,6 +34,8 @@ _OF_PROBLEM = ("control", "value", "parameters", "of", "take", "but", "rough", "
 RESERVED = {*CONTROL, *_OF_PROBLEM, "E", "nu"}
 #: Laws whose functions have been tried.
 _TRIED: WeakSet[Law] = WeakSet()
+#: Held while a law is registered: each of two that come at once is then among the choices of `micro`.
+_CHANGING = shared_lock()
 
 
 def register(law: Law) -> Law:
@@ -65,8 +68,9 @@ def register(law: Law) -> Law:
         raise ValueError(f"micro law {law.name}: version must be a text, which changes whenever its numbers may")
     if wrong := trial.declaration(law):
         raise ValueError(f"micro law {law.name}: {wrong}")
-    _declare(LAWS | {law.name: law})
-    LAWS[law.name] = law
+    with _CHANGING:
+        _declare(LAWS | {law.name: law})
+        LAWS[law.name] = law
     return law
 
 
@@ -100,7 +104,7 @@ def _declare(laws):
                 raise ValueError(f"micro law {law.name}: the parameter {name} has {reason}")
             declared[name] = known, (*names, law.name)
     for name in [name for name, own in PARAMETERS.items() if own.needed_by[0] == "micro" and name not in declared]:
-        del PARAMETERS[name]  # of a law that has been replaced
+        PARAMETERS.pop(name, None)  # of a law that has been replaced
     PARAMETERS.update({name: own._replace(needed_by=("micro", names)) for name, (own, names) in declared.items()})
     PARAMETERS["micro"] = PARAMETERS["micro"]._replace(choices=tuple(laws))
     of_laws = "micro", tuple(law.name for law in laws.values() if law.poisson)
@@ -177,4 +181,4 @@ BUILT_IN = (
     elastic_plastic.LAW,
 )
 #: Name -> Law.
-LAWS = _declare({law.name: law for law in BUILT_IN})
+LAWS = Register(_declare({law.name: law for law in BUILT_IN}))

@@ -135,7 +135,7 @@ def as_numbers(contact: xr.Dataset) -> dict:
     contact = contact.assign({name: QUANTITIES[name](contact) for name in _DERIVED} | _spreads_of_derived(contact))
     shown = {
         name: described(contact, name)
-        for name in dict.fromkeys((*all_inputs(), *SHOWN, *OF_PULL_OFF, *_DERIVED))
+        for name in dict.fromkeys((*all_inputs(contact.variables), *SHOWN, *OF_PULL_OFF, *_DERIVED))
         if name in contact
     }
     shown |= {"stable": bool(contact["stable"])} if "stable" in contact and contact["status"] == 0 else {}

@@ -23,11 +23,11 @@ from ..inputs.vocabulary import (
     INTEGERS,
     NOT_RUN,
     NUMERICS,
-    PARAMETERS,
     TRUTHS,
     WITH_SPREADS,
     attributes,
     names,
+    parameters_of,
 )
 from ..rules.rule import validity_attributes, validity_of, whole
 from ..specimen.materials import strength_of
@@ -127,7 +127,8 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     grid = definition.grid
     rigid = bool((along(grid, "n") == 0).any())  # if one layer is on a rigid base, all are
     values = grid.values | grid.labels
-    attributes_of = {name: attributes(name, rigid) for name in (*PARAMETERS, *names("coordinate")) if name in values}
+    attributed = [name for name in (*parameters_of(values), *names("coordinate")) if name in values]
+    attributes_of = {name: attributes(name, rigid) for name in attributed}
     for name in ("B", "beta") if grid.fitted else ():
         attributes_of[name]["comment"] = COMMENT
     coordinates = {name: Labelled(*pair, attributes_of.get(name, {})) for name, pair in values.items()}

@@ -17,7 +17,7 @@ from ..arrays import xarray_later as xr
 from ..data.dataset import flag_words
 from ..inputs.definition import StudyError
 from ..inputs.punch.shapes import ROUND
-from ..inputs.vocabulary import BODIES
+from ..inputs.vocabulary import bodies_of
 from ..specimen import materials
 from ..specimen.quantities import readable
 from .inputs import is_rigid
@@ -64,7 +64,8 @@ def holds(case: xr.Dataset) -> list[str]:
     except StudyError:  # of a mean, say
         return []
     known = {body: float(values[0]) for body, values in strengths(case, again, {}).items()}
-    moduli = [case[name] for name, _, _ in BODIES.values() if name in case and case[name].attrs.get("units") == "Pa"]
+    moduli = [case[name] for name, _, _ in bodies_of(case.variables).values() if name in case]
+    moduli = [modulus for modulus in moduli if modulus.attrs.get("units") == "Pa"]
     hard = bool(moduli) and min(moduli) >= RUBBER
     if not (hard or np.isfinite(list(known.values())).any()):
         return []

@@ -9,7 +9,7 @@ from ...specimen import materials
 from ...specimen.quantities import Quantity
 from ...terminal import shown
 from ..grid import equal_values
-from ..vocabulary import BODIES, VOCABULARY, finite
+from ..vocabulary import BODIES, VOCABULARY, bodies_of, finite
 from .names import RIGID_TEXTS
 
 _MAY_BE_RIGID = ("punch", "body")
@@ -23,7 +23,7 @@ def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict]:
     E and ν have the spreads of the table of materials; messages are appended to `errors`.
     """
     inputs, names = dict(inputs), {}
-    for body, follows in BODIES.items():
+    for body, follows in bodies_of(inputs).items():
         entry = inputs.pop(body, None)
         if entry is None:
             continue
@@ -70,7 +70,7 @@ def assumed(names: set[str], values: dict, si_values: dict) -> tuple[str, ...]:
 
     names : of the inputs that the user gives; values : as those of a Grid; si_values : the inputs in SI units
     """
-    ratios = [nu for E, nu, _ in BODIES.values() if not np.isinf(si_values.get(E, np.inf)).all()]
+    ratios = [nu for E, nu, _ in bodies_of(names).values() if not np.isinf(si_values.get(E, np.inf)).all()]
     return tuple(name for name in [*ratios, *layered(values) * ["bonding"]] if name not in names)
 
 

@@ -9,78 +9,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from solver import layers
-from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 
 from ...terminal import shown
-from ..vocabulary import BODIES, PARAMETERS, SCENE, VOCABULARY, Entry, suggest
+from ..vocabulary import FIRST_LAYER, OF_A_LAYER, name_in_stack, suggest
 
-#: What the first layer has under the name of a case with one layer.
-_FIRST = {"h": "h", "n": "n", "nu": "nu1", "bonding": "bonding", "E1": "E1", "material": "layer"}
-#: What a layer may have in a list, and its words.
-_WORDS = {
-    "h": "thickness of layer {}",
-    "n": "ratio of the reduced moduli of layer {} and half-space",
-    "nu": "Poisson ratio of layer {}",
-    "bonding": "interface below layer {}",
-    "cn": "normal compliance of the interface below layer {}",
-    "ct": "tangential compliance of the interface below layer {}",
-    "profile": "how the modulus of layer {} goes from its top to its bottom",
-    "n_bottom": "ratio of the reduced moduli of the bottom of layer {} and half-space",
-    "nu_bottom": "Poisson ratio of the bottom of layer {}",
-    "E1": "Young's modulus of layer {}",
-    "E1_bottom": "Young's modulus of the bottom of layer {}",
-    "material": "material of layer {}",
-}
-_SYMBOLS = {"h": "h", "n": "n", "nu": "ν", "cn": "cn", "ct": "ct", "n_bottom": "n", "nu_bottom": "ν"}
 #: Parameters that a stack has in place of those of one layer.
 _ONE_LAYER = ("h", "n", "nu1", "bonding", "E1", "layer")
 #: A base -> what it is called when there are layers.
 _BASES = {"auto": "stack", "thin_layer": "thin_stack"}
 RIGID = "rigid_base"
-
-
-def name_of(number: int, field: str) -> str:
-    """The name of a parameter of a layer, `number` from 1 at the surface."""
-    return _FIRST[field] if number == 1 and field in _FIRST else f"layers.{number}.{field}"
-
-
-def declare() -> None:
-    """Rows of the vocabulary for the layers that the solver knows of now."""
-    count = layers.numbers_of(SOLVER_PARAMETERS)
-    for number in range(1, count + 1):
-        for field, words in _WORDS.items():
-            name = name_of(number, field)
-            symbol = f"{_SYMBOLS[field]}l{number}" if field in _SYMBOLS else ""  # ν2 is that of the body
-            if name in SOLVER_PARAMETERS and name not in VOCABULARY:
-                powers = layers.LAYER[field].powers
-                VOCABULARY[name] = Entry(name, "material", words.format(number), symbol, powers)
-            if name in SOLVER_PARAMETERS and name not in PARAMETERS:
-                PARAMETERS.append(name)
-            if field.startswith("E1") and name not in SCENE:
-                SCENE[name] = Entry(name, "scene", words.format(number), f"El{number}", (1, 0))
-        if number > 1:
-            BODIES[name_of(number, "material")] = tuple(name_of(number, field) for field in ("E1", "nu", "n"))
-    if count and "sublayers" not in PARAMETERS:
-        VOCABULARY["sublayers"] = Entry("sublayers", "material", "number of sublayers of a graded layer, 0: chosen")
-        PARAMETERS.append("sublayers")
-
-
-def recall(names: Any) -> None:
-    """Make the layers known of which results have coordinates; `names` of these."""
-    count = min(layers.numbers_of(map(str, names)), layers.MOST)
-    if count:
-        layers.register(count)
-        declare()
-
-
-def layers_in(names: Any) -> int:
-    """The number of layers of a stack, of the names of its parameters; 0 of no stack."""
-    return layers.numbers_of(names)
-
-
-def beyond(name: str, count: int) -> bool:
-    """Whether a parameter is of a layer that a stack of `count` layers does not have; 0 : no stack."""
-    return layers.numbers_of([name]) > count if name.startswith("layers.") else name == "sublayers" and not count
 
 
 def moduli_of(names: Any) -> list[tuple[str, str, str]]:
@@ -90,8 +27,9 @@ def moduli_of(names: Any) -> list[tuple[str, str, str]]:
         if name.startswith("layers.") and name.rpartition(".")[2] in ("E1", "E1_bottom"):
             number, _, field = name.removeprefix("layers.").partition(".")
             end = field.removeprefix("E1")
-            nu = name_of(int(number), f"nu{end}")
-            parts.append((name, nu if nu in names else name_of(int(number), "nu"), name_of(int(number), f"n{end}")))
+            nu = name_in_stack(int(number), f"nu{end}")
+            nu = nu if nu in names else name_in_stack(int(number), "nu")
+            parts.append((name, nu, name_in_stack(int(number), f"n{end}")))
     return parts
 
 
@@ -124,8 +62,6 @@ def flattened(table: dict, errors: list[str], rows: Any = (), elsewhere: Any = (
         layers.read_tables(stack)
     except ValueError as error:
         errors.append(f"layers: {error}")
-    layers.register(count)
-    declare()
     return _with_base(others, errors, rows or []) | stack | {"sublayers": others.get("sublayers", 0)}
 
 
@@ -160,7 +96,7 @@ def in_layers(messages: list[str], names: Any) -> list[str]:
     """Messages that name h of a stack as layers.1.h, as the other layers are named. `names` : of the inputs given."""
     if "sublayers" not in names:
         return messages
-    fields = {name: field for field, name in _FIRST.items()}
+    fields = {name: field for field, name in FIRST_LAYER.items()}
     before = "^| and |: |follows from |given as |in place of "
     after = r"\[|: | = | is missing| is given twice| and | are both | follows |,|$"
     first = re.compile(f"({before})({'|'.join(fields)})(?={after})")
@@ -192,7 +128,7 @@ def _dotted(table: dict) -> dict:
 def _short(name: str) -> str:
     """ "layers.1.h" as "h"."""
     number, _, field = name.removeprefix("layers.").partition(".")
-    return name_of(int(number), field) if number.isdigit() and int(number) == 1 else name
+    return name_in_stack(int(number), field) if number.isdigit() and int(number) == 1 else name
 
 
 def _twice(table: dict) -> list[str]:
@@ -219,12 +155,12 @@ def _of_list(stack: Any, errors: list[str]) -> dict:
             continue
         for field, value in fields.items():
             name = f"layers.{number}.{field}"
-            if field not in _WORDS:
-                errors.append(f"{name}: is not a key of a layer{suggest(str(field), _WORDS)}")
+            if field not in OF_A_LAYER:
+                errors.append(f"{name}: is not a key of a layer{suggest(str(field), OF_A_LAYER)}")
             elif isinstance(value, (list, tuple, range)):
                 errors.append(f"{name} has several values: an axis stands beside layers, as {shown(name)}")
             else:
-                flat[name_of(number, field)] = value
+                flat[name_in_stack(number, field)] = value
     return flat
 
 

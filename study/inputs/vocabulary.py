@@ -173,6 +173,13 @@ def is_of_layers(name: object) -> bool:
 VOCABULARY.further, SCENE.further, BODIES.further = map(_follows, range(3))
 
 
+def _layers_in(names) -> int:
+    """The number of layers that inputs have, of the names of these; 0 of no stack."""
+    words = [name for name in names if is_of_layers(name)]
+    numbers = [name.split(".")[1] for name in words if name.startswith("layers.")]
+    return min(max((int(number) for number in numbers if number.isdigit()), default=int(bool(words))), layers.MOST)
+
+
 def parameters_of(names) -> list[str]:
     """Names of all parameters that inputs may have, those of the layers too which are among the `names` of some."""
     return [*PARAMETERS, *parameters_of_layers(names)]
@@ -180,7 +187,7 @@ def parameters_of(names) -> list[str]:
 
 def parameters_of_layers(names) -> tuple[str, ...]:
     """Names of the parameters of the layers of a stack which are among the `names` of some; () of none."""
-    return _of_count(min(layers.numbers_of(names), layers.MOST))
+    return _of_count(_layers_in(names))
 
 
 @cache
@@ -191,13 +198,13 @@ def _of_count(count: int) -> tuple[str, ...]:
 
 def scene_of(names) -> list[str]:
     """Names of SCENE, those of the layers too which are among the `names` of inputs."""
-    count = min(layers.numbers_of(names), layers.MOST)
+    count = _layers_in(names)
     return [*SCENE, *(name for name in _of_layers()[1] if int(name.split(".")[1]) <= count)] if count else [*SCENE]
 
 
 def bodies_of(names) -> dict[str, tuple[str, str, str]]:
     """BODIES, with those of the layers which are among the `names` of inputs."""
-    count = min(layers.numbers_of(names), layers.MOST)
+    count = _layers_in(names)
     return BODIES | {f"layers.{i}.material": BODIES[f"layers.{i}.material"] for i in range(2, count + 1)}
 
 

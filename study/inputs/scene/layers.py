@@ -51,9 +51,9 @@ def flattened(table: dict, errors: list[str], rows: Any = (), elsewhere: Any = (
         errors += [f"{name} is given beside layers: each of the layers has its own" for name in beside[:1]]
         others = {name: value for name, value in others.items() if name not in beside}
         stack = _of_list(table["layers"], errors)
-    stack |= {_short(name): value for name, value in named.items()}
+    named = {short(name): value for name, value in named.items()}
+    stack = {name: value for name, value in stack.items() if name not in elsewhere} | named
     stack = _on_base(stack, table.get(RIGID, False), others | dict.fromkeys(elsewhere), errors)
-    stack = {name: value for name, value in stack.items() if name not in elsewhere}
     count = max(layers.numbers_of((*stack, *elsewhere)), 1)
     if count > layers.MOST:
         errors.append(f"layers: {count} layers: at most {layers.MOST} are allowed")
@@ -63,6 +63,32 @@ def flattened(table: dict, errors: list[str], rows: Any = (), elsewhere: Any = (
     except ValueError as error:
         errors.append(f"layers: {error}")
     return _with_base(others, errors, rows or []) | stack | {"sublayers": others.get("sublayers", 0)}
+
+
+def in_call(parameters: dict, rows: list[dict], errors: list[str]) -> tuple[dict, list[dict]]:
+    """The parameters of a call, and its cases, with one name for each number of a layer.
+
+    Where `layers` holds for all cases, a number of a layer in a case stands in place of what the list says.
+    """
+    if not any(map(_is_of_layers, _dotted(parameters))):
+        rows = [flattened(row, errors, [parameters] if "base" in parameters else ()) for row in rows]
+        return parameters, rows
+    again = [name for name in ("layers", RIGID, "sublayers") if name in parameters and any(name in row for row in rows)]
+    if again:
+        errors.append(f"{again[0]} is given twice: in [[cases]] and elsewhere")
+        return {name: value for name, value in parameters.items() if not _is_of_layers(name)}, rows
+    rows = [_dotted(row) for row in rows]
+    for row in rows:
+        errors += _twice(row)
+    rows = _with_the_list([{short(name): value for name, value in row.items()} for row in rows], parameters)
+    return flattened(parameters, errors, rows, {name for row in rows for name in row}), rows
+
+
+def _with_the_list(rows: list, table: dict) -> list:
+    """The cases; where some have a number of a layer the others have that of the list `layers` in the table."""
+    numbers = _of_list(table["layers"], []) if "layers" in table else {}
+    of_some = {name: numbers[name] for row in rows if isinstance(row, dict) for name in row if name in numbers}
+    return [of_some | row if isinstance(row, dict) else row for row in rows]
 
 
 def in_tables(tables: dict, errors: list[str]) -> tuple[dict, dict]:
@@ -78,8 +104,9 @@ def in_tables(tables: dict, errors: list[str]) -> tuple[dict, dict]:
     errors += [f"{name} is given beside layers: each of the layers has its own" for name in beside[:1]]
     for part in (*parts.values(), *(row for row in rows if isinstance(row, dict))):
         errors += _twice(part)
-    parts = {section: {_short(name): value for name, value in part.items()} for section, part in parts.items()}
-    rows = [{_short(name): value for name, value in row.items()} if isinstance(row, dict) else row for row in rows]
+    parts = {section: {short(name): value for name, value in part.items()} for section, part in parts.items()}
+    rows = [{short(name): value for name, value in row.items()} if isinstance(row, dict) else row for row in rows]
+    rows = _with_the_list(rows, tables)
     axes, sections = parts.get("axes", {}), [parts.get("axes", {}), parts.get("sample", {}), *rows]
     elsewhere = {name for part in sections if isinstance(part, dict) for name in part}
     bases = [{"base": 0}] * ("base" in elsewhere)
@@ -106,7 +133,7 @@ def in_layers(messages: list[str], names: Any) -> list[str]:
 def axes_in(tables: dict) -> list[str]:
     """The names of [axes] in their order."""
     axes = tables.get("axes", {})
-    return [_short(name) for name in _dotted(axes)] if isinstance(axes, dict) else []
+    return [short(name) for name in _dotted(axes)] if isinstance(axes, dict) else []
 
 
 def _is_of_layers(name: Any) -> bool:
@@ -125,15 +152,15 @@ def _dotted(table: dict) -> dict:
     return flat
 
 
-def _short(name: str) -> str:
-    """ "layers.1.h" as "h"."""
-    number, _, field = name.removeprefix("layers.").partition(".")
-    return name_in_stack(int(number), field) if number.isdigit() and int(number) == 1 else name
+def short(name: str) -> str:
+    """The name that results have: "h" of "layers.1.h", all others as they are."""
+    field = name.removeprefix("layers.1.") if isinstance(name, str) else name
+    return name if field == name else name_in_stack(1, field)
 
 
 def _twice(table: dict) -> list[str]:
     """Messages for numbers of the first layer that stand in a table under both of their names."""
-    both = [(_short(name), name) for name in table if isinstance(name, str) and _short(name) != name]
+    both = [(short(name), name) for name in table if isinstance(name, str) and short(name) != name]
     return [f"{name} is {short}, which is given too: leave out one" for short, name in both if short in table]
 
 

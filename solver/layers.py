@@ -4,89 +4,16 @@ The first layer, at the surface, is the one of a case with one layer: h, n, nu1 
 is a rigid base here too. What it has besides, and all of the others, is called layers.2.h, counted from 1.
 """
 
-import re
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from .numerics import profiles
-from .parameters import BONDINGS, PARAMETERS, STACKED, Parameter
+from .parameters import FIRST, LAYER, MOST, PARAMETERS, Parameter, full_name, numbers_of, row
+from .parameters import NAME_OF_LAYER as _NAME
 
 __all__ = ["LAYER", "MOST", "expanded", "full_name", "numbers_of", "row", "table"]
-
-#: Most layers of a stack.
-MOST = 16
-#: Into how many uniform layers each graded one is cut, at the surface in each octave of the depth; 0 : into more and
-#: more, until the answers do not change.
-_SUBLAYERS = Parameter(0, whole=True, interval="[1, 512]", also=(0,), needed_by=STACKED)
-#: What a layer has -> its row in the table of parameters. cn, ct : compliance of the interface below it, across and
-#: along it, length over pressure; 0 is a perfect bond, and without friction ct has no effect.
-LAYER = {
-    "h": Parameter(interval="[1e-12, 1e6]", powers=(0, 1)),
-    "n": Parameter(interval="[1e-9, 1e9]"),
-    "nu": Parameter(0.3, interval="(-1, 0.5]"),
-    "bonding": Parameter("frictionless", BONDINGS),
-    "cn": Parameter(0.0, interval="[0, 1e15]", powers=(-1, 1)),
-    "ct": Parameter(0.0, interval="[0, 1e15]", powers=(-1, 1)),
-    "profile": Parameter("uniform", profiles.WORDS),
-    "n_bottom": Parameter(interval="[1e-9, 1e9]", instead=""),
-    "nu_bottom": Parameter(interval="(-1, 0.5]", instead=""),
-}
-#: Names of the first layer that are those of a case with one layer.
-FIRST = {"h": "h", "n": "n", "nu": "nu1", "bonding": "bonding"}
-_NAME = re.compile(rf"layers\.([1-9]\d?)\.({'|'.join(LAYER)})")
-
-
-def full_name(number: int, field: str) -> str:
-    """The name of a parameter of a layer.
-
-    Parameters
-    ----------
-    number : of the layer, 1 at the surface
-    field : a key of `LAYER`
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> full_name(1, "nu"), full_name(2, "nu")
-    ('nu1', 'layers.2.nu')
-    """
-    return FIRST[field] if number == 1 and field in FIRST else f"layers.{number}.{field}"
-
-
-def numbers_of(names) -> int:
-    """The number of layers of a stack, of the `names` of its parameters; 0 if there is no name of a layer."""
-    names = [name for name in names if isinstance(name, str) and name.startswith(("layers.", "sublayers"))]
-    matches = (_NAME.fullmatch(name) for name in names)
-    return max((int(match[1]) for match in matches if match), default=int(bool(names)))
-
-
-def row(name: object) -> Parameter | None:
-    """The row of a parameter of a layer, or of `sublayers`, in the table of parameters.
-
-    Parameters
-    ----------
-    name : of the parameter
-
-    Returns
-    -------
-    solver.parameters.Parameter, or None if it is no name of a layer, or that of the first one in a case with one layer
-    """
-    if not isinstance(name, str) or not name.startswith(("layers.", "sublayers")):
-        return None
-    if name.endswith(".profile") and name in _ROWS:
-        return _ROWS[name]._replace(choices=(*profiles.WORDS, *list(profiles.TABLES)))
-    return _ROWS.get(name)
-
-
-def _row(number: int, field: str) -> Parameter:
-    of_bottom = field in ("n_bottom", "nu_bottom")
-    used = (full_name(number, "profile"), profiles.GRADED) if of_bottom else LAYER[field].used_by
-    return LAYER[field]._replace(needed_by=STACKED, used_by=used)
 
 
 def table(count: int) -> dict[str, Parameter]:
@@ -234,13 +161,3 @@ def _on_base(stack, rigid):
     if "n" in stack and not np.all(np.asarray(stack["n"]) == 1):
         raise ValueError(f"layers.1.n = {stack['n']}: on a rigid base n is E_j*/E1*, so that of the first layer is 1")
     return stack | {"n": 0.0}
-
-
-#: Name of each parameter of a layer that is no parameter of a case with one layer -> its row.
-_ROWS = {
-    name: _row(number, field)
-    for number in range(1, MOST + 1)
-    for field in LAYER
-    if (name := full_name(number, field)).startswith("layers.")
-} | {"sublayers": _SUBLAYERS}
-PARAMETERS.further = row

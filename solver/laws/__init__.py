@@ -6,7 +6,6 @@ from weakref import WeakSet
 
 import numpy as np
 
-from ..numerics.locks import shared_lock
 from ..parameters import CONTROL, COUPLED, LAYERED, PARAMETERS, Register
 from . import disc_cell, elastic_plastic, heights, lattice, own_table, power_law, trial
 from .law import Bound, Curve, Law, Spots
@@ -34,8 +33,6 @@ _OF_PROBLEM = ("control", "value", "parameters", "of", "take", "but", "rough", "
 RESERVED = {*CONTROL, *_OF_PROBLEM, "E", "nu"}
 #: Laws whose functions have been tried.
 _TRIED: WeakSet[Law] = WeakSet()
-#: Held while a law is registered: each of two that come at once is then among the choices of `micro`.
-_CHANGING = shared_lock()
 
 
 def register(law: Law) -> Law:
@@ -68,7 +65,7 @@ def register(law: Law) -> Law:
         raise ValueError(f"micro law {law.name}: version must be a text, which changes whenever its numbers may")
     if wrong := trial.declaration(law):
         raise ValueError(f"micro law {law.name}: {wrong}")
-    with _CHANGING:
+    with LAWS.lock:
         _declare(LAWS | {law.name: law})
         LAWS[law.name] = law
     return law

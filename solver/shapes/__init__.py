@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from ..numerics.locks import shared_lock
 from ..parameters import PARAMETERS, Register
 from . import blunt_cone, cone, flat, frustum, power, rounded_flat, sphere, table
 from .shape import Kind, Shape
@@ -16,8 +15,6 @@ __all__ = ["PARABOLOID", "SHAPES", "Kind", "Shape", "named", "register", "shape_
 
 #: The shape of the paper, which stands in :mod:`..punches.paraboloid` as well: the default.
 PARABOLOID = "paraboloid"
-#: Held while a shape is registered: each of two that come at once is then among the choices of `shape`.
-_CHANGING = shared_lock()
 
 
 def register(kind: Kind) -> Kind:
@@ -42,7 +39,7 @@ def register(kind: Kind) -> Kind:
     """
     if SHAPES.get(kind.name, kind) in BUILT_IN and kind not in BUILT_IN or kind.name == PARABOLOID:
         raise ValueError(f"shape {kind.name}: is one of this package: take another name")
-    with _CHANGING:
+    with SHAPES.lock:
         _declare(SHAPES | {kind.name: kind})
         SHAPES[kind.name] = kind
     return kind

@@ -14,9 +14,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from solver import layers
-from solver.numerics.locks import once, shared_lock
-from solver.parameters import CONTROL, Parameter, Register, among
+from solver.parameters import CONTROL, FIRST, LAYER, MOST, Parameter, Register, among
 from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import allowed as are_within
 
@@ -63,23 +61,24 @@ class Entry:
         row = CONTROL.get(self.name) or SOLVER_PARAMETERS.get(self.name) or Parameter()
         return row._replace(interval=self.interval) if self.interval else row
 
-    @once
+    @property
     def unit(self) -> str:
         """The SI unit of the physical quantity."""
         return self.written or si_unit(self.powers)
 
-    @once
+    @property
     def ratio(self) -> str:
         """The symbol over its scale, as on the axis of a plot: "h/R", "P/(E2* R^2)"; empty without a symbol."""
         return over_scale(self.symbol, self.powers) if self.symbol else ""
 
-    @once
+    @property
     def scale(self) -> str:
         """The scale in words, such as "E2* R^2"; empty for a pure number."""
         parts = [(s, e) for s, e in zip(("E2*", "R"), self.powers, strict=True) if e]
         return " ".join(s if e == 1 else f"{s}^{e}" for s, e in parts)
 
 
+@cache
 def over_scale(symbol: str, powers: tuple[int, int], scales: tuple[str, str] = ("E2*", "R"), gap: str = " ") -> str:
     """A symbol over its scale E2*^i R^j: "(dP/dD)/(E2* R)", "N̄ R^2".
 
@@ -116,7 +115,7 @@ ROWS = ChainMap(VOCABULARY, SCENE)
 BODIES = Register({"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")})
 
 #: What the first layer of a stack has under the name of a case with one layer.
-FIRST_LAYER = layers.FIRST | {"E1": "E1", "material": "layer"}
+FIRST_LAYER = FIRST | {"E1": "E1", "material": "layer"}
 #: What a layer may have in a list, and its words.
 OF_A_LAYER = {
     "h": "thickness of layer {}",
@@ -144,12 +143,12 @@ def name_in_stack(number: int, field: str) -> str:
 def _of_layers() -> tuple[dict[str, Entry], dict[str, Entry], dict[str, tuple]]:
     """The rows of VOCABULARY, SCENE and BODIES for what layers have under names of their own, such as "layers.2.h"."""
     rows, scene, bodies = {}, {}, {}
-    for number in range(1, layers.MOST + 1):
+    for number in range(1, MOST + 1):
         for field, words in OF_A_LAYER.items():
             name = name_in_stack(number, field)
-            if name.startswith("layers.") and field in layers.LAYER:
+            if name.startswith("layers.") and field in LAYER:
                 symbol = f"{_SYMBOLS[field]}l{number}" if field in _SYMBOLS else ""  # ν2 is that of the body
-                powers = layers.LAYER[field].powers
+                powers = LAYER[field].powers
                 rows[name] = Entry(name, "material", words.format(number), symbol, powers)
             elif name.startswith("layers.") and field != "material":
                 scene[name] = Entry(name, "scene", words.format(number), f"El{number}", (1, 0))
@@ -177,7 +176,7 @@ def _layers_in(names) -> int:
     """The number of layers that inputs have, of the names of these; 0 of no stack."""
     words = [name for name in names if is_of_layers(name)]
     numbers = [name.split(".")[1] for name in words if name.startswith("layers.")]
-    return min(max((int(number) for number in numbers if number.isdigit()), default=int(bool(words))), layers.MOST)
+    return min(max((int(number) for number in numbers if number.isdigit()), default=int(bool(words))), MOST)
 
 
 def parameters_of(names) -> list[str]:
@@ -248,7 +247,6 @@ class Names(list):
 
 PARAMETERS = Names(_BUILT_IN)
 """Names of parameters; `put_rows` adds those of registered laws."""
-_CHANGING = shared_lock()
 
 
 def put_rows(rows_now: Callable[[], dict[str, Entry]]) -> None:
@@ -256,7 +254,7 @@ def put_rows(rows_now: Callable[[], dict[str, Entry]]) -> None:
 
     Where they are so already nothing is touched: other threads read them.
     """
-    with _CHANGING:
+    with VOCABULARY.lock:
         rows = rows_now()  # within the lock: two threads that register at once leave the rows of both
         add_rows(rows)
         wanted = [*_BUILT_IN, *rows]
@@ -269,7 +267,7 @@ def put_rows(rows_now: Callable[[], dict[str, Entry]]) -> None:
 
 def add_rows(rows: dict[str, Entry]) -> None:
     """Add rows of parameters that laws and shapes declare, to PARAMETERS too."""
-    with _CHANGING:
+    with VOCABULARY.lock:
         VOCABULARY.update({name: row for name, row in rows.items() if VOCABULARY.get(name) != row})
         PARAMETERS.extend([name for name in rows if name not in PARAMETERS])
 

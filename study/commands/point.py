@@ -33,6 +33,11 @@ from .arguments import SWITCH, assignment
 _DERIVED = ("p_ring", "r_ring", "p_peak", "D_body")  # of QUANTITIES, that JSON has besides
 _PICTURES = (".png", ".pdf", ".svg")  # endings of `--stresses`
 _LIST = re.compile(r",\s")
+#: Arguments of the stresses of a contact -> what is said of them.
+_OF_STRESSES = {
+    "mu": "changes the stresses of a contact and not the contact: rc.stresses, rc.extremes and rc.first_yield take it",
+    "sigma_res": "adds to the stresses of a contact: rc.stresses, rc.extremes and rc.first_yield take it",
+}
 
 
 def items(options) -> list[list[str]]:
@@ -104,6 +109,8 @@ def parameters_of(texts: list[str]) -> dict[str, Any]:
             errors.append(f'{error}, such as R="5 mm"')
             continue
         errors += [f"{name} is given twice"] * (name in parameters)
+        if name in _OF_STRESSES:
+            errors.append(f"{name} {_OF_STRESSES[name]}")
         if name == "same_piece":
             errors += [f"{text}: must be same_piece=true or same_piece=false"] * (str(value).lower() not in SWITCH)
             value = SWITCH.get(str(value).lower())
@@ -182,7 +189,7 @@ def described(contact: xr.Dataset, name: str) -> dict | str:
     return {"value": number(array), "unit": unit} | spread
 
 
-def number(array: xr.DataArray) -> float | None:
-    """A number, None for NaN, which JSON does not have."""
+def number(array: xr.DataArray) -> float | str | None:
+    """A number; JSON has no others: "inf" or "-inf" of what is infinite, None of what is not known."""
     value = float(array)
-    return value if math.isfinite(value) else None
+    return None if math.isnan(value) else value if math.isfinite(value) else str(value)

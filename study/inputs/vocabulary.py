@@ -208,7 +208,7 @@ def bodies_of(names) -> dict[str, tuple[str, str, str]]:
 
 
 _NOT_THERE = tomllib.loads((files(__package__) / "not_there.toml").read_text(encoding="utf-8"))
-_RESULT = _NOT_THERE["results"]["says"]
+_RESULT, _LINE = (_NOT_THERE[section]["says"] for section in ("results", "line"))
 
 
 def names(*roles: str) -> tuple[str, ...]:
@@ -325,6 +325,7 @@ def check(parameter: Parameter, value) -> str:
     if parameter.choices:
         table = str(value).removeprefix("Table:")
         hint = f'; a table of your own is "table:{table}"' * table.endswith(".csv")
+        hint += f"; {_LINE}" * ("paraboloid" in parameter.choices and absent(str(value)) == _LINE)
         return "" if isinstance(value, str) and value in parameter.choices else allowed(parameter) + hint
     endless = parameter.interval.endswith("inf]")
     if not finite(value) and not (endless and value == math.inf):

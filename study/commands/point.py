@@ -32,7 +32,10 @@ from .arguments import SWITCH, assignment
 
 _DERIVED = ("p_ring", "r_ring", "p_peak", "D_body")  # of QUANTITIES, that JSON has besides
 _PICTURES = (".png", ".pdf", ".svg")  # endings of `--stresses`
-_LIST = re.compile(r",\s")
+#: What divides a list: a comma and a blank, or a comma behind a unit.
+_LIST = re.compile(r",\s|(?<=[^\W\d_]),(?=[-+.\d])")
+#: Numbers with a decimal point or an exponent each, whose commas can be no decimal ones.
+_NUMBERS = re.compile(r"[-+]?(?:\d*\.\d+|\d+(?:\.\d*)?e[-+]?\d+)(?:,[-+]?(?:\d*\.\d+|\d+(?:\.\d*)?e[-+]?\d+))+", re.I)
 #: Arguments of the stresses of a contact -> what is said of them.
 _OF_STRESSES = {
     "mu": "changes the stresses of a contact and not the contact: rc.stresses, rc.extremes and rc.first_yield take it",
@@ -123,10 +126,11 @@ def parameters_of(texts: list[str]) -> dict[str, Any]:
 
 
 def listed(value: float | str | bool) -> float | str | bool | list[str | float]:
-    """The values of a list: "1 N, 2 N" has two. Without a blank behind it a comma may be that of a decimal, "1,5 N"."""
-    if not isinstance(value, str) or not _LIST.search(value):
+    """The values of a list: "1 N, 2 N" and "1N,2N" have two. A comma between digits may be a decimal one, "1,5 N"."""
+    if not isinstance(value, str):
         return value
-    return [number_or_text(part.strip()) for part in value.split(",")]
+    parts = value.split(",") if _NUMBERS.fullmatch(value) else _LIST.split(value)
+    return [number_or_text(part.strip()) for part in parts] if len(parts) > 1 else value
 
 
 def number_or_text(text: str) -> float | str:

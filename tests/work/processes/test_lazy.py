@@ -127,8 +127,11 @@ def test_lengths_for_every_dimension():
 
 
 PLANNED = """
-import dask.array
-assert "expr" in dask.array.Array.__module__
+try:
+    import dask.array
+    assert "expr" in dask.array.Array.__module__
+except (ImportError, AssertionError):
+    raise SystemExit("no query planning")
 from roughcoat import solve
 contact = solve(P=[1e-5, 2e-5, 3e-5], micro="smooth", base="half_space", chunks={"P": 2})
 print(*contact.a.compute().values, contact.p.isel(P=2).compute().shape, contact.a.chunksizes["P"])
@@ -140,7 +143,7 @@ def test_with_query_planning():
     argument of `map_blocks` was lost: "Missing dependency". Older dask, or an xarray without it, has none."""
     planned = os.environ | {"DASK_ARRAY__QUERY_PLANNING": "True"}
     ran = subprocess.run([sys.executable, "-c", PLANNED], env=planned, capture_output=True, text=True)
-    if "AssertionError" in ran.stderr:
+    if "no query planning" in ran.stderr:
         pytest.skip("this dask has no query planning of arrays")
     assert ran.returncode == 0, ran.stderr
     *a, rest = ran.stdout.strip().split(" ", 3)

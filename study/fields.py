@@ -216,7 +216,7 @@ def residual_stress(sigma_res: Any, again: Again) -> float:
             value = quantity("sigma_res", sigma_res, "Pa").value
         elif isinstance(sigma_res, str) or has_unit(sigma_res):
             raise ValueError(f"sigma_res = {shown(sigma_res)}: the contact has no units: must be a number, over E2*")
-        elif not finite(sigma_res):
+        elif sigma_res is None or isinstance(sigma_res, bool):
             raise ValueError(f"sigma_res = {shown(sigma_res)}: must be a finite number")
         else:
             value = float(sigma_res)

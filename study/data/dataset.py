@@ -210,11 +210,11 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
 def flag_words(flags: xr.DataArray | Labelled) -> np.ndarray:
     """The names of flags, as of :func:`decode`, of their shape."""
     flags_of = {"status": status_attributes, "model_used": model_attributes, "validity": validity_attributes}
-    if not hasattr(flags, "attrs") or not hasattr(flags, "dims") or isinstance(flags, xr.Dataset):
+    if not hasattr(flags, "attrs") or not hasattr(flags, "dims") or hasattr(flags, "data_vars"):
         flagged = getattr(flags, "data_vars", {})
         there = [name for name in flagged if name in flags_of or "flag_meanings" in flagged[name].attrs]
-        which = f": take one of {', '.join(map(str, there))}" if there else ", such as contacts.status"
-        raise ValueError(f"decode takes an array of flags, not one of type {type(flags).__name__}{which}")
+        which = f"take one of its arrays {', '.join(map(str, there))}" if there else "take an array, contacts.status"
+        raise ValueError(f"a {type(flags).__name__} is none of {', '.join(flags_of)}: {which}")
     attributes = flags.attrs
     if "flag_meanings" not in attributes:  # arithmetic of xarray loses attributes
         name = getattr(flags, "name", f"a {type(flags).__name__}")

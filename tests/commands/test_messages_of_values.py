@@ -72,14 +72,14 @@ def test_friction_of_a_contact(capsys):
 
 @pytest.mark.parametrize("flags", [None, 3, "status", np.zeros(2)])
 def test_names_of_no_flags(flags):
-    with pytest.raises(ValueError, match="decode takes an array of flags, not one of type .*contacts.status"):
+    with pytest.raises(ValueError, match="^a [a-zA-Z]* is none of status, .*: take an array, contacts.status"):
         study.decode(flags)
 
 
 def test_names_of_all_flags_of_a_dataset(contact):
-    with pytest.raises(ValueError, match="take one of status, model_used, validity"):
+    with pytest.raises(ValueError, match="^a Dataset is none of .*: take one of its arrays status, model_used, "):
         study.decode(contact)
-    with pytest.raises(ValueError, match="take one of found_Y1"):
+    with pytest.raises(ValueError, match="take one of its arrays found_Y1"):
         study.decode(study.first_yield(**YIELDING))
 
 

@@ -139,6 +139,7 @@ $(READY): requirements.lock pyproject.toml $(wildcard setup.py solver/compiled/*
 	    $(VENV)/bin/python -m pip install --quiet --prefer-binary setuptools --editable '.[cluster,test,lint]'; }
 	$(VENV)/bin/python -m pip install --quiet --no-deps --no-build-isolation --editable .
 	$(VENV)/bin/python -m compileall -q roughcoat solver study studies
+	@$(VENV)/bin/python -P -m roughcoat --version
 	@touch $@
 
 # A study whose results are there and right computes nothing.

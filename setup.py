@@ -15,6 +15,7 @@ numpy computes (solver/compiled).
 import sys
 
 from setuptools import Extension, find_packages, setup
+from setuptools.command.build_ext import build_ext
 
 DATA = {} if "editable_wheel" in sys.argv else {"study.studies": "studies", "study.docs": "docs"}
 
@@ -32,4 +33,21 @@ CORE = Extension(
     optional=True,
 )
 
-setup(packages=[*PACKAGES, *DATA], package_dir={"": ".", **DATA}, ext_modules=[CORE])
+
+class build_core(build_ext):
+    """Say in one line that there is no core, which `roughcoat --version` says later."""
+
+    def build_extension(self, ext):
+        try:
+            super().build_extension(ext)
+        except Exception:  # which setuptools forgives, since the core is optional
+            self.warn("no compiled core was built (is there a C compiler?): numpy computes, 3 to 6 times slower")
+            raise
+
+
+setup(
+    packages=[*PACKAGES, *DATA],
+    package_dir={"": ".", **DATA},
+    ext_modules=[CORE],
+    cmdclass={"build_ext": build_core},
+)

@@ -4,92 +4,24 @@ The first layer, at the surface, is the one of a case with one layer: h, n, nu1 
 is a rigid base here too. What it has besides, and all of the others, is called layers.2.h, counted from 1.
 """
 
-import re
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from .numerics import profiles
-from .parameters import BONDINGS, PARAMETERS, STACKED, Parameter
+from .parameters import FIRST, LAYER, MOST, PARAMETERS, Parameter, full_name, numbers_of, row
+from .parameters import NAME_OF_LAYER as _NAME
 
-__all__ = ["LAYER", "MOST", "expanded", "full_name", "numbers_of", "register"]
-
-#: Most layers of a stack.
-MOST = 16
-#: Into how many uniform layers each graded one is cut, at the surface in each octave of the depth; 0 : into more and
-#: more, until the answers do not change.
-_SUBLAYERS = Parameter(0, whole=True, interval="[1, 512]", also=(0,), needed_by=STACKED)
-#: What a layer has -> its row in the table of parameters. cn, ct : compliance of the interface below it, across and
-#: along it, length over pressure; 0 is a perfect bond, and without friction ct has no effect.
-LAYER = {
-    "h": Parameter(interval="[1e-12, 1e6]", powers=(0, 1)),
-    "n": Parameter(interval="[1e-9, 1e9]"),
-    "nu": Parameter(0.3, interval="(-1, 0.5]"),
-    "bonding": Parameter("frictionless", BONDINGS),
-    "cn": Parameter(0.0, interval="[0, 1e15]", powers=(-1, 1)),
-    "ct": Parameter(0.0, interval="[0, 1e15]", powers=(-1, 1)),
-    "profile": Parameter("uniform", profiles.WORDS),
-    "n_bottom": Parameter(interval="[1e-9, 1e9]", instead=""),
-    "nu_bottom": Parameter(interval="(-1, 0.5]", instead=""),
-}
-#: Names of the first layer that are those of a case with one layer.
-FIRST = {"h": "h", "n": "n", "nu": "nu1", "bonding": "bonding"}
-_NAME = re.compile(rf"layers\.([1-9]\d?)\.({'|'.join(LAYER)})")
-
-
-def full_name(number: int, field: str) -> str:
-    """The name of a parameter of a layer.
-
-    Parameters
-    ----------
-    number : of the layer, 1 at the surface
-    field : a key of `LAYER`
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> full_name(1, "nu"), full_name(2, "nu")
-    ('nu1', 'layers.2.nu')
-    """
-    return FIRST[field] if number == 1 and field in FIRST else f"layers.{number}.{field}"
-
-
-def numbers_of(names) -> int:
-    """The number of layers of a stack, of the `names` of its parameters; 0 if there is no name of a layer."""
-    names = [name for name in names if name.startswith("layers.") or name == "sublayers"]
-    matches = (_NAME.fullmatch(name) for name in names)
-    return max((int(match[1]) for match in matches if match), default=int(bool(names)))
-
-
-def register(count: int) -> None:
-    """Put the parameters of stacks of `count` layers into the table of parameters, if they are not there."""
-    for number in range(1, count + 1):
-        for field, row in LAYER.items():
-            name = full_name(number, field)
-            if name not in PARAMETERS:
-                used = row.used_by
-                if field in ("n_bottom", "nu_bottom"):
-                    used = full_name(number, "profile"), profiles.GRADED
-                PARAMETERS[name] = row._replace(needed_by=STACKED, used_by=used)
-        name, choices = full_name(number, "profile"), (*profiles.WORDS, *profiles.TABLES)
-        PARAMETERS[name] = PARAMETERS[name]._replace(choices=choices)
-    if count:
-        PARAMETERS["sublayers"] = _SUBLAYERS
+__all__ = ["LAYER", "MOST", "expanded", "full_name", "numbers_of", "row", "table"]
 
 
 def table(count: int) -> dict[str, Parameter]:
     """The table of parameters of stacks of `count` layers; 0 : without those of stacks."""
-    if "sublayers" not in PARAMETERS:
-        return PARAMETERS
-    others = {name: row for name, row in PARAMETERS.items() if not name.startswith("layers.") and name != "sublayers"}
     if not count:
-        return others
+        return PARAMETERS
     names = [full_name(number, field) for number in range(1, count + 1) for field in LAYER]
-    return others | {name: PARAMETERS[name] for name in (*names, "sublayers")}
+    return PARAMETERS | {name: PARAMETERS[name] for name in (*names, "sublayers")}
 
 
 def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
@@ -132,7 +64,6 @@ def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
     count = max(count, len(parameters.get("layers", [])))
     if count > MOST:
         raise ValueError(f"layers: {count} layers: at most {MOST}")
-    register(count)
     return _with_base(others) | _on_base(stack, parameters.get("rigid_base", False))
 
 

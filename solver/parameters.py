@@ -1,9 +1,14 @@
 """What describes a case: the one table of bounds, defaults and choices, and of which cases need and use a parameter."""
 
+import re
+from collections.abc import Callable, ItemsView, Iterator, KeysView, ValuesView
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+
+from .numerics import profiles
+from .numerics.locks import shared_lock
 
 BONDINGS = ("frictionless", "bonded")
 BASES = ("half_space", "thin_layer", "layered", "auto", "stack", "thin_stack")
@@ -49,6 +54,52 @@ class Parameter(NamedTuple):
     long_name: str = ""
 
 
+class Register(dict):
+    """Rows by name. Threads may go through the rows while another thread registers one: they see those of the moment.
+
+    Attributes
+    ----------
+    further : a function: the row of a name that follows from the name itself, such as "layers.2.h", or None. Such a row
+        can be looked up, and is not among the rows that are listed
+    lock : to be held while something is registered, so that two that come at once both get in
+    """
+
+    further: Callable = staticmethod(lambda name: None)
+
+    def __init__(self, rows):
+        super().__init__(rows)
+        self.lock = shared_lock()
+
+    def __missing__(self, name):
+        row = self.further(name)
+        if row is None:
+            raise KeyError(name)
+        return row
+
+    def __contains__(self, name: object) -> bool:
+        return super().__contains__(name) or self.further(name) is not None
+
+    def get(self, name, default=None):
+        row = super().get(name)
+        row = self.further(name) if row is None else row
+        return default if row is None else row
+
+    def _now(self) -> dict:
+        return dict(list(super().items()))  # one step: no other thread comes between
+
+    def __iter__(self) -> Iterator:
+        return iter(list(super().keys()))
+
+    def keys(self) -> KeysView:
+        return self._now().keys()
+
+    def values(self) -> ValuesView:
+        return self._now().values()
+
+    def items(self) -> ItemsView:
+        return self._now().items()
+
+
 #: The conditions that a case has a layer, and that it is bonded.
 LAYERED = ("base", tuple(base for base in BASES if base != "half_space"))
 BONDED = ("bonding", ("bonded",))
@@ -70,37 +121,122 @@ CONTROL = {
 
 #: All other parameters; their meanings and units are in :class:`~solver.problem.Problem`. A law declares its own:
 #: `laws.register` adds them here, and the name of the law to the choices of `micro`; so does `shapes.register`.
-#: `schemes` adds those of `scheme`.
+#: `schemes` adds those of `scheme`. Rows of the layers of a stack, "layers.2.h", follow from their names: `row`.
 #: Keys of cases leave defaults out (study/inputs/identity.py): whoever changes a default changes `NUMERICS_VERSION`.
-PARAMETERS = {
-    "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED, powers=(0, 1)),
-    "n": Parameter(interval="[1e-9, 1e9]", also=(0,), needed_by=LAYERED),  # 0: a rigid base
-    "m": Parameter(0.0, interval="[0, 1e9]"),
-    "nu1": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=COUPLED),
-    "nu2": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=COUPLED),
-    "Y1": STRENGTH._replace(needed_by=LAYERED),
-    "Y2": STRENGTH,
-    "Y_punch": STRENGTH,
-    "bonding": Parameter("frictionless", BONDINGS, needed_by=LAYERED),
-    "base": Parameter("layered", BASES),
-    "accuracy": Parameter(1e-2, interval="(0, 1)", needed_by=("base", ("auto",))),
-    "model_check": Parameter("closed_form", MODEL_CHECKS, needed_by=("base", ("thin_layer",))),
-    "micro": Parameter("disc_cell"),
-    "shape": Parameter("paraboloid", ("paraboloid",)),
-    "w_adhesion": Parameter(0.0, interval="[0, 1e3]", powers=(1, 1)),
-    "adhesion": Parameter("jkr", ADHESIONS),
-    "sigma0": Parameter(interval="[1e-15, 1e15]", powers=(1, 0), instead=""),
-    "z0": Parameter(interval="[1e-15, 1e3]", powers=(0, 1), instead=""),
-    "branch": Parameter("stable", BRANCHES),
-    "k_machine": Parameter(interval="[0, inf]", powers=(1, 1), instead=""),
-    "scheme": Parameter("newton"),
-    "k": Parameter(1.0, interval="[0, 1e6]", used_by=("scheme", ("picard",))),
-    "rtol": Parameter(1e-6, interval="[1e-15, 1)"),
-    "nodes": Parameter(0, whole=True, interval="[4, 256]", also=(0,)),
-    "max_iterations": Parameter(0, whole=True, interval="[1, 100000]", also=(0,)),
-    "R": Parameter(1.0, interval="(0, inf)"),
-    "E2": Parameter(1.0, interval="(0, inf)"),
+PARAMETERS = Register(
+    {
+        "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED, powers=(0, 1)),
+        "n": Parameter(interval="[1e-9, 1e9]", also=(0,), needed_by=LAYERED),  # 0: a rigid base
+        "m": Parameter(0.0, interval="[0, 1e9]"),
+        "nu1": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=COUPLED),
+        "nu2": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=COUPLED),
+        "Y1": STRENGTH._replace(needed_by=LAYERED),
+        "Y2": STRENGTH,
+        "Y_punch": STRENGTH,
+        "bonding": Parameter("frictionless", BONDINGS, needed_by=LAYERED),
+        "base": Parameter("layered", BASES),
+        "accuracy": Parameter(1e-2, interval="(0, 1)", needed_by=("base", ("auto",))),
+        "model_check": Parameter("closed_form", MODEL_CHECKS, needed_by=("base", ("thin_layer",))),
+        "micro": Parameter("disc_cell"),
+        "shape": Parameter("paraboloid", ("paraboloid",)),
+        "w_adhesion": Parameter(0.0, interval="[0, 1e3]", powers=(1, 1)),
+        "adhesion": Parameter("jkr", ADHESIONS),
+        "sigma0": Parameter(interval="[1e-15, 1e15]", powers=(1, 0), instead=""),
+        "z0": Parameter(interval="[1e-15, 1e3]", powers=(0, 1), instead=""),
+        "branch": Parameter("stable", BRANCHES),
+        "k_machine": Parameter(interval="[0, inf]", powers=(1, 1), instead=""),
+        "scheme": Parameter("newton"),
+        "k": Parameter(1.0, interval="[0, 1e6]", used_by=("scheme", ("picard",))),
+        "rtol": Parameter(1e-6, interval="[1e-15, 1)"),
+        "nodes": Parameter(0, whole=True, interval="[4, 256]", also=(0,)),
+        "max_iterations": Parameter(0, whole=True, interval="[1, 100000]", also=(0,)),
+        "R": Parameter(1.0, interval="(0, inf)"),
+        "E2": Parameter(1.0, interval="(0, inf)"),
+    }
+)
+
+#: Most layers of a stack.
+MOST = 16
+#: Into how many uniform layers each graded one is cut, at the surface in each octave of the depth; 0 : into more and
+#: more, until the answers do not change.
+_SUBLAYERS = Parameter(0, whole=True, interval="[1, 512]", also=(0,), needed_by=STACKED)
+#: What a layer has -> its row in the table of parameters. cn, ct : compliance of the interface below it, across and
+#: along it, length over pressure; 0 is a perfect bond, and without friction ct has no effect.
+LAYER = {
+    "h": Parameter(interval="[1e-12, 1e6]", powers=(0, 1)),
+    "n": Parameter(interval="[1e-9, 1e9]"),
+    "nu": Parameter(0.3, interval="(-1, 0.5]"),
+    "bonding": Parameter("frictionless", BONDINGS),
+    "cn": Parameter(0.0, interval="[0, 1e15]", powers=(-1, 1)),
+    "ct": Parameter(0.0, interval="[0, 1e15]", powers=(-1, 1)),
+    "profile": Parameter("uniform", profiles.WORDS),
+    "n_bottom": Parameter(interval="[1e-9, 1e9]", instead=""),
+    "nu_bottom": Parameter(interval="(-1, 0.5]", instead=""),
 }
+#: Names of the first layer that are those of a case with one layer.
+FIRST = {"h": "h", "n": "n", "nu": "nu1", "bonding": "bonding"}
+NAME_OF_LAYER = re.compile(rf"layers\.([1-9]\d?)\.({'|'.join(LAYER)})")
+
+
+def full_name(number: int, field: str) -> str:
+    """The name of a parameter of a layer.
+
+    Parameters
+    ----------
+    number : of the layer, 1 at the surface
+    field : a key of `LAYER`
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> full_name(1, "nu"), full_name(2, "nu")
+    ('nu1', 'layers.2.nu')
+    """
+    return FIRST[field] if number == 1 and field in FIRST else f"layers.{number}.{field}"
+
+
+def numbers_of(names) -> int:
+    """The number of layers of a stack, of the `names` of its parameters; 0 if there is no name of a layer."""
+    names = [name for name in names if isinstance(name, str) and name.startswith(("layers.", "sublayers"))]
+    matches = (NAME_OF_LAYER.fullmatch(name) for name in names)
+    return max((int(match[1]) for match in matches if match), default=int(bool(names)))
+
+
+def row(name: object) -> Parameter | None:
+    """The row of a parameter of a layer, or of `sublayers`, in the table of parameters.
+
+    Parameters
+    ----------
+    name : of the parameter
+
+    Returns
+    -------
+    solver.parameters.Parameter, or None if it is no name of a layer, or that of the first one in a case with one layer
+    """
+    if not isinstance(name, str) or not name.startswith(("layers.", "sublayers")):
+        return None
+    if name.endswith(".profile") and name in _ROWS:
+        return _ROWS[name]._replace(choices=(*profiles.WORDS, *list(profiles.TABLES)))
+    return _ROWS.get(name)
+
+
+def _row(number: int, field: str) -> Parameter:
+    of_bottom = field in ("n_bottom", "nu_bottom")
+    used = (full_name(number, "profile"), profiles.GRADED) if of_bottom else LAYER[field].used_by
+    return LAYER[field]._replace(needed_by=STACKED, used_by=used)
+
+
+#: Name of each parameter of a layer that is no parameter of a case with one layer -> its row.
+_ROWS = {
+    name: _row(number, field)
+    for number in range(1, MOST + 1)
+    for field in LAYER
+    if (name := full_name(number, field)).startswith("layers.")
+} | {"sublayers": _SUBLAYERS}
+PARAMETERS.further = row
 
 
 def is_ratio(name):

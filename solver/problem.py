@@ -82,17 +82,18 @@ class Problem:
         return f"Problem({len(self)} cases, {control}, base: {kinds[0]}, micro: {kinds[1]})"
 
     def __setstate__(self, state):
-        """A process that gets the batch knows its layers."""
+        """A process that gets the batch knows its tables."""
         self.__dict__.update(state)
         layers.read_tables(self.parameters)
         shapes.named(self.parameters.get("shape", ()))
-        layers.register(layers.numbers_of(self.parameters))
 
     def __getattr__(self, name):
         """A parameter; NaN if its law was registered after this batch was made."""
+        if name in (parameters := self.__dict__.get("parameters", {})):
+            return parameters[name]
         if name not in PARAMETERS:
             raise AttributeError(f"Problem has no {name}")
-        return self.parameters[name] if name in self.parameters else np.full(len(self), np.nan)
+        return np.full(len(self), np.nan)
 
     @classmethod
     def of(

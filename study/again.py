@@ -22,11 +22,10 @@ from .inputs.laws import recall
 from .inputs.punch.shapes import MICROMETRE, in_metres
 from .inputs.punch.stresses import DECIDE, without_stresses
 from .inputs.scene.layers import moduli_of
-from .inputs.scene.layers import recall as recall_layers
 from .inputs.scene.names import is_ratio
 from .inputs.scene.scales import make_dimensionless
 from .inputs.scene.scene import Scene, over
-from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
+from .inputs.vocabulary import CONTROLS, NUMERICS, ROWS, SCENE, VOCABULARY, parameters_of, scene_of
 from .rules.rule import has_units
 from .rules.strength import first, softer
 from .specimen.materials import Material, Strength, known_strength
@@ -59,7 +58,7 @@ class Again(NamedTuple):
         numbers = scene.parameters if scene else inputs
         try:
             problem = Problem.of(
-                **{name: of_all_cases(numbers[name], dims, shape) for name in PARAMETERS if name in numbers}
+                **{name: of_all_cases(numbers[name], dims, shape) for name in parameters_of(numbers) if name in numbers}
             )
         except ValueError as error:
             raise StudyError([f"{who}: {error}"]) from None
@@ -84,9 +83,9 @@ def _checked(contact: xr.Dataset, who: str) -> dict[str, Any]:
     if not is_contact(contact) or "status" not in contact:
         raise StudyError([f"{who} takes a dataset of study.solve or of a results file, with its status"])
     recall(contact.attrs.get("micro_laws", ""))
-    recall_layers(contact.coords)
+    coords = [str(name) for name in contact.coords]
     settings = {name: contact.attrs[name] for name in NUMERICS if name in contact.attrs}
-    coordinates = [name for name in (*CONTROLS, *SCENE, *PARAMETERS) if name in contact.coords]
+    coordinates = [name for name in (*CONTROLS, *scene_of(coords), *parameters_of(coords)) if name in coords]
     wrong = [f"has no coordinate {name}" for name in ("base", "micro") if name not in coordinates]
     wrong += ["must have one of P, a and D as a coordinate"] * (len({*coordinates} & {*CONTROLS}) != 1)
     if wrong:

@@ -224,5 +224,8 @@ def tabulate(name: str, results: Folder = "results", folder: Folder = "tables") 
         wrong = f"the function must return a list of tuples of {len(table.columns)} cells, one a row"
         raise StudyError([f"{name}: {wrong}"], code=1)
     text_csv = csv_text([column.text for column in table.columns], rows)
-    texts = {"txt": as_text(table, rows), "csv": text_csv, "tex": as_latex(table, rows)}
+    try:
+        texts = {"txt": as_text(table, rows), "csv": text_csv, "tex": as_latex(table, rows)}
+    except StudyError as error:  # a column without a format
+        raise StudyError([f"{name}: {text}" for text in error.messages], code=1) from None
     return [write(Path(folder) / f"{stem(name)}.{suffix}", text) for suffix, text in texts.items()]

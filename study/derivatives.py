@@ -9,6 +9,7 @@ import numpy as np
 
 from solver import Problem, solve
 from solver import sensitivities as derivatives
+from solver.layers import numbers_of, table
 from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import uses
 
@@ -19,7 +20,7 @@ from .inputs.scene.changes import SCALES, changes
 from .inputs.scene.layers import moduli_of
 from .inputs.scene.names import is_ratio
 from .inputs.scene.scene import Scene
-from .inputs.vocabulary import BODIES, PARAMETERS, VOCABULARY
+from .inputs.vocabulary import VOCABULARY, bodies_of, parameters_of
 
 #: Results that have sensitivities.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
@@ -73,7 +74,7 @@ def _by_inputs(contact: xr.Dataset, again: Again, x: Any) -> tuple[dict, dict]:
     NaN in cases that have not converged.
     """
     problem, numbers, scene, dims, shape = again
-    used = [name for name in SOLVER_PARAMETERS if name in numbers and _counts(problem, name)]
+    used = [name for name in table(numbers_of(numbers)) if name in numbers and _counts(problem, name)]
     solution = solve(problem, x)
     solved = derivatives(problem, solution, x, inputs=(problem.control, *used))
     logs = {name: dict(zip(solved.inputs, values.T, strict=True)) for name, values in solved.logs.items()}
@@ -131,7 +132,7 @@ def relative_spreads(case: xr.Dataset, names: Iterable[str]) -> dict[str, float]
 
 def correlated(contact: xr.Dataset) -> bool:
     """Whether the spreads of some inputs are correlated. Then no input has a share of its own."""
-    bodies = [contact[body] for body in BODIES if body in contact]
+    bodies = [contact[body] for body in bodies_of(contact.coords) if body in contact]
     return "correlations" in contact.attrs or any("comment" in body.attrs for body in bodies)
 
 
@@ -149,7 +150,8 @@ def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[
     unit = {"R"} if "R1" in values or scene.scale else set()
     names = [name for name in values if np.any(np.isfinite(values[name])) and name not in unit]
     follow = {"n", "m", "table_unit", *(ratio for _, _, ratio in moduli_of(values))}
-    pure_numbers = [name for name in PARAMETERS if name in scene.parameters and name not in {*values, *follow}]
+    given = [name for name in parameters_of(scene.parameters) if name in scene.parameters]
+    pure_numbers = [name for name in given if name not in {*values, *follow}]
     pure_numbers += ["n"] * ("E1" not in values) + ["m"] * ("E_punch" not in values)
     ones = np.ones(int(np.prod(shape)))
     flat = {}

@@ -16,7 +16,7 @@ from solver.yields.extremes import EXTREMES
 
 from .again import Again, of_all_cases, refuse_without_stresses
 from .inputs.definition import StudyError
-from .inputs.vocabulary import VOCABULARY
+from .inputs.vocabulary import VOCABULARY, finite
 from .specimen.foreign import plain
 from .specimen.quantities import has_unit, quantity
 from .terminal import shown
@@ -24,6 +24,8 @@ from .terminal import shown
 SIGNS = "tension is positive; z points down from the surface"
 #: Radii and depths in a that are taken where none are given: r = 1, where p ends, is among them.
 _RADII, _DEPTHS = np.linspace(0, 2, 41), np.linspace(0, 2, 41)
+#: Beyond these a coefficient of friction, and a residual stress over E2*, is a slip: squares of stresses overflow.
+_MOST_FRICTION, _MOST_RESIDUAL = 1e6, 1e15
 _LONG_NAMES = {
     "sr": "radial stress",
     "st": "circumferential stress",
@@ -179,8 +181,11 @@ def units_of(again: Again) -> tuple[np.ndarray, np.ndarray]:
 
 
 def friction(mu: Any) -> float:
-    if np.ndim(mu) or isinstance(mu, (str, bool)) or not (np.isfinite(mu) and mu >= 0):
+    mu = plain(mu)
+    if not finite(mu) or mu < 0:
         raise StudyError([f"mu = {shown(mu)}: must be a finite number, at least 0"])
+    if mu > _MOST_FRICTION:
+        raise StudyError([f"mu = {shown(mu)}: must be at most {_MOST_FRICTION:g}"])
     return float(mu)
 
 
@@ -190,6 +195,8 @@ def _mirrored(r: np.ndarray) -> np.ndarray:
 
 def _axis(name: str, values: Any, signed: bool) -> np.ndarray:
     try:
+        if np.asarray(values).dtype == bool:
+            raise TypeError("True is no number")
         values = np.atleast_1d(np.asarray(values, dtype=float))
     except (TypeError, ValueError):
         raise StudyError([f"{name} = {shown(values)}: must be numbers, in units of a"]) from None
@@ -209,12 +216,17 @@ def residual_stress(sigma_res: Any, again: Again) -> float:
             value = quantity("sigma_res", sigma_res, "Pa").value
         elif isinstance(sigma_res, str) or has_unit(sigma_res):
             raise ValueError(f"sigma_res = {shown(sigma_res)}: the contact has no units: must be a number, over E2*")
+        elif sigma_res is None or isinstance(sigma_res, bool):
+            raise ValueError(f"sigma_res = {shown(sigma_res)}: must be a finite number")
         else:
             value = float(sigma_res)
     except (TypeError, ValueError) as error:
         raise StudyError([str(error)]) from None
     if not np.isfinite(value):
         raise StudyError([f"sigma_res = {shown(sigma_res)}: must be finite"])
+    if np.any(np.abs(value) > _MOST_RESIDUAL * units_of(again)[0]):
+        bound = f"must be at most {_MOST_RESIDUAL:g} E2*, either way"
+        raise StudyError([f"sigma_res = {shown(sigma_res)}: {bound}"])
     return value
 
 

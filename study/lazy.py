@@ -1,9 +1,8 @@
 """A dataset of dask arrays: a chunk of the grid is solved when its numbers are asked for, wherever dask computes."""
 
-import operator
 from dataclasses import replace
 from math import prod
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from uuid import uuid4
 
 import dask.array
@@ -45,25 +44,27 @@ class Chunks(NamedTuple):
         return replace(self.definition, grid=cut_out(self.definition.grid, window), scene=scene)
 
 
-def lazily(definition: Definition, chunks: dict, command: str) -> xr.Dataset:
+def lazily(definition: Definition, chunks: Any, command: str) -> xr.Dataset:
     """The dataset of a grid whose results are dask arrays. The solver has one task for each chunk.
 
-    chunks : dimension of the results -> length of a chunk, or the lengths of all; -1 or no entry: the dimension whole
+    chunks : dimension of the results -> length of a chunk, or the lengths of all; -1 or no entry: the dimension whole;
+        "auto": as many cases as a block of a study has. Or one of these for every dimension
 
     Raises StudyError for chunks that do not fit the grid.
     """
     from roughcoat.elsewhere import Packed  # no other call needs it
 
     dims = definition.in_results({dim: dim for dim in definition.grid.sizes})
-    lengths = _lengths(chunks, definition.in_results(definition.grid.sizes))
+    lengths = _lengths(chunks, definition)
     ends = {dim: np.cumsum([0, *along]) for dim, along in zip(dims.values(), lengths, strict=True)}
     each = Chunks(definition, ends, tuple(laws_of_users(definition.grid.values["micro"][1])))
     shape = tuple(map(len, lengths))
     numbers = dask.array.from_array(np.arange(prod(shape)).reshape(shape), chunks=1)
-    # the grid is an item of dask of its own, which goes to a worker once and not with every chunk
-    call = dask.delayed(Packed(_solved, each), name=f"contacts-{uuid4().hex}", traverse=False)
+    # The grid is an item of dask of its own, which goes to a worker once and not with every chunk: an array of one
+    # element, since with query planning `map_blocks` loses a Delayed among its arguments (dask 2026.8).
+    call = dask.array.from_array(_element(Packed(_solved, each)), chunks=(), name=f"contacts-{uuid4().hex}")
     empty = np.empty((0,) * len(shape), dtype=object)
-    solved = dask.array.map_blocks(operator.call, call, numbers, meta=empty, name=f"solve-{uuid4().hex}")
+    solved = dask.array.map_blocks(_called, call, numbers, meta=empty, name=f"solve-{uuid4().hex}")
     # one case, not solved, has the names, types, dimensions and attributes of all results
     first = each._replace(ends={dim: np.array([0, 1]) for dim in ends}).within(0)
     first_case = _dataset(first, not_run(first, first.grid.size), command)
@@ -77,26 +78,46 @@ def lazily(definition: Definition, chunks: dict, command: str) -> xr.Dataset:
     return dataset_of(definition, labelled(definition, {}, command).settings_apart()).assign(variables)
 
 
-def _lengths(chunks: dict, sizes: dict[str, int]) -> tuple[tuple[int, ...], ...]:
-    """The lengths of the chunks along each dimension of the results, whose lengths are `sizes`."""
+def _lengths(chunks: Any, definition: Definition) -> tuple[tuple[int, ...], ...]:
+    """The lengths of the chunks along each dimension of the results. Raises StudyError."""
+    sizes = definition.in_results(definition.grid.sizes)
     if not isinstance(chunks, dict):
-        raise StudyError([f'chunks = {shown(chunks)}: must be a dictionary such as {{"P": 10}}'])
+        if not _fits(chunks, 0) or isinstance(chunks, tuple):
+            one = 'must be a dictionary such as {"P": 10}, one length for every dimension, or "auto"'
+            raise StudyError([f"chunks = {shown(chunks)}: {one}"])
+        chunks = dict.fromkeys(sizes, chunks)
     wrong, dims = [], ", ".join(sizes) or "the results have none"
     for name, length in chunks.items():
         if name not in sizes:
             wrong.append(f"chunks: {shown(name)} is no dimension of the grid ({dims})")
         elif not _fits(length, sizes[name]):
-            what = f"a whole number, 1 or more, -1 for all, or a tuple of lengths that together are {sizes[name]}"
+            several = f"a tuple of lengths that together are {sizes[name]}"
+            what = f'a whole number, 1 or more, -1 for all, or {several}, or "auto"'
             wrong.append(f"chunks: {name} = {shown(length)}: must be {what}")
     if wrong:
         raise StudyError(wrong)
-    return normalize_chunks(tuple(chunks.get(name, -1) for name in sizes), tuple(sizes.values()))
+    # "auto" makes chunks of about the cases of a block, one number of each
+    of_block = {"limit": 8 * definition.block, "dtype": float}
+    return normalize_chunks(tuple(chunks.get(name, -1) for name in sizes), tuple(sizes.values()), **of_block)
 
 
 def _fits(length: object, size: int) -> bool:
+    if isinstance(length, str):
+        return length == "auto"
     parts = length if isinstance(length, tuple) else (length,)
     whole = all(type(part) is int and part > 0 for part in parts)
     return length == -1 or (whole and (parts is not length or sum(parts) == size))
+
+
+def _element(value: object) -> np.ndarray:
+    """An array without dimensions that has the value as its only element."""
+    array = np.empty((), dtype=object)
+    array[()] = value
+    return array
+
+
+def _called(call: np.ndarray, number: np.ndarray) -> np.ndarray:
+    return call.item()(number)
 
 
 def _solved(each: Chunks, number: np.ndarray) -> np.ndarray:

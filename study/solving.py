@@ -39,7 +39,7 @@ def solve(
     same_piece: bool = False,
     correlations: dict[tuple[str, str], float] | None = None,
     progress: bool | None = None,
-    chunks: dict | None = None,
+    chunks: dict | int | str | None = None,
     sensitivities: bool = False,
     **parameters: Unpack[Parameters],
 ) -> xr.Dataset:
@@ -108,7 +108,7 @@ def solve(
         notebook or on a terminal
     chunks : dimension -> cases in a chunk, such as {"P": 10}: the results are dask arrays, which are solved when they
         are asked for, by the scheduler of dask that is then active, one task a chunk. A dimension that is not there is
-        one chunk
+        one chunk. A whole number holds for every dimension; "auto" makes chunks of some thousand cases
     sensitivities : whether the dataset holds `a_sensitivity` and so on over `input`: d ln a/d ln input, of each input
         that is a number, as `study.sensitivities` gives them
     parameters : of registered laws

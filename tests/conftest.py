@@ -21,11 +21,9 @@ from screens import impatient, stderr  # noqa: F401
 
 from solver import laws
 from solver.compiled.library import VARIABLE, available
-from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from study import open_results
 from study.files.lock import held
 from study.inputs.laws import update_vocabulary
-from study.inputs.vocabulary import BODIES, SCENE, VOCABULARY
 from study.work import engine
 
 collect_ignore = ["shared/hold.py"]  # importing it changes `study`: it is for processes of their own
@@ -59,15 +57,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(autouse=True)
 def laws_as_they_were() -> Iterator[None]:
-    """After each test only the laws of this package are known, and no layers but the one of a case."""
+    """After each test only the laws of this package are known."""
     yield
     for name in set(laws.LAWS) - {law.name for law in laws.BUILT_IN}:
         del laws.LAWS[name]
         laws._declare(laws.LAWS)
         update_vocabulary()
-    for table in (SOLVER_PARAMETERS, VOCABULARY, SCENE, BODIES):
-        for name in [name for name in table if name.startswith("layers.") or name == "sublayers"]:
-            del table[name]
     update_vocabulary()
 
 

@@ -11,7 +11,6 @@ C and K (:mod:`..body.operator`); the law has p*, A*, q, g (:mod:`..laws.law`).
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +19,7 @@ from ..body.operator import Body, Operator
 from ..edges import FREE
 from ..edges.edge import Edge
 from ..laws import Bound, Curve
+from ..numerics.locks import once
 from ..punches import PARABOLOID
 from ..punches.punch import Punch, largest
 
@@ -103,23 +103,23 @@ class Evaluation:
     def mesh(self):
         return self.operator.mesh
 
-    @cached_property
+    @once
     def G(self):
         """Residual of the control, (B,): the logarithm of the controlled quantity over its given value. The load is
         that of Eq. (5), the depth that of Eq. (3) at r = a."""
         return control_residual(self.cases, self.state.eta, self.X, self.curve.q, self.edge_q, self.mesh)
 
-    @cached_property
+    @once
     def drop(self):
         """Right-hand side of the equation at the nodes, (B or 1, n)."""
         return self.cases.punch.drop(np.exp(self.state.eta), self.mesh.s)
 
-    @cached_property
+    @once
     def slopes(self):
         """Derivatives of K q (B, n) and edge @ q (B,) by η at fixed q."""
         return self.operator.slopes(self.curve.q)
 
-    @cached_property
+    @once
     def gap(self):
         """(B, n): height over a²/2 of asperities above the surface, where they bear no pressure because the pressure
         around them presses the surface away; else 0."""
@@ -129,7 +129,7 @@ class Evaluation:
         bare = (q >= 0) & (q < _NOTHING * q.max(axis=1, keepdims=True))
         return np.where(bare, np.maximum(self.F - self.Z * self.curve.g, 0.0), 0.0)
 
-    @cached_property
+    @once
     def residual(self):
         """Largest residual of a case (B,): of the equation, over the largest right-hand side, and of the control. The
         equation need not hold where asperities without pressure hang over the surface."""
@@ -137,7 +137,7 @@ class Evaluation:
         F[self.gap > 0] = 0.0
         return np.maximum(F.max(axis=1) / largest(self.cases.punch, np.exp(self.state.eta)), np.abs(self.G))
 
-    @cached_property
+    @once
     def floor(self):
         """Error (B,) that no estimate may go below: rounding, of a small p(0) under a plate too, and the error of the
         operator itself."""

@@ -6,7 +6,7 @@ from weakref import WeakSet
 
 import numpy as np
 
-from ..parameters import CONTROL, COUPLED, LAYERED, PARAMETERS
+from ..parameters import CONTROL, COUPLED, LAYERED, PARAMETERS, Register
 from . import disc_cell, elastic_plastic, heights, lattice, own_table, power_law, trial
 from .law import Bound, Curve, Law, Spots
 
@@ -65,8 +65,9 @@ def register(law: Law) -> Law:
         raise ValueError(f"micro law {law.name}: version must be a text, which changes whenever its numbers may")
     if wrong := trial.declaration(law):
         raise ValueError(f"micro law {law.name}: {wrong}")
-    _declare(LAWS | {law.name: law})
-    LAWS[law.name] = law
+    with LAWS.lock:
+        _declare(LAWS | {law.name: law})
+        LAWS[law.name] = law
     return law
 
 
@@ -100,7 +101,7 @@ def _declare(laws):
                 raise ValueError(f"micro law {law.name}: the parameter {name} has {reason}")
             declared[name] = known, (*names, law.name)
     for name in [name for name, own in PARAMETERS.items() if own.needed_by[0] == "micro" and name not in declared]:
-        del PARAMETERS[name]  # of a law that has been replaced
+        PARAMETERS.pop(name, None)  # of a law that has been replaced
     PARAMETERS.update({name: own._replace(needed_by=("micro", names)) for name, (own, names) in declared.items()})
     PARAMETERS["micro"] = PARAMETERS["micro"]._replace(choices=tuple(laws))
     of_laws = "micro", tuple(law.name for law in laws.values() if law.poisson)
@@ -177,4 +178,4 @@ BUILT_IN = (
     elastic_plastic.LAW,
 )
 #: Name -> Law.
-LAWS = _declare({law.name: law for law in BUILT_IN})
+LAWS = Register(_declare({law.name: law for law in BUILT_IN}))

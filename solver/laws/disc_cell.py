@@ -23,7 +23,7 @@ __all__ = ["LAW", "PARAMETERS", "SMOOTH", "contact_fraction", "displacement", "l
 #: Asperities per unit area, in R⁻², and their radius, in R.
 PARAMETERS = {
     "Nbar": Parameter(interval="[1e-4, 1e18]", powers=(0, -2)),
-    "Ra": Parameter(interval="[1e-7, 1e2]", powers=(0, 1)),
+    "Ra": Parameter(interval="[1e-9, 1e2]", powers=(0, 1)),
 }
 
 

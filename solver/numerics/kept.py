@@ -1,18 +1,21 @@
 """A cache: values that take long to make are kept, the latest used of them, up to a number of bytes."""
 
 from collections import Counter, OrderedDict
-from threading import Lock
 
 import numpy as np
+
+from .locks import shared_lock
 
 
 class Kept:
     """Values by their keys. The latest used are kept, as many as have arrays of at most `most` bytes together, but at
     least one. An array that several values share counts once. Several threads may use it at the same time."""
 
+    _lock = shared_lock()  # of all of them: it is held for microseconds
+
     def __init__(self, most):
         self.most, self.nbytes = most, 0
-        self._values, self._uses, self._lock = OrderedDict(), Counter(), Lock()
+        self._values, self._uses = OrderedDict(), Counter()
 
     def get(self, key, make):
         """The value of `key`, from ``make()`` if it is not kept: an array, or a tuple or list of such values."""

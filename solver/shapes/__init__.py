@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..parameters import PARAMETERS
+from ..parameters import PARAMETERS, Register
 from . import blunt_cone, cone, flat, frustum, power, rounded_flat, sphere, table
 from .shape import Kind, Shape
 
@@ -39,8 +39,9 @@ def register(kind: Kind) -> Kind:
     """
     if SHAPES.get(kind.name, kind) in BUILT_IN and kind not in BUILT_IN or kind.name == PARABOLOID:
         raise ValueError(f"shape {kind.name}: is one of this package: take another name")
-    _declare(SHAPES | {kind.name: kind})
-    SHAPES[kind.name] = kind
+    with SHAPES.lock:
+        _declare(SHAPES | {kind.name: kind})
+        SHAPES[kind.name] = kind
     return kind
 
 
@@ -82,4 +83,4 @@ BUILT_IN = (
     rounded_flat.KIND,
 )
 #: Name -> :class:`~.shape.Kind` of all shapes but the paraboloid.
-SHAPES = _declare({kind.name: kind for kind in BUILT_IN})
+SHAPES = Register(_declare({kind.name: kind for kind in BUILT_IN}))

@@ -145,13 +145,15 @@ def _over_lines(rows, t):
     return over_t + bent, over_t + 2 * bent
 
 
-def read(word):
+def read(word, again=False):
     """The :class:`~.shape.Kind` of a word "table:FILE". Its rows are in TABLES from then on.
+
+    again : read the file though its rows are there: it may have changed
 
     The file has two columns, r from 0 upwards and f from 0 upwards; a header may have units, "r [um], f [nm]". Lines
     that begin with "#" are left out. ValueError for a file that cannot be used.
     """
-    if word not in TABLES:
+    if again or word not in TABLES:
         TABLES[word] = _rows(word)
     return Kind(word, {"table_unit": TABLE_UNIT}, lambda table_unit, size: _bound(word, table_unit), "a measured tip")
 

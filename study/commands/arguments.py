@@ -26,9 +26,12 @@ class Version(argparse.Action):
     """Print the versions of the program and of its numerics, and end."""
 
     def __call__(self, parser, *_) -> None:
+        from solver.compiled.library import available
+
         from ..data.provenance import NUMERICS_VERSION, package_version
 
-        say(f"roughcoat {package_version('roughcoat')}, numerics {NUMERICS_VERSION}", sys.stdout)
+        slow = "" if available() else ", without its compiled core (numpy computes, 3 to 6 times slower)"
+        say(f"roughcoat {package_version('roughcoat')}, numerics {NUMERICS_VERSION}{slow}", sys.stdout)
         parser.exit()
 
 

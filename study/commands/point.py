@@ -32,7 +32,15 @@ from .arguments import SWITCH, assignment
 
 _DERIVED = ("p_ring", "r_ring", "p_peak", "D_body")  # of QUANTITIES, that JSON has besides
 _PICTURES = (".png", ".pdf", ".svg")  # endings of `--stresses`
-_LIST = re.compile(r",\s")
+#: What divides a list: a comma and a blank, or a comma behind a unit.
+_LIST = re.compile(r",\s|(?<=[^\W\d_]),(?=[-+.\d])")
+#: Numbers with a decimal point or an exponent each, whose commas can be no decimal ones.
+_NUMBERS = re.compile(r"[-+]?(?:\d*\.\d+|\d+(?:\.\d*)?e[-+]?\d+)(?:,[-+]?(?:\d*\.\d+|\d+(?:\.\d*)?e[-+]?\d+))+", re.I)
+#: Arguments of the stresses of a contact -> what is said of them.
+_OF_STRESSES = {
+    "mu": "changes the stresses of a contact and not the contact: rc.stresses, rc.extremes and rc.first_yield take it",
+    "sigma_res": "adds to the stresses of a contact: rc.stresses, rc.extremes and rc.first_yield take it",
+}
 
 
 def items(options) -> list[list[str]]:
@@ -104,6 +112,8 @@ def parameters_of(texts: list[str]) -> dict[str, Any]:
             errors.append(f'{error}, such as R="5 mm"')
             continue
         errors += [f"{name} is given twice"] * (name in parameters)
+        if name in _OF_STRESSES:
+            errors.append(f"{name} {_OF_STRESSES[name]}")
         if name == "same_piece":
             errors += [f"{text}: must be same_piece=true or same_piece=false"] * (str(value).lower() not in SWITCH)
             value = SWITCH.get(str(value).lower())
@@ -116,10 +126,11 @@ def parameters_of(texts: list[str]) -> dict[str, Any]:
 
 
 def listed(value: float | str | bool) -> float | str | bool | list[str | float]:
-    """The values of a list: "1 N, 2 N" has two. Without a blank behind it a comma may be that of a decimal, "1,5 N"."""
-    if not isinstance(value, str) or not _LIST.search(value):
+    """The values of a list: "1 N, 2 N" and "1N,2N" have two. A comma between digits may be a decimal one, "1,5 N"."""
+    if not isinstance(value, str):
         return value
-    return [number_or_text(part.strip()) for part in value.split(",")]
+    parts = value.split(",") if _NUMBERS.fullmatch(value) else _LIST.split(value)
+    return [number_or_text(part.strip()) for part in parts] if len(parts) > 1 else value
 
 
 def number_or_text(text: str) -> float | str:
@@ -135,7 +146,7 @@ def as_numbers(contact: xr.Dataset) -> dict:
     contact = contact.assign({name: QUANTITIES[name](contact) for name in _DERIVED} | _spreads_of_derived(contact))
     shown = {
         name: described(contact, name)
-        for name in dict.fromkeys((*all_inputs(), *SHOWN, *OF_PULL_OFF, *_DERIVED))
+        for name in dict.fromkeys((*all_inputs(contact.variables), *SHOWN, *OF_PULL_OFF, *_DERIVED))
         if name in contact
     }
     yields = "plastic_share" in contact and np.isfinite(contact["plastic_share"])
@@ -184,7 +195,7 @@ def described(contact: xr.Dataset, name: str) -> dict | str:
     return {"value": number(array), "unit": unit} | spread
 
 
-def number(array: xr.DataArray) -> float | None:
-    """A number, None for NaN, which JSON does not have."""
+def number(array: xr.DataArray) -> float | str | None:
+    """A number; JSON has no others: "inf" or "-inf" of what is infinite, None of what is not known."""
     value = float(array)
-    return value if math.isfinite(value) else None
+    return None if math.isnan(value) else value if math.isfinite(value) else str(value)

@@ -23,11 +23,11 @@ from ..inputs.vocabulary import (
     INTEGERS,
     NOT_RUN,
     NUMERICS,
-    PARAMETERS,
     TRUTHS,
     WITH_SPREADS,
     attributes,
     names,
+    parameters_of,
 )
 from ..rules.rule import validity_attributes, validity_of, whole
 from ..rules.strength import FROM_HARDNESS, OF_MATERIAL
@@ -132,7 +132,8 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     grid = definition.grid
     rigid = bool((along(grid, "n") == 0).any())  # if one layer is on a rigid base, all are
     values = grid.values | grid.labels
-    attributes_of = {name: attributes(name, rigid) for name in (*PARAMETERS, *names("coordinate")) if name in values}
+    attributed = [name for name in (*parameters_of(values), *names("coordinate")) if name in values]
+    attributes_of = {name: attributes(name, rigid) for name in attributed}
     for name in ("B", "beta") if grid.fitted else ():
         attributes_of[name]["comment"] = COMMENT
     coordinates = {name: Labelled(*pair, attributes_of.get(name, {})) for name, pair in values.items()}
@@ -214,6 +215,11 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
 def flag_words(flags: xr.DataArray | Labelled) -> np.ndarray:
     """The names of flags, as of :func:`decode`, of their shape."""
     flags_of = {"status": status_attributes, "model_used": model_attributes, "validity": validity_attributes}
+    if not hasattr(flags, "attrs") or not hasattr(flags, "dims") or hasattr(flags, "data_vars"):
+        flagged = getattr(flags, "data_vars", {})
+        there = [name for name in flagged if name in flags_of or "flag_meanings" in flagged[name].attrs]
+        which = f"take one of its arrays {', '.join(map(str, there))}" if there else "take an array, contacts.status"
+        raise ValueError(f"a {type(flags).__name__} is none of {', '.join(flags_of)}: {which}")
     attributes = flags.attrs
     if "flag_meanings" not in attributes:  # arithmetic of xarray loses attributes
         name = getattr(flags, "name", f"a {type(flags).__name__}")

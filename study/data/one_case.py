@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import Any
+
+from solver.numerics.locks import once
 
 from ..arrays import xarray_later as xr
 from ..arrays.labelled import Labelled
@@ -22,7 +23,7 @@ class OneCase:
         self.variables, self.coords, self.attrs = parts.variables | parts.coords, parts.coords, parts.attributes
         self._parts = parts
 
-    @cached_property
+    @once
     def dataset(self) -> xr.Dataset:
         """The dataset of the contact."""
         return self._parts.dataset()

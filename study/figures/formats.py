@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from ..files.atomic import remove_temporary, replacing
-from .registry import Table
+from ..inputs.definition import StudyError
+from ..terminal import shown
+from .registry import Column, Table
 
 STALE = 3600  # seconds after which nobody is writing a temporary file any more: a figure takes some
 """A younger one may be that of another program that draws the same figure."""
@@ -35,12 +37,24 @@ def as_latex(table: Table, rows: list[tuple]) -> str:
 
 
 def formatted(table: Table, rows: list[tuple]) -> list[list[str]]:
-    """Cells as text; a text in a column of numbers stays as it is."""
-    forms = [column.form for column in table.columns]
-    return [
-        [cell if isinstance(cell, str) else f"{cell:{form}}" for cell, form in zip(row, forms, strict=True)]
-        for row in rows
-    ]
+    """Cells as text; a text in a column of numbers stays as it is.
+
+    Raises StudyError, which names the column, for a cell that its format does not fit.
+    """
+    return [[_cell(column, cell) for column, cell in zip(table.columns, row, strict=True)] for row in rows]
+
+
+def _cell(column: Column, cell: object) -> str:
+    if isinstance(cell, str):
+        return cell
+    try:
+        return f"{cell:{column.form}}"
+    except (TypeError, ValueError):
+        form = "has no format" if column.form == "s" else f'has the format "{column.form}"'
+        example = f'write one behind it, "{column.text} | .4g"'
+        raise StudyError(
+            [f'column "{column.text}" {form}, which does not fit {shown(cell)}: {example}'], code=1
+        ) from None
 
 
 def latex(cell: str) -> str:

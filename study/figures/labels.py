@@ -118,7 +118,7 @@ def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
     contacts = [dataset for dataset in datasets if "base" in dataset.coords]
     texts = ["rigid base"] * (bool(contacts) and all(is_rigid(dataset, "base") for dataset in contacts))
     of_some = {name for dataset in datasets for name in used_inputs(dataset)}
-    for name in all_inputs():
+    for name in all_inputs(of_some):
         values = _values(datasets, name)
         if name in of_some and len(values) == 1:
             (value,) = values

@@ -15,6 +15,7 @@ from scipy.interpolate import PchipInterpolator
 
 from ..data.derived import QUANTITIES
 from ..inputs.definition import StudyError
+from ..inputs.scene.layers import short
 from ..inputs.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
 from .drawable import check_size, drawable, why_none
@@ -61,6 +62,8 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     """The figure of `plot`, and the numbers that it shows (Columns). `new` makes an empty figure."""
     if not isinstance(dataset, xr.Dataset):
         raise StudyError([f"a figure is of a dataset of contacts, not of a {type(dataset).__name__}"])
+    x, y, hue = map(short, (x, y, hue))
+    where = {short(name): value for name, value in where.items()}
     if "fit_status" in dataset:
         return fits(dataset, where, new)
     if not x or not y:

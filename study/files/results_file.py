@@ -14,7 +14,6 @@ from ..data.dataset import without_fill_values
 from ..data.index import searchable
 from ..inputs.definition import StudyError
 from ..inputs.laws import recall
-from ..inputs.scene.layers import recall as recall_layers
 from ..terminal import on_one_line
 from .access import Unusable
 from .atomic import replacing
@@ -199,5 +198,4 @@ def _for_users(dataset: xr.Dataset) -> xr.Dataset:
         dataset.attrs.pop(name, None)
     laws = dataset.attrs.get("micro_laws", "")
     recall(laws if isinstance(laws, str) else "")
-    recall_layers(dataset.coords)
     return searchable(without_fill_values(dataset))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from solver.laws import LAWS
@@ -10,8 +12,7 @@ from ..arrays import xarray_later as xr
 from ..data.si import SAME_PIECE
 from ..inputs.laws import smooth_laws
 from ..inputs.punch.shapes import in_metres
-from ..inputs.scene.layers import recall
-from ..inputs.vocabulary import BODIES, CONTROLS, SCENE, VOCABULARY, matters, names
+from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY, bodies_of, matters, names, parameters_of, scene_of
 from .numbers import given_text, spread_of
 
 _OF_BODIES = [name for body in ("punch", "layer", "body") for name in (body, *BODIES[body][:2])]
@@ -19,21 +20,29 @@ _OF_BODIES = [name for body in ("punch", "layer", "body") for name in (body, *BO
 _OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta", "hardness", "yield_strength", "Y1", "Y2", "Y_punch")
 
 
-def of_lower_layers() -> list[str]:
-    """Names of what the layers of a stack below the first have, and the first besides, one layer after the other."""
-    names = [name for name in (*BODIES, *SCENE, *VOCABULARY) if name.startswith("layers.")]
+def of_lower_layers(inputs: Iterable[str]) -> list[str]:
+    """Names of what the layers of a stack below the first have, and the first besides, one layer after the other.
+
+    inputs : names of the inputs of contacts, which say how many layers there are
+    """
+    inputs = [str(name) for name in inputs]
+    names = (*bodies_of(inputs), *scene_of(inputs), *parameters_of(inputs))
+    names = [name for name in names if name.startswith("layers.")]
     order = ("material", "h", "E1", "E1_bottom", "n", "n_bottom", "nu", "nu_bottom", "profile", "bonding", "cn", "ct")
     places = {name: (int(name.split(".")[1]), order.index(name.split(".")[2])) for name in names}
     return sorted(places, key=lambda name: places[name])
 
 
-def all_inputs() -> list[str]:
-    """All inputs in order: radii, what the bodies are made of, the control, the layer, the asperities."""
+def all_inputs(contacts: Iterable[str]) -> list[str]:
+    """All inputs in order: radii, what the bodies are made of, the control, the layer, the asperities.
+
+    contacts : a dataset, or names of its variables: the layers that it has are among the inputs
+    """
     between = [name for name in names("material") if name not in (*_OF_BODIES, "base")]
     of_laws = [name for name, entry in VOCABULARY.items() if entry.role == "roughness" and name != "micro"]
     of_shapes = [name for name, entry in VOCABULARY.items() if entry.role == "shape"]
     of_punch = ["R1", "R2", "R", *of_shapes]
-    lower = of_lower_layers()
+    lower = of_lower_layers(contacts)
     return [*of_punch, *_OF_BODIES, *CONTROLS, *between, *lower, *names("adhesion"), "micro", *of_laws]
 
 
@@ -45,26 +54,26 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
     """
     if "base" not in contacts.variables:
         return []
-    recall(contacts.variables)
 
     def values(name: str) -> np.ndarray:
         return contacts[name].values
 
     hidden = {"R"} if "R1" in contacts or contacts.attrs.get("scale", "R") not in ("R", "1") else set()
     hidden |= _of_punch_hidden(contacts)
-    hidden |= {"n", "m", *(name for name in of_lower_layers() if name.endswith(".n"))} if "E2" in contacts else set()
+    if "E2" in contacts:
+        hidden |= {"n", "m", *(name for name in of_lower_layers(contacts.variables) if name.endswith(".n"))}
     hidden |= {"m", "punch", "E_punch", "nu_punch", "Y_punch"} if is_rigid(contacts, "punch") else set()
     hidden |= {"n", "body", "E2", "nu2", "Y2"} if is_rigid(contacts, "base") else set()
     hidden |= {"layer", "E1", "nu1", "Y1"} if (values("base") == "half_space").all() else set()
     hidden |= {"micro"} if np.isin(values("micro"), smooth_laws()).all() else set()
     unknown_law = not np.isin(values("micro"), list(LAWS)).all()
-    certain = {ratio for modulus, ratio, _ in BODIES.values() if modulus in contacts}
+    certain = {ratio for modulus, ratio, _ in bodies_of(contacts.variables).values() if modulus in contacts}
     certain |= set(names("roughness")) if unknown_law else set()
     certain |= {"hardness", "yield_strength"} if "micro" not in hidden else set()  # rules compare with them
     certain |= {name for name in ("Y1", "Y2", "Y_punch") if name in contacts and np.isfinite(values(name)).any()}
     return [
         name
-        for name in all_inputs()
+        for name in all_inputs(contacts.variables)
         if name in contacts.variables
         and name not in hidden
         and (name not in VOCABULARY or name in certain or matters(name, values))
@@ -127,7 +136,7 @@ def _stack(case: xr.Dataset, used: list[str]) -> list[str]:
 def _pieces(case: xr.Dataset, used: list[str]) -> list[str]:
     """Of bodies of one material whose moduli have a spread, whether these are independent: it changes every ±."""
     of_material: dict[str, list[str]] = {}
-    for body, (modulus, ratio, _) in BODIES.items():
+    for body, (modulus, ratio, _) in bodies_of(case.variables).items():
         if body in case and modulus in used and spread_of(case, modulus) + spread_of(case, ratio) > 0:
             of_material.setdefault(str(case[body].values), []).append(body)
     texts = []

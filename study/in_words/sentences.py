@@ -9,7 +9,7 @@ from solver import Status
 from ..arrays import xarray_later as xr
 from ..data.dataset import flag_words
 from ..data.si import ASSUMED
-from ..inputs.vocabulary import BODIES, VOCABULARY
+from ..inputs.vocabulary import VOCABULARY, bodies_of
 from ..rules import rule
 from .influence import influence
 from .notes.punch import of_adhesion, of_shape, sticks, unit_of_length
@@ -84,7 +84,7 @@ def assumed(case: xr.Dataset) -> list[str]:
     v = case.variables
     taken = {name for name in v if v[name].attrs.get("comment") == ASSUMED}
     found = unit_of_length(case) + [SLIDES] * bool("bonding" in taken and v["base"] != "half_space")
-    for modulus, ratio, _ in BODIES.values():
+    for modulus, ratio, _ in bodies_of(v).values():
         if ratio in taken and modulus in v and v[modulus].attrs.get("units") == "Pa" and v[modulus] < RUBBER:
             found.append(f"{ratio} = {v[ratio].item():g}. Of rubbers and gels, as soft as this, it is nearly 0.5.")
     return found

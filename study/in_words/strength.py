@@ -20,7 +20,7 @@ from ..arrays import xarray_later as xr
 from ..data.dataset import flag_words
 from ..inputs.definition import StudyError
 from ..inputs.punch.shapes import ROUND
-from ..inputs.vocabulary import BODIES
+from ..inputs.vocabulary import bodies_of
 from ..rules.assumptions import FEW_SPOTS
 from ..rules.yield_bounds import stress_below_one
 from ..specimen import materials
@@ -144,7 +144,8 @@ def _looked_at(case: xr.Dataset) -> _Looked | str:
     except StudyError:  # of a mean, say
         return ""
     known = {body: [column[0] for column in columns] for body, columns in known_strengths(case, again, {}).items()}
-    moduli = [case[name] for name, _, _ in BODIES.values() if name in case and case[name].attrs.get("units") == "Pa"]
+    moduli = [case[name] for name, _, _ in bodies_of(case.variables).values() if name in case]
+    moduli = [modulus for modulus in moduli if modulus.attrs.get("units") == "Pa"]
     hard = bool(moduli) and min(moduli) >= RUBBER
     if not (hard or np.isfinite([value for value, *_ in known.values()]).any()):
         return ""

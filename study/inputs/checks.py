@@ -14,7 +14,16 @@ from ..terminal import shown
 from .grid import Grid, along, same_labels, twins
 from .laws import smooth_laws
 from .request import Request
-from .vocabulary import BODIES, CONTROLS, PARAMETERS, ROWS, SCENE, VOCABULARY, cases_with
+from .vocabulary import (
+    BODIES,
+    CONTROLS,
+    PARAMETERS,
+    ROWS,
+    SCENE,
+    VOCABULARY,
+    cases_with,
+    parameters_of,
+)
 
 LOADING = 'micro = "elastic_plastic" is for loading. Spots that have yielded stay flat when the load falls, so that \
 these contacts are no unloading (docs/model.md, Microscale).'
@@ -38,7 +47,7 @@ def missing_everywhere(names: Collection[str], texts_of: Callable[[str], Iterabl
     if stacked and "h" not in names and not any(name.startswith("layers.") and name.endswith(".h") for name in names):
         return [f"layers are missing: base = {shown(stacked[0])} needs them"]
     neither = not {*FITTED} & {*names}  # then both are fitted, and one message is about both
-    for name in PARAMETERS:
+    for name in parameters_of(names):
         parameter = VOCABULARY[name].parameter
         selector, words, *_ = parameter.needed_by
         needed = parameter.default is None and parameter.instead != ""
@@ -125,7 +134,7 @@ def _taken(request: Request, name: str) -> list[str]:
 def missing_in_cases(grid: Grid) -> list[str]:
     """Messages for parameters that a case needs and lacks, though other cases have them."""
     messages = []
-    for name in PARAMETERS:
+    for name in parameters_of(grid.values):
         parameter = VOCABULARY[name].parameter
         if not {name, parameter.instead} & {*grid.values}:
             continue

@@ -21,9 +21,8 @@ from .laws import fitted, law_names, wants_a_fit
 from .punch import shapes, sticking
 from .request import Input, Request
 from .sample import sampled, values_of_axis
-from .scene.layers import beyond, layers_in
 from .scene.names import INFINITE
-from .vocabulary import PARAMETERS, VOCABULARY
+from .vocabulary import VOCABULARY, parameters_of
 
 #: Inputs that are names of objects -> a function of their values that makes the objects known.
 _WORDS = {"micro": law_names, "shape": shapes.words_of}
@@ -99,11 +98,11 @@ class Draft:
         self.errors += one_control(request.sections)
         arrays = {name: array for name, (dims, array) in values.items() if dims}
         self.errors += dimensions_that_differ(request, labels | arrays)
-        count = layers_in(request.sections)
-        for name in [name for name in PARAMETERS if name not in request.sections]:
+        parameters = parameters_of(request.sections)
+        for name in [name for name in parameters if name not in request.sections]:
             parameter = VOCABULARY[name].parameter  # those of a law or a shape that no case has stay away
             selector, owners, *_ = parameter.needed_by
-            if beyond(name, count) or name.rpartition(".")[2] in ("cn", "ct", "profile"):
+            if name.rpartition(".")[2] in ("cn", "ct", "profile"):
                 continue
             if shapes.left_out(name, request.sections) or sticking.left_out(name, request.sections):
                 continue
@@ -111,7 +110,7 @@ class Draft:
             if parameter.default is not None and (selector not in _WORDS or np.any([words == word for word in owners])):
                 values[name] = (), np.array(parameter.default)
         names = {*request.sections, *["n"] * request.physical}  # n follows from moduli
-        names |= {name for name in PARAMETERS if beyond(name, count) or request.physical and name.endswith(".n")}
+        names |= {name for name in parameters if request.physical and name.endswith(".n")}
         self.errors += missing_everywhere(names, lambda name: values.get(name, ((), ()))[1], self.errors)
         if not self.errors:
             rows = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in request.rows]
@@ -156,4 +155,5 @@ class Draft:
         return grid
 
     def _grid(self) -> Grid:
-        return Grid(self.sizes, {name: self.values[name] for name in PARAMETERS if name in self.values}, self.labels)
+        values = {name: self.values[name] for name in parameters_of(self.values) if name in self.values}
+        return Grid(self.sizes, values, self.labels)

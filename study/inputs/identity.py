@@ -22,7 +22,7 @@ from solver.parameters import uses
 from solver.shapes.table import identity as shape_identity
 
 from .grid import Grid, along
-from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY
+from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY, parameters_of_layers
 
 #: Strengths, with which answers are compared: no case depends on them, but the flags in a results file do.
 STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
@@ -73,11 +73,12 @@ def digest_of(definition) -> str:
     grid = definition.grid
     arrays = {**grid.labels, "x": (("x",), definition.x)}
     arrays |= {name: (dims, array) for name, (dims, array) in grid.values.items() if name in grid.sizes}
+    parameters = (*PARAMETERS, *parameters_of_layers(grid.values))
     content = {
         "numerics_version": NUMERICS_VERSION,
         "sizes": list(grid.sizes.items()),
         "arrays": {name: (dims, digest_of_array(array)) for name, (dims, array) in arrays.items()},
-        "values": {name: _digest_of_values(grid, name) for name in PARAMETERS if name not in grid.sizes},
+        "values": {name: _digest_of_values(grid, name) for name in parameters if name not in grid.sizes},
         "profiles": definition.profiles,
         "dtype": definition.dtype,
     }
@@ -144,7 +145,7 @@ def case_keys(grid: Grid, stresses: bool = False) -> np.ndarray:
     `stresses` the keys differ, and Poisson ratios always count. A million keys take a fraction of a second.
     """
     lanes = np.zeros((2, *grid.shape), dtype=np.uint64)
-    for name in PARAMETERS:
+    for name in (*PARAMETERS, *parameters_of_layers(grid.values)):
         counted = counts(grid, name)
         if counted.any():
             lanes += np.where(counted, _hashed(name, along(grid, name)), np.uint64(0))

@@ -14,8 +14,16 @@ from solver.parameters import allowed, one_of
 
 from .grid import Grid, along
 from .punch import shapes
-from .scene.layers import declare
-from .vocabulary import BODIES, OF_PARAMETERS, PARAMETERS, SCENE, VOCABULARY, Entry, names
+from .vocabulary import (
+    BODIES,
+    PARAMETERS,
+    SCENE,
+    VOCABULARY,
+    Entry,
+    names,
+    of_package,
+    put_rows,
+)
 
 MOST_FITS = 1000
 """Most different values of Nbar Ra² in a study. A law is fitted to each, in 2 ms."""
@@ -31,19 +39,23 @@ laws.RESERVED.update(SCENE, BODIES)
 
 
 def update_vocabulary() -> None:
-    """Make PARAMETERS and VOCABULARY fit the micro laws that are registered now."""
-    built_in = names(*OF_PARAMETERS)
-    for name in set(PARAMETERS) - set(built_in):  # their laws may have been replaced
-        VOCABULARY.pop(name, None)
-    PARAMETERS[:] = built_in
-    for name, declared in [parameter for law in laws.LAWS.values() for parameter in law.parameters.items()]:
-        if name not in PARAMETERS:
-            owners = " and ".join(SOLVER_PARAMETERS[name].needed_by[1])
-            words = declared.long_name or f"parameter of the micro law {owners}"
-            VOCABULARY[name] = Entry(name, "roughness", words, declared.symbol or name, declared.powers)
-            PARAMETERS.append(name)
-    shapes.declare()
-    declare()
+    """Make PARAMETERS and VOCABULARY fit the micro laws and shapes that are registered now.
+
+    Where they do already nothing is touched: other threads read them meanwhile.
+    """
+    put_rows(_rows)
+
+
+def _rows() -> dict[str, Entry]:
+    """Rows of the vocabulary for the parameters of laws and shapes that are registered."""
+    rows: dict[str, Entry] = {}
+    for law in laws.LAWS.values():
+        for name, declared in law.parameters.items():
+            if not of_package(name):
+                owners = " and ".join(other.name for other in laws.LAWS.values() if name in other.parameters)
+                words = declared.long_name or f"parameter of the micro law {owners}"
+                rows.setdefault(name, Entry(name, "roughness", words, declared.symbol or name, declared.powers))
+    return rows | shapes.rows()
 
 
 def law_names(values: list) -> list:

@@ -11,7 +11,7 @@ from .grid import LONGEST_AXIS, equal_values
 from .laws import is_parameter, law_names, update_vocabulary
 from .punch.shapes import ANGLES, in_degrees
 from .sample import LIMITS
-from .scene.layers import flattened, in_tables
+from .scene.layers import in_call, in_tables
 from .vocabulary import BODIES, NUMERICS, PARAMETERS, SCENE, no_parameter
 
 MOST_MESSAGES = 30  # that are shown for a study at a time
@@ -114,8 +114,7 @@ class Request:
             micro = [table.get("micro") for table in (parameters, *rows)]
             law_names([law for laws in micro for law in (laws if isinstance(laws, list) else [laws])])
         request._same_piece(same_piece, "")
-        parameters = flattened(parameters, request.errors, rows)
-        rows = [flattened(row, request.errors, [parameters] if "base" in parameters else ()) for row in rows]
+        parameters, rows = in_call(parameters, rows, request.errors)
         if rows:
             request._cases(rows)
         for name, value in parameters.items():

@@ -6,14 +6,15 @@ import numbers
 import re
 import tomllib
 from collections import ChainMap
+from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal
-from functools import cached_property
+from functools import cache
 from importlib.resources import files
 
 import numpy as np
 
-from solver.parameters import CONTROL, Parameter, among
+from solver.parameters import CONTROL, FIRST, LAYER, MOST, Parameter, Register, among
 from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import allowed as are_within
 
@@ -60,23 +61,24 @@ class Entry:
         row = CONTROL.get(self.name) or SOLVER_PARAMETERS.get(self.name) or Parameter()
         return row._replace(interval=self.interval) if self.interval else row
 
-    @cached_property
+    @property
     def unit(self) -> str:
         """The SI unit of the physical quantity."""
         return self.written or si_unit(self.powers)
 
-    @cached_property
+    @property
     def ratio(self) -> str:
         """The symbol over its scale, as on the axis of a plot: "h/R", "P/(E2* R^2)"; empty without a symbol."""
         return over_scale(self.symbol, self.powers) if self.symbol else ""
 
-    @cached_property
+    @property
     def scale(self) -> str:
         """The scale in words, such as "E2* R^2"; empty for a pure number."""
         parts = [(s, e) for s, e in zip(("E2*", "R"), self.powers, strict=True) if e]
         return " ".join(s if e == 1 else f"{s}^{e}" for s, e in parts)
 
 
+@cache
 def over_scale(symbol: str, powers: tuple[int, int], scales: tuple[str, str] = ("E2*", "R"), gap: str = " ") -> str:
     """A symbol over its scale E2*^i R^j: "(dP/dD)/(E2* R)", "N̄ R^2".
 
@@ -103,18 +105,110 @@ def entries(tables: dict) -> dict[str, Entry]:
 
 
 _TABLES = tomllib.loads((files(__package__) / "vocabulary.toml").read_text(encoding="utf-8"))
-SCENE = entries({"scene": _TABLES.pop("scene")})
+SCENE = Register(entries({"scene": _TABLES.pop("scene")}))
 """Inputs of a study with units that the solver does not know. Its parameters follow from them."""
-VOCABULARY = entries(_TABLES)
+VOCABULARY = Register(entries(_TABLES))
 ROWS = ChainMap(VOCABULARY, SCENE)
 """Rows of SCENE and VOCABULARY, among them the parameters of registered laws."""
 #: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
-#: `inputs.scene.layers` adds those of a stack below the first.
-BODIES = {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")}
+#: `bodies_of` adds those of a stack below the first.
+BODIES = Register({"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")})
+
+#: What the first layer of a stack has under the name of a case with one layer.
+FIRST_LAYER = FIRST | {"E1": "E1", "material": "layer"}
+#: What a layer may have in a list, and its words.
+OF_A_LAYER = {
+    "h": "thickness of layer {}",
+    "n": "ratio of the reduced moduli of layer {} and half-space",
+    "nu": "Poisson ratio of layer {}",
+    "bonding": "interface below layer {}",
+    "cn": "normal compliance of the interface below layer {}",
+    "ct": "tangential compliance of the interface below layer {}",
+    "profile": "how the modulus of layer {} goes from its top to its bottom",
+    "n_bottom": "ratio of the reduced moduli of the bottom of layer {} and half-space",
+    "nu_bottom": "Poisson ratio of the bottom of layer {}",
+    "E1": "Young's modulus of layer {}",
+    "E1_bottom": "Young's modulus of the bottom of layer {}",
+    "material": "material of layer {}",
+}
+_SYMBOLS = {"h": "h", "n": "n", "nu": "ν", "cn": "cn", "ct": "ct", "n_bottom": "n", "nu_bottom": "ν"}
+
+
+def name_in_stack(number: int, field: str) -> str:
+    """The name of an input of a layer, `number` from 1 at the surface."""
+    return FIRST_LAYER[field] if number == 1 and field in FIRST_LAYER else f"layers.{number}.{field}"
+
+
+@cache
+def _of_layers() -> tuple[dict[str, Entry], dict[str, Entry], dict[str, tuple]]:
+    """The rows of VOCABULARY, SCENE and BODIES for what layers have under names of their own, such as "layers.2.h"."""
+    rows, scene, bodies = {}, {}, {}
+    for number in range(1, MOST + 1):
+        for field, words in OF_A_LAYER.items():
+            name = name_in_stack(number, field)
+            if name.startswith("layers.") and field in LAYER:
+                symbol = f"{_SYMBOLS[field]}l{number}" if field in _SYMBOLS else ""  # ν2 is that of the body
+                powers = LAYER[field].powers
+                rows[name] = Entry(name, "material", words.format(number), symbol, powers)
+            elif name.startswith("layers.") and field != "material":
+                scene[name] = Entry(name, "scene", words.format(number), f"El{number}", (1, 0))
+        if number > 1:
+            body = name_in_stack(number, "material")
+            bodies[body] = tuple(name_in_stack(number, field) for field in ("E1", "nu", "n"))
+    rows["sublayers"] = Entry("sublayers", "material", "number of sublayers of a graded layer, 0: chosen")
+    return rows, scene, bodies
+
+
+def _follows(place: int):
+    """The rows of a table that follow from their names, as `Register.further`."""
+    return lambda name: _of_layers()[place].get(name) if is_of_layers(name) else None
+
+
+def is_of_layers(name: object) -> bool:
+    """Whether a name can be that of what a layer of a stack has."""
+    return isinstance(name, str) and name.startswith(("layers.", "sublayers"))
+
+
+VOCABULARY.further, SCENE.further, BODIES.further = map(_follows, range(3))
+
+
+def _layers_in(names) -> int:
+    """The number of layers that inputs have, of the names of these; 0 of no stack."""
+    words = [name for name in names if is_of_layers(name)]
+    numbers = [name.split(".")[1] for name in words if name.startswith("layers.")]
+    return min(max((int(number) for number in numbers if number.isdigit()), default=int(bool(words))), MOST)
+
+
+def parameters_of(names) -> list[str]:
+    """Names of all parameters that inputs may have, those of the layers too which are among the `names` of some."""
+    return [*PARAMETERS, *parameters_of_layers(names)]
+
+
+def parameters_of_layers(names) -> tuple[str, ...]:
+    """Names of the parameters of the layers of a stack which are among the `names` of some; () of none."""
+    return _of_count(_layers_in(names))
+
+
+@cache
+def _of_count(count: int) -> tuple[str, ...]:
+    words = [name for name in _of_layers()[0] if name != "sublayers" and int(name.split(".")[1]) <= count]
+    return (*words, "sublayers") if count else ()
+
+
+def scene_of(names) -> list[str]:
+    """Names of SCENE, those of the layers too which are among the `names` of inputs."""
+    count = _layers_in(names)
+    return [*SCENE, *(name for name in _of_layers()[1] if int(name.split(".")[1]) <= count)] if count else [*SCENE]
+
+
+def bodies_of(names) -> dict[str, tuple[str, str, str]]:
+    """BODIES, with those of the layers which are among the `names` of inputs."""
+    count = _layers_in(names)
+    return BODIES | {f"layers.{i}.material": BODIES[f"layers.{i}.material"] for i in range(2, count + 1)}
 
 
 _NOT_THERE = tomllib.loads((files(__package__) / "not_there.toml").read_text(encoding="utf-8"))
-_RESULT = _NOT_THERE["results"]["says"]
+_RESULT, _LINE = (_NOT_THERE[section]["says"] for section in ("results", "line"))
 
 
 def names(*roles: str) -> tuple[str, ...]:
@@ -141,8 +235,46 @@ CONTROLS = names("control")
 NUMERICS = names("numerics")
 OF_PARAMETERS = ("control", "material", "shape", "adhesion", "roughness", "numerics")
 """Roles of parameters."""
-PARAMETERS = list(names(*OF_PARAMETERS))
-"""Names of parameters; `study.inputs.laws.update_vocabulary` adds those of registered laws here and to VOCABULARY."""
+_BUILT_IN = names(*OF_PARAMETERS)
+
+
+class Names(list):
+    """Names of parameters. Those of layers, such as "layers.2.h", are in it and are not listed: see `parameters_of`."""
+
+    def __contains__(self, name: object) -> bool:
+        return super().__contains__(name) or is_of_layers(name) and name in VOCABULARY
+
+
+PARAMETERS = Names(_BUILT_IN)
+"""Names of parameters; `put_rows` adds those of registered laws."""
+
+
+def put_rows(rows_now: Callable[[], dict[str, Entry]]) -> None:
+    """Make PARAMETERS and VOCABULARY those of this package and what `rows_now` gives, those of laws and shapes.
+
+    Where they are so already nothing is touched: other threads read them.
+    """
+    with VOCABULARY.lock:
+        rows = rows_now()  # within the lock: two threads that register at once leave the rows of both
+        add_rows(rows)
+        wanted = [*_BUILT_IN, *rows]
+        if wanted != PARAMETERS:
+            gone = {*PARAMETERS} - {*wanted}
+            PARAMETERS[:] = wanted
+            for name in gone:  # of a law that has been replaced
+                VOCABULARY.pop(name, None)
+
+
+def add_rows(rows: dict[str, Entry]) -> None:
+    """Add rows of parameters that laws and shapes declare, to PARAMETERS too."""
+    with VOCABULARY.lock:
+        VOCABULARY.update({name: row for name, row in rows.items() if VOCABULARY.get(name) != row})
+        PARAMETERS.extend([name for name in rows if name not in PARAMETERS])
+
+
+def of_package(name: str) -> bool:
+    """Whether the row of a parameter is of this package, whichever law or shape declares it."""
+    return name in _BUILT_IN
 
 
 def cases_with(name: str, values) -> np.ndarray:
@@ -193,6 +325,7 @@ def check(parameter: Parameter, value) -> str:
     if parameter.choices:
         table = str(value).removeprefix("Table:")
         hint = f'; a table of your own is "table:{table}"' * table.endswith(".csv")
+        hint += f"; {_LINE}" * ("paraboloid" in parameter.choices and absent(str(value)) == _LINE)
         return "" if isinstance(value, str) and value in parameter.choices else allowed(parameter) + hint
     endless = parameter.interval.endswith("inf]")
     if not finite(value) and not (endless and value == math.inf):

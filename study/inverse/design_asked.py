@@ -7,6 +7,7 @@ from ..derivatives import QUANTITIES
 from ..inputs.definition import Definition, StudyError
 from ..inputs.laws import is_parameter
 from ..inputs.reading import from_call
+from ..inputs.scene.layers import short
 from ..inputs.scene.names import si
 from ..inputs.vocabulary import NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY, finite, no_parameter, suggest
 from ..specimen.foreign import plain
@@ -23,16 +24,18 @@ _BOUNDS = 'such as by={"h": ("1 um", "1 mm")}'
 def wanted(targets: Any, by: Any, parameters: dict, rows: list[dict], same_piece: Any, correlations: Any) -> Wanted:
     """The design that a call asks for. Raises StudyError for what it cannot have, before anything is computed."""
     target, value = _target(targets)
-    name, bounds = _looked_for(by)
+    written, bounds = _looked_for(by)
+    name = short(written)  # as results have it: "h" of "layers.1.h"
     rest = {key: entry for key, entry in parameters.items() if entry is not None}
-    wrong = [f"{name} is given, and looked for (by): leave one of them out"] * any(name in t for t in (rest, *rows))
+    twice = any({name, written} & {*table} for table in (rest, *rows))
+    wrong = [f"{written} is given, and looked for (by): leave one of them out"] * twice
     wrong += [f"{target} is the target, and {target} is given: leave it out"] * any(target in t for t in (rest, *rows))
     wrong += [f"{target} is the target, and looked for (by)"] * (name == target)
     if wrong:
         raise StudyError(f"design: {text}" for text in wrong)
-    ends = [_definition(rest | {name: bound}, rows, same_piece, correlations) for bound in bounds]
+    ends = [_definition(rest | {written: bound}, rows, same_piece, correlations) for bound in bounds]
     low, high = (_number(definition, name) for definition in ends)
-    written = f"by: {name} = ({shown(bounds[0])}, {shown(bounds[1])})"
+    written = f"by: {written} = ({shown(bounds[0])}, {shown(bounds[1])})"
     if not (math.isfinite(low) and math.isfinite(high)):
         raise StudyError([f"design: {written}: both bounds must be finite"])
     if low >= high:
@@ -56,9 +59,10 @@ def _looked_for(by: Any) -> tuple[str, tuple]:
     if not isinstance(by, dict) or len(by) != 1:
         raise StudyError([f"design: by = {shown(by)}: give exactly one input with two bounds, {_BOUNDS}"])
     ((name, bounds),) = by.items()
-    if not (name in SCENE or is_parameter(name)):
+    shortened = short(name) if isinstance(name, str) else name
+    if not (shortened in SCENE or is_parameter(shortened)):
         raise StudyError([f"design: by: {no_parameter(name, [*PARAMETERS, *SCENE])}"])
-    parameter = VOCABULARY[name].parameter if name in VOCABULARY else None
+    parameter = VOCABULARY[shortened].parameter if shortened in VOCABULARY else None
     if name in NUMERICS or (parameter and (not parameter.interval or parameter.whole)):
         raise StudyError([f"design: by: {name} is no number of the contact that can be looked for"])
     bounds = tuple(map(plain, bounds)) if isinstance(bounds, (tuple, list)) else bounds

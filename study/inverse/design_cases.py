@@ -1,7 +1,6 @@
 """The contacts of a design: a grid in which one input is looked for, solved at any values of it."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -9,6 +8,7 @@ import xarray as xr
 
 from solver import Problem, solve
 from solver.laws.trial import going_on
+from solver.numerics.locks import once
 from solver.status import Status
 
 from ..data.units import with_unit
@@ -18,7 +18,7 @@ from ..inputs.laws import DIGITS, fits_to
 from ..inputs.scene.changes import inputs_of
 from ..inputs.scene.scales import make_dimensionless
 from ..inputs.scene.scene import Scene, over
-from ..inputs.vocabulary import PARAMETERS, VOCABULARY
+from ..inputs.vocabulary import PARAMETERS, VOCABULARY, parameters_of
 from ..work.cases import compute, parcel
 
 #: A contact that is pulled off has the load of that too.
@@ -64,7 +64,7 @@ class Wanted:
         """Whether the power law changes with the input."""
         return self.definition.grid.fitted and self.name in ("Nbar", "Ra")
 
-    @cached_property
+    @once
     def _inputs(self) -> tuple[dict, dict]:
         """SI values of the scene, {} without units, and all else: name -> (B,)."""
         grid, scene = self.definition.grid, self.definition.scene
@@ -93,7 +93,7 @@ class Wanted:
         if self._refits:
             others |= _fits(others["Nbar"], others["Ra"])
         with going_on():
-            solution = solve(Problem.of(**{key: others[key] for key in PARAMETERS if key in others}))
+            solution = solve(Problem.of(**{key: others[key] for key in parameters_of(others) if key in others}))
         solved = np.isin(solution.status, _WITH_PULL_OFF) if self.target == "P_off" else solution.status == 0
         numbers = np.where(solved, getattr(solution, self.target), np.nan)
         return with_unit(numbers, VOCABULARY[self.target].powers, unit, R)

@@ -9,7 +9,7 @@ from solver.parameters import one_of
 from solver.yields import spots
 from solver.yields.contact import of_contacts
 
-from ..inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS
+from ..inputs.vocabulary import CONTROLS, NUMERICS, parameters_of
 from . import yield_bounds
 from .rule import WORDS, have, rule
 
@@ -148,7 +148,7 @@ def _stress_of_spots(v, index):
 def again(v, index, x=(0.0, 1.0)):
     """The problem of some of the cases, given by their radii, and what it was solved with; profiles at the radii x."""
     shape = v["status"].shape
-    own = {name: v[name] for name in PARAMETERS if name in v and name not in (*NUMERICS, *CONTROLS)}
+    own = {name: v[name] for name in parameters_of(v) if name in v and name not in (*NUMERICS, *CONTROLS)}
     own = {name: np.broadcast_to(values, shape).ravel()[index] for name, values in {"a": v["a"], **own}.items()}
     problem = Problem.of(**own)
     solution, solved = solve(problem, x), v["status"].ravel()[index] == Status.CONVERGED

@@ -49,6 +49,8 @@ _THOUSANDS = re.compile(r"(\d{2,3})\.000[^A-Za-z\d]*(?:[\d.]+\s*)?(?:N/mm|MPa)")
 _MINUS = re.compile(r"^−|(?<=\d[eE])−|(?<=\^)−")
 #: A power without ^, as in "mm2" and "mm-2". The letters must not follow a digit: the e of "1e2" is no unit.
 _POWER = re.compile(r"(?<![\d.A-Za-z])([A-Za-zµ]+)(-?[23])(?![\w.])")
+#: Words for the micrometre that pint does not know. It takes µ alone for a quantity of its own.
+_MICRONS = re.compile(r"(?<=[\d\s.])(?:mu|µ|μ|mum|microns?)$")
 
 
 @dataclass(frozen=True)
@@ -175,6 +177,7 @@ def _no_spread(text: str) -> str:
 def _si(name: str, text: str, unit: str, wanted: str) -> float:
     """The SI value of a text without a spread. It is rounded once, so "3 um" is exactly the float 3e-6."""
     said, text = on_one_line(text, LONGEST), _POWER.sub(r"\1^\2", text.replace("⁻²", "^-2").replace("²", "^2"))
+    text = _MICRONS.sub("µm", text) if unit == "m" else text
     plain = _PLAIN.fullmatch(text)
     size = _size(plain[2], unit) if plain else None
     if size is not None and math.isfinite(value := float(Decimal(plain[1]) * size)):

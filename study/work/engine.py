@@ -86,6 +86,8 @@ class _Pool:
 
 
 _pool, _in_use = _Pool(), threading.Lock()
+if hasattr(os, "register_at_fork"):  # no thread of a forked process uses them
+    os.register_at_fork(after_in_child=lambda: _in_use.locked() and _in_use.release())
 atexit.register(_pool.end)
 
 

@@ -10,6 +10,7 @@ from test_cli import GOOD, studies  # noqa: F401
 import study
 from study.__main__ import main
 from study.commands import rows
+from study.commands.point import listed
 from study.figures.formats import csv_text
 from study.in_words.columns import columns
 
@@ -209,3 +210,13 @@ def test_what_cannot_be_written_as_rows(results, monkeypatch, capsys):
     monkeypatch.setattr(rows, "MOST_ROWS", 2)
     assert main(["table", "good", "--format", "xlsx"]) == 2
     assert capsys.readouterr().err.startswith("good: 3 rows of contacts; a sheet of .xlsx has at most 2: ")
+
+
+@pytest.mark.parametrize("text", ["1N,2N", "1 N,2 N", "1 N, 2 N"])
+def test_a_comma_behind_a_unit_divides_a_list(text):
+    assert [str(value).replace(" ", "") for value in listed(text)] == ["1N", "2N"]
+
+
+def test_numbers_with_points_or_exponents_are_a_list():
+    assert listed("1e-5,2e-5") == [1e-5, 2e-5] and listed("0.1,0.25") == [0.1, 0.25]
+    assert listed("1,2e-5") == "1,2e-5" and listed("1,5 N") == "1,5 N" and listed("steel 52100") == "steel 52100"

@@ -14,7 +14,8 @@ from scipy.integrate import simpson
 from study import StudyError
 from study.catalogue import draw, entry, names, save
 from study.data.derived import effective_modulus, peak_pressure
-from study.figures.registry import pick
+from study.figures.formats import as_text
+from study.figures.registry import Table, column, pick
 from study.studies.evidence.validity_maps import from_layered
 from study.studies.paper.curves import CURVES, EXACT_LAYER
 
@@ -209,3 +210,18 @@ def test_captions_of_all_figures_that_have_results(results, tmp_path, monkeypatc
     (path,) = draw("captions", tmp_path, tmp_path)
     said = re.findall(r"^[*]{2}(\w+)\.", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
     assert said == ["fig01", "fig02", "fig09", "fig09_lattice", "yielding"], "of what is there"
+
+
+@pytest.mark.parametrize(
+    ("columns", "row", "message"),
+    [
+        ("a; b | .3g", (0.5, 0.5), 'column "a" has no format, which does not fit 0.5: write one behind it, "a | .4g"'),
+        ("a; b | d", ("x", 0.5), 'column "b" has the format "d", which does not fit 0.5'),
+        ("a; b | .3g", ("x", None), 'column "b" has the format ".3g", which does not fit None'),
+    ],
+)
+def test_a_cell_that_its_column_does_not_fit(columns, row, message):
+    """It ended in the words of Python: "Unknown format code 's' for object of type 'float'"."""
+    table = Table((), lambda: [row], "", tuple(map(column, columns.split("; "))))
+    with pytest.raises(StudyError, match=re.escape(message)):
+        as_text(table, [row])

@@ -194,3 +194,8 @@ def test_our_units_have_the_size_of_pint():
     for name, unit in written:
         size = quantities._size(name.replace("²", "^2"), unit)
         assert size == Decimal(quantities._registry().Quantity(name).to(unit).magnitude), name
+
+
+@pytest.mark.parametrize("text", ["2 mu", "2mu", "2 μ", "2 µ", "2 micron", "2.0 microns", "2 ± 0.1 mu"])
+def test_micrometres_in_other_words(text):
+    assert quantity("h", text, "m").value == 2e-6

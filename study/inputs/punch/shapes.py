@@ -11,7 +11,7 @@ from solver.shapes import table
 from ...specimen.quantities import has_unit, quantity
 from ...terminal import shown
 from ..grid import Grid, along
-from ..vocabulary import PARAMETERS, VOCABULARY, Entry, cases_with
+from ..vocabulary import VOCABULARY, Entry, add_rows, cases_with, of_package
 
 #: Inputs besides the shape that are words, of which capitals, blanks and hyphens do not matter.
 WORDS = ("tip", "adhesion", "branch")
@@ -29,15 +29,14 @@ LENGTHS = ("flat_radius", "tip_radius", "h")
 MICROMETRE = "1 um"
 
 
-def declare() -> None:
+def rows() -> dict[str, Entry]:
     """Rows of the vocabulary for the parameters of shapes that are registered, those of tables too."""
+    entries = {}
     for kind in shapes.SHAPES.values():
-        for name, row in kind.parameters.items():
-            if name not in VOCABULARY:
-                words = row.long_name or f"parameter of the shape {kind.name}"
-                VOCABULARY[name] = Entry(name, "shape", words, row.symbol or name, row.powers)
-            if name not in PARAMETERS:
-                PARAMETERS.append(name)
+        for name, row in ((name, row) for name, row in kind.parameters.items() if not of_package(name)):
+            words = row.long_name or f"parameter of the shape {kind.name}"
+            entries.setdefault(name, Entry(name, "shape", words, row.symbol or name, row.powers))
+    return entries
 
 
 def words_of(values: list) -> list:
@@ -47,13 +46,12 @@ def words_of(values: list) -> list:
     """
     words = as_written(values)
     for word in {word for word in words if isinstance(word, str) and word.startswith(table.PREFIX)}:
-        table.TABLES.pop(word, None)  # the file may have changed
-        shapes.SHAPES.pop(word, None)
         try:
+            table.read(word, again=True)  # the file may have changed
             shapes.named(word)
         except ValueError as error:
             raise ValueError(str(error).removeprefix("shape ")) from None
-    declare()
+        add_rows(rows())
     return words
 
 
@@ -107,7 +105,7 @@ def radius_needed(words: Any) -> bool:
 
 def in_metres(words: Any) -> Any:
     """Whether a shape is a table with units of length in its header, of the form of `words`: a text or an array."""
-    there = [word for word, rows in table.TABLES.items() if rows.metres]
+    there = [word for word, rows in list(table.TABLES.items()) if rows.metres]
     return words.isin(there) if hasattr(words, "isin") else np.isin(words, there) if np.ndim(words) else words in there
 
 

@@ -9,12 +9,12 @@ from ...specimen import materials
 from ...specimen.quantities import Quantity
 from ...terminal import shown
 from ..grid import equal_values
-from ..vocabulary import BODIES, VOCABULARY, finite
+from ..vocabulary import BODIES, VOCABULARY, absent, bodies_of, finite
 from .names import RIGID_TEXTS
 
 _MAY_BE_RIGID = ("punch", "body")
 #: Shapes that people give as `punch`, which is a material. A proposal of materials with like names would mislead.
-_SHAPES = ("sphere", "ball", "paraboloid", "cone", "berkovich", "vickers", "flat", "cylinder", "pyramid")
+_SHAPES = ("sphere", "ball", "paraboloid", "cone", "berkovich", "vickers", "flat", "cylinder", "roller", "pyramid")
 
 
 def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict, dict]:
@@ -24,7 +24,7 @@ def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict, dict]:
     E and ν have the spreads of the table of materials; messages are appended to `errors`.
     """
     inputs, names, strengths = dict(inputs), {}, {}
-    for body, follows in BODIES.items():
+    for body, follows in bodies_of(inputs).items():
         entry = inputs.pop(body, None)
         if entry is None:
             continue
@@ -73,7 +73,7 @@ def assumed(names: set[str], values: dict, si_values: dict) -> tuple[str, ...]:
 
     names : of the inputs that the user gives; values : as those of a Grid; si_values : the inputs in SI units
     """
-    ratios = [nu for E, nu, _ in BODIES.values() if not np.isinf(si_values.get(E, np.inf)).all()]
+    ratios = [nu for E, nu, _ in bodies_of(names).values() if not np.isinf(si_values.get(E, np.inf)).all()]
     return tuple(name for name in [*ratios, *layered(values) * ["bonding"]] if name not in names)
 
 
@@ -93,8 +93,7 @@ def _material(body: str, name: str | materials.Material) -> tuple[str, Quantity,
     if body in _MAY_BE_RIGID and str(name).lower() in RIGID_TEXTS:
         return "rigid", Quantity(np.inf), Quantity(0.3), materials.Strength()
     if body == "punch" and str(name).lower() in _SHAPES:
-        shape = "the punch is a ball of radius R, other shapes are not in the model"
-        raise LookupError(f'{shown(name)} is no material, such as "steel 52100"; {shape}')
+        raise LookupError(f'{shown(name)} is no material, such as "steel 52100"; {absent(str(name))}')
     material = materials.get(name) if isinstance(name, str) else name  # one of the user's own
     if not all(map(finite, (material.E, material.nu, material.E_spread, material.nu_spread))):
         raise LookupError(f"{shown(material.name)}: E, nu and their spreads must be finite numbers, E in Pa")

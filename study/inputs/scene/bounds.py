@@ -14,7 +14,7 @@ from ...specimen.quantities import multiple, quantity, readable, unit_in
 from ...terminal import on_one_line
 from ..punch.sticking import hint, row_of
 from ..request import Input
-from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY, allowed
+from ..vocabulary import ROWS, SCENE, VOCABULARY, allowed, bodies_of
 from .scales import with_unit
 from .scene import Scene
 
@@ -29,7 +29,7 @@ def beyond_bounds(scene: Scene, inputs: dict[str, Input]) -> list[str]:
     """
     with_units = [name for name in scene.values if name not in SCENE and VOCABULARY[name].powers != (0, 0)]
     messages = [_message(scene, inputs[name], place) for name in with_units for place in _first_outside(scene, name)]
-    for modulus, _, ratio in BODIES.values():
+    for modulus, _, ratio in bodies_of(scene.values).values():
         for place in _first_outside(scene, ratio) if ratio and modulus in scene.values else ():
             entry, value = VOCABULARY[ratio], _at(scene.parameters[ratio], place)
             modulus_text = f"{modulus} = {readable(_at(scene.values[modulus], place), 'Pa')}"

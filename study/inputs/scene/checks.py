@@ -13,7 +13,7 @@ from ...arrays import xarray_later as xr
 from ..checks import equal_cases
 from ..punch.shapes import in_metres, radius_needed
 from ..request import Request
-from ..vocabulary import BODIES
+from ..vocabulary import bodies_of
 from .bodies import layered
 from .scene import Scene
 
@@ -44,7 +44,7 @@ def missing(request: Request, values: dict) -> list[str]:
     without = [name for name in sorted(others) if not {f"{name}.{field}" for field in ("E1", "n", "material")} & names]
     without = ["layers.1"] * (lacking and several) + without
     messages += [f"{name}.E1 is missing: Young's modulus of this layer, or its material" for name in without]
-    for modulus, _, ratio in BODIES.values():
+    for modulus, _, ratio in bodies_of(names).values():
         if modulus in names and ratio in names:
             messages.append(f"{modulus} and {ratio} are both given: one follows from the other")
     if "nu_punch" in names and not {"E_punch", "punch"} & names:

@@ -9,78 +9,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from solver import layers
-from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 
 from ...terminal import shown
-from ..vocabulary import BODIES, PARAMETERS, SCENE, VOCABULARY, Entry, suggest
+from ..vocabulary import FIRST_LAYER, OF_A_LAYER, name_in_stack, suggest
 
-#: What the first layer has under the name of a case with one layer.
-_FIRST = {"h": "h", "n": "n", "nu": "nu1", "bonding": "bonding", "E1": "E1", "material": "layer"}
-#: What a layer may have in a list, and its words.
-_WORDS = {
-    "h": "thickness of layer {}",
-    "n": "ratio of the reduced moduli of layer {} and half-space",
-    "nu": "Poisson ratio of layer {}",
-    "bonding": "interface below layer {}",
-    "cn": "normal compliance of the interface below layer {}",
-    "ct": "tangential compliance of the interface below layer {}",
-    "profile": "how the modulus of layer {} goes from its top to its bottom",
-    "n_bottom": "ratio of the reduced moduli of the bottom of layer {} and half-space",
-    "nu_bottom": "Poisson ratio of the bottom of layer {}",
-    "E1": "Young's modulus of layer {}",
-    "E1_bottom": "Young's modulus of the bottom of layer {}",
-    "material": "material of layer {}",
-}
-_SYMBOLS = {"h": "h", "n": "n", "nu": "ν", "cn": "cn", "ct": "ct", "n_bottom": "n", "nu_bottom": "ν"}
 #: Parameters that a stack has in place of those of one layer.
 _ONE_LAYER = ("h", "n", "nu1", "bonding", "E1", "layer")
 #: A base -> what it is called when there are layers.
 _BASES = {"auto": "stack", "thin_layer": "thin_stack"}
 RIGID = "rigid_base"
-
-
-def name_of(number: int, field: str) -> str:
-    """The name of a parameter of a layer, `number` from 1 at the surface."""
-    return _FIRST[field] if number == 1 and field in _FIRST else f"layers.{number}.{field}"
-
-
-def declare() -> None:
-    """Rows of the vocabulary for the layers that the solver knows of now."""
-    count = layers.numbers_of(SOLVER_PARAMETERS)
-    for number in range(1, count + 1):
-        for field, words in _WORDS.items():
-            name = name_of(number, field)
-            symbol = f"{_SYMBOLS[field]}l{number}" if field in _SYMBOLS else ""  # ν2 is that of the body
-            if name in SOLVER_PARAMETERS and name not in VOCABULARY:
-                powers = layers.LAYER[field].powers
-                VOCABULARY[name] = Entry(name, "material", words.format(number), symbol, powers)
-            if name in SOLVER_PARAMETERS and name not in PARAMETERS:
-                PARAMETERS.append(name)
-            if field.startswith("E1") and name not in SCENE:
-                SCENE[name] = Entry(name, "scene", words.format(number), f"El{number}", (1, 0))
-        if number > 1:
-            BODIES[name_of(number, "material")] = tuple(name_of(number, field) for field in ("E1", "nu", "n"))
-    if count and "sublayers" not in PARAMETERS:
-        VOCABULARY["sublayers"] = Entry("sublayers", "material", "number of sublayers of a graded layer, 0: chosen")
-        PARAMETERS.append("sublayers")
-
-
-def recall(names: Any) -> None:
-    """Make the layers known of which results have coordinates; `names` of these."""
-    count = min(layers.numbers_of(map(str, names)), layers.MOST)
-    if count:
-        layers.register(count)
-        declare()
-
-
-def layers_in(names: Any) -> int:
-    """The number of layers of a stack, of the names of its parameters; 0 of no stack."""
-    return layers.numbers_of(names)
-
-
-def beyond(name: str, count: int) -> bool:
-    """Whether a parameter is of a layer that a stack of `count` layers does not have; 0 : no stack."""
-    return layers.numbers_of([name]) > count if name.startswith("layers.") else name == "sublayers" and not count
 
 
 def moduli_of(names: Any) -> list[tuple[str, str, str]]:
@@ -90,8 +27,9 @@ def moduli_of(names: Any) -> list[tuple[str, str, str]]:
         if name.startswith("layers.") and name.rpartition(".")[2] in ("E1", "E1_bottom"):
             number, _, field = name.removeprefix("layers.").partition(".")
             end = field.removeprefix("E1")
-            nu = name_of(int(number), f"nu{end}")
-            parts.append((name, nu if nu in names else name_of(int(number), "nu"), name_of(int(number), f"n{end}")))
+            nu = name_in_stack(int(number), f"nu{end}")
+            nu = nu if nu in names else name_in_stack(int(number), "nu")
+            parts.append((name, nu, name_in_stack(int(number), f"n{end}")))
     return parts
 
 
@@ -113,9 +51,9 @@ def flattened(table: dict, errors: list[str], rows: Any = (), elsewhere: Any = (
         errors += [f"{name} is given beside layers: each of the layers has its own" for name in beside[:1]]
         others = {name: value for name, value in others.items() if name not in beside}
         stack = _of_list(table["layers"], errors)
-    stack |= {_short(name): value for name, value in named.items()}
+    named = {short(name): value for name, value in named.items()}
+    stack = {name: value for name, value in stack.items() if name not in elsewhere} | named
     stack = _on_base(stack, table.get(RIGID, False), others | dict.fromkeys(elsewhere), errors)
-    stack = {name: value for name, value in stack.items() if name not in elsewhere}
     count = max(layers.numbers_of((*stack, *elsewhere)), 1)
     if count > layers.MOST:
         errors.append(f"layers: {count} layers: at most {layers.MOST} are allowed")
@@ -124,9 +62,33 @@ def flattened(table: dict, errors: list[str], rows: Any = (), elsewhere: Any = (
         layers.read_tables(stack)
     except ValueError as error:
         errors.append(f"layers: {error}")
-    layers.register(count)
-    declare()
     return _with_base(others, errors, rows or []) | stack | {"sublayers": others.get("sublayers", 0)}
+
+
+def in_call(parameters: dict, rows: list[dict], errors: list[str]) -> tuple[dict, list[dict]]:
+    """The parameters of a call, and its cases, with one name for each number of a layer.
+
+    Where `layers` holds for all cases, a number of a layer in a case stands in place of what the list says.
+    """
+    if not any(map(_is_of_layers, _dotted(parameters))):
+        rows = [flattened(row, errors, [parameters] if "base" in parameters else ()) for row in rows]
+        return parameters, rows
+    again = [name for name in ("layers", RIGID, "sublayers") if name in parameters and any(name in row for row in rows)]
+    if again:
+        errors.append(f"{again[0]} is given twice: in [[cases]] and elsewhere")
+        return {name: value for name, value in parameters.items() if not _is_of_layers(name)}, rows
+    rows = [_dotted(row) for row in rows]
+    for row in rows:
+        errors += _twice(row)
+    rows = _with_the_list([{short(name): value for name, value in row.items()} for row in rows], parameters)
+    return flattened(parameters, errors, rows, {name for row in rows for name in row}), rows
+
+
+def _with_the_list(rows: list, table: dict) -> list:
+    """The cases; where some have a number of a layer the others have that of the list `layers` in the table."""
+    numbers = _of_list(table["layers"], []) if "layers" in table else {}
+    of_some = {name: numbers[name] for row in rows if isinstance(row, dict) for name in row if name in numbers}
+    return [of_some | row if isinstance(row, dict) else row for row in rows]
 
 
 def in_tables(tables: dict, errors: list[str]) -> tuple[dict, dict]:
@@ -142,8 +104,9 @@ def in_tables(tables: dict, errors: list[str]) -> tuple[dict, dict]:
     errors += [f"{name} is given beside layers: each of the layers has its own" for name in beside[:1]]
     for part in (*parts.values(), *(row for row in rows if isinstance(row, dict))):
         errors += _twice(part)
-    parts = {section: {_short(name): value for name, value in part.items()} for section, part in parts.items()}
-    rows = [{_short(name): value for name, value in row.items()} if isinstance(row, dict) else row for row in rows]
+    parts = {section: {short(name): value for name, value in part.items()} for section, part in parts.items()}
+    rows = [{short(name): value for name, value in row.items()} if isinstance(row, dict) else row for row in rows]
+    rows = _with_the_list(rows, tables)
     axes, sections = parts.get("axes", {}), [parts.get("axes", {}), parts.get("sample", {}), *rows]
     elsewhere = {name for part in sections if isinstance(part, dict) for name in part}
     bases = [{"base": 0}] * ("base" in elsewhere)
@@ -160,7 +123,7 @@ def in_layers(messages: list[str], names: Any) -> list[str]:
     """Messages that name h of a stack as layers.1.h, as the other layers are named. `names` : of the inputs given."""
     if "sublayers" not in names:
         return messages
-    fields = {name: field for field, name in _FIRST.items()}
+    fields = {name: field for field, name in FIRST_LAYER.items()}
     before = "^| and |: |follows from |given as |in place of "
     after = r"\[|: | = | is missing| is given twice| and | are both | follows |,|$"
     first = re.compile(f"({before})({'|'.join(fields)})(?={after})")
@@ -170,7 +133,7 @@ def in_layers(messages: list[str], names: Any) -> list[str]:
 def axes_in(tables: dict) -> list[str]:
     """The names of [axes] in their order."""
     axes = tables.get("axes", {})
-    return [_short(name) for name in _dotted(axes)] if isinstance(axes, dict) else []
+    return [short(name) for name in _dotted(axes)] if isinstance(axes, dict) else []
 
 
 def _is_of_layers(name: Any) -> bool:
@@ -189,15 +152,15 @@ def _dotted(table: dict) -> dict:
     return flat
 
 
-def _short(name: str) -> str:
-    """ "layers.1.h" as "h"."""
-    number, _, field = name.removeprefix("layers.").partition(".")
-    return name_of(int(number), field) if number.isdigit() and int(number) == 1 else name
+def short(name: str) -> str:
+    """The name that results have: "h" of "layers.1.h", all others as they are."""
+    field = name.removeprefix("layers.1.") if isinstance(name, str) else name
+    return name if field == name else name_in_stack(1, field)
 
 
 def _twice(table: dict) -> list[str]:
     """Messages for numbers of the first layer that stand in a table under both of their names."""
-    both = [(_short(name), name) for name in table if isinstance(name, str) and _short(name) != name]
+    both = [(short(name), name) for name in table if isinstance(name, str) and short(name) != name]
     return [f"{name} is {short}, which is given too: leave out one" for short, name in both if short in table]
 
 
@@ -219,12 +182,12 @@ def _of_list(stack: Any, errors: list[str]) -> dict:
             continue
         for field, value in fields.items():
             name = f"layers.{number}.{field}"
-            if field not in _WORDS:
-                errors.append(f"{name}: is not a key of a layer{suggest(str(field), _WORDS)}")
+            if field not in OF_A_LAYER:
+                errors.append(f"{name}: is not a key of a layer{suggest(str(field), OF_A_LAYER)}")
             elif isinstance(value, (list, tuple, range)):
                 errors.append(f"{name} has several values: an axis stands beside layers, as {shown(name)}")
             else:
-                flat[name_of(number, field)] = value
+                flat[name_in_stack(number, field)] = value
     return flat
 
 

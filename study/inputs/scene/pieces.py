@@ -9,7 +9,7 @@ import numpy as np
 
 from ...arrays import xarray_later as xr
 from ...terminal import shown
-from ..vocabulary import BODIES, finite
+from ..vocabulary import BODIES, bodies_of, finite
 from .scene import Scene, over
 
 _RIGID = "rigid"  # the name of what has no modulus
@@ -32,14 +32,14 @@ def alike(names: dict, body: str, other_body: str) -> Any:
 
 def none_alike(names: dict) -> bool:
     """Whether no case has two bodies of one material."""
-    return not any(np.any(alike(names, *pair)) for pair in combinations(BODIES, 2))
+    return not any(np.any(alike(names, *pair)) for pair in combinations(bodies_of(names), 2))
 
 
 def of_one_piece(scene: Scene) -> dict[tuple[str, str], Any]:
     """The correlations of bodies that are one piece: their moduli are too high or too low together, and so
     are their Poisson ratios."""
     correlations = {}
-    for body, other_body in combinations(BODIES, 2):
+    for body, other_body in combinations(bodies_of(scene.names), 2):
         same = alike(scene.names, body, other_body)
         for pair in zip(BODIES[body][:2], BODIES[other_body][:2], strict=True):
             if {*pair} <= {*scene.spreads} and np.any(same):

@@ -18,7 +18,7 @@ from ..draft import Draft
 from ..grid import equal_values
 from ..punch.shapes import LENGTHS, MICROMETRE, in_metres
 from ..request import NEEDS_NAMES, Input, Request
-from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY
+from ..vocabulary import ROWS, SCENE, VOCABULARY, bodies_of
 from .bodies import assumed, with_materials
 from .bounds import beyond_bounds
 from .checks import impossible, missing, moving_tables, same_cases
@@ -100,7 +100,7 @@ def _read(scene: Scene, draft: Draft, entry: Input) -> None:
 
 def _material(entry: Input) -> str:
     """The end of a message about a word in place of a modulus; "" for all else."""
-    body = next((body for body, (modulus, _, _) in BODIES.items() if modulus == entry.name), "")
+    body = next((body for body, (modulus, _, _) in bodies_of([entry.name]).items() if modulus == entry.name), "")
     word = entry.array is None and not entry.dims and isinstance(entry.values[0], str) and entry.values[0][:1].isalpha()
     return f"; a material is given as {body}, in place of {entry.name}" if body and word else ""
 

@@ -1,6 +1,7 @@
 """What a call of `fit` asks: the model, its unknown inputs with bounds and priors, and whose spreads it takes over."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -12,7 +13,7 @@ from solver.parameters import ends
 from ...inputs.definition import Definition, StudyError
 from ...inputs.punch.shapes import ANGLES
 from ...inputs.reading import from_call
-from ...inputs.vocabulary import BODIES, CONTROLS, PARAMETERS, ROWS, SCENE, suggest
+from ...inputs.vocabulary import BODIES, CONTROLS, ROWS, parameters_of, scene_of, suggest
 from ...specimen.quantities import has_unit, quantity
 from ...terminal import shown
 from .model import PAIRS, Model, is_ratio
@@ -56,7 +57,7 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     """Check a call. Raises StudyError before any curve is read."""
     errors = _choices(x, y, options)
     names, texts = _listed(free, errors), dict(free) if isinstance(free, dict) else {}
-    numbers = _numbers()
+    numbers = _numbers((*names, *parameters))
     for name in names:
         if name not in numbers:
             near = suggest(name, numbers, ["such as E1, h or Ra"]).replace("; known: ", ", ")
@@ -156,10 +157,14 @@ def _listed(free: Any, errors: list[str]) -> tuple[str, ...]:
     return names
 
 
-def _numbers() -> set[str]:
-    """Inputs that may be fitted: numbers of the contact, not settings of the solver."""
-    rows = {name for name in PARAMETERS if ROWS[name].parameter.interval and not ROWS[name].parameter.whole}
-    return (rows | set(SCENE)) - {*BODIES, *CONTROLS, "rtol", "accuracy", "k", "n", "m"}
+def _numbers(names: Iterable[str]) -> set[str]:
+    """Inputs that may be fitted: numbers of the contact, not settings of the solver.
+
+    names : of the inputs that are given or free, which say what layers there are
+    """
+    rows = {name for name in parameters_of(names) if ROWS[name].parameter.interval}
+    rows = {name for name in rows if not ROWS[name].parameter.whole}
+    return (rows | set(scene_of(names))) - {*BODIES, *CONTROLS, "rtol", "accuracy", "k", "n", "m"}
 
 
 def _has_prior(name: str, value: Any) -> bool:

@@ -6,6 +6,7 @@ from pathlib import Path
 from ..api import Study, load
 from ..data.dataset import NO_SOLUTION, status_words
 from ..files.examine import Condition, examine
+from ..files.parts_folder import named
 from ..in_words import doubts
 from ..inputs.definition import Definition, StudyError
 from ..inputs.places import STUDIES, files_in, packaged, study_file
@@ -70,7 +71,7 @@ def retry(options, file: str) -> int:
 
 def verify(options, file: str) -> int:
     """Compare results with their digest."""
-    condition = examine(file) if Path(file).suffix == ".nc" else _opened(options, file).verify()
+    condition = named(examine(file)) if Path(file).suffix == ".nc" else _opened(options, file).verify()
     say(verified_line(condition.path, condition), sys.stdout if condition.good else sys.stderr)
     return 0 if condition.kind == "sound" else 2 if condition.kind == "missing" else 1
 
@@ -115,10 +116,11 @@ def state_line(definition: Definition, state: dict) -> str:
     return line + f"\n    {state['path']}: {state['reason']}" * bool(state["reason"])
 
 
-def verified_line(name: str, condition: Condition) -> str:
+def verified_line(name: str | Path, condition: Condition) -> str:
     """What `verify` says of a results file."""
     said = {
-        "sound": "verified, every number is the one that was written",
+        "sound": "verified, every number is the one that was written"
+        + f"; it holds results of the study {condition.name}" * (condition.name not in ("", Path(name).stem)),
         "unverified": "xarray or an earlier version wrote it, without a digest to compare; nothing wrong was seen",
         "missing": "does not exist",
     }

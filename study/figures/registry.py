@@ -230,7 +230,12 @@ def open_studies(name: str, studies: tuple[str, ...], results) -> list[xr.Datase
     missing = [path for path in paths.values() if not path.exists()]
     if missing:
         raise StudyError([f"{path}: does not exist, {name} needs it; {_way_out(path.stem)}" for path in missing])
-    return [opened(path) for path in paths.values()]
+    datasets = [opened(path) for path in paths.values()]
+    names = [dataset.attrs.get("study_name", study) for study, dataset in zip(studies, datasets, strict=True)]
+    others = [(paths[study], other) for study, other in zip(studies, names, strict=True) if other != study]
+    if others:
+        raise StudyError([f"{path}: holds results of the study {other}: move it away" for path, other in others])
+    return datasets
 
 
 def _way_out(study: str) -> str:

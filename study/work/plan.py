@@ -12,9 +12,10 @@ import numpy as np
 from solver import NUMERICS_VERSION
 
 from ..data.dataset import status_words
+from ..data.si import axes_of
 from ..files.access import Unusable
 from ..files.atomic import make_folder, target
-from ..files.examine import Condition, examine, statuses
+from ..files.examine import Condition, Identity, examine, statuses
 from ..inputs.definition import LARGE, Definition, StudyError
 from ..inputs.identity import law_versions
 from ..inputs.reading import same_tables
@@ -117,13 +118,15 @@ class Order:
 
 
 def look(store: Store, most: float = inf) -> Condition:
-    """`examine` the results file of a study. One with other dimensions than the study is foreign."""
-    definition, condition = store.definition, examine(store.path, most)
-    sizes = list(definition.in_results(definition.grid.sizes).items())
-    if condition.good and condition.digest == definition.digest and list(condition.sizes.items()) != sizes:
-        dims = f"{list(condition.sizes)}, not {[dim for dim, _ in sizes]}"
-        return replace(condition, kind="foreign", reason=f"another program has changed it: its dimensions are {dims}")
-    return condition
+    """`examine` the results file of a study. One of the same study with other cases is foreign: another program has
+    changed it, or it is a part of the results."""
+    definition, condition = store.definition, examine(store.path, most=most)
+    if not belongs(definition, condition):
+        return condition
+    state = examine(store.path, Identity(definition.digest, axes_of(definition)), 0)
+    if state.kind != "misplaced":
+        return condition
+    return replace(condition, kind="foreign", reason=f"another program has changed it: {state.reason}")
 
 
 def belongs(definition: Definition, condition: Condition) -> bool:

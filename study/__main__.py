@@ -77,7 +77,8 @@ def parser() -> argparse.ArgumentParser:
     command("reading", "materials_", "list the materials that are known by name; say all of one", "NAME", least="*")
     command("reading", "docs", "list the pages of the documentation; show one: docs/model.md", "PAGE", least="*")
     sub = command("computing", "list_", "list the study files, their size and state")
-    sub.add_argument("folder", type=folder, nargs="?", help="default: studies, or those of this package")
+    text = "default: the working folder and studies, or those of this package"
+    sub.add_argument("folder", type=folder, nargs="?", help=text)
     command("checking", "check", "check study files without computing", "FILE")
     sub = command("computing", "run", "compute what is missing and write the results", "FILE")
     add_engine(sub)

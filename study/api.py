@@ -158,7 +158,8 @@ class Study:
         found = look(self._store)
         if not found.good or belongs(self.definition, found):
             return found
-        return replace(found, kind="outdated", reason=f"nothing is damaged, but it holds results of {of_what(found)}")
+        reason = f"nothing is damaged, but it holds results of {of_what(found, self.definition)}"
+        return replace(found, kind="outdated", reason=reason)
 
     def clean(self) -> list[str]:
         """Remove blocks that hold no case of the study as it is. Never touches results.
@@ -195,7 +196,7 @@ class Study:
         if partial:
             return partial_dataset(self.definition, self._folder)
         if found.good or found.kind == "missing":
-            reason = f"holds results of {of_what(found)}" if found.good else "does not exist"
+            reason = f"holds results of {of_what(found, self.definition)}" if found.good else "does not exist"
             raise StudyError([f"{path}: {reason}; run the study first"])
         again = "; run the study, which writes it again" if found.kind == "damaged" else ""
         raise Unusable(path, found.kind, found.reason + again)

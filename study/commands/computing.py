@@ -9,7 +9,7 @@ from ..files.examine import Condition, examine
 from ..files.parts_folder import named
 from ..in_words import doubts
 from ..inputs.definition import Definition, StudyError
-from ..inputs.places import STUDIES, files_in, packaged, study_file
+from ..inputs.places import STUDIES, files_here, files_in, packaged, study_file
 from ..inputs.vocabulary import NOT_RUN
 from ..terminal import answer, counted, on_one_line, say
 from ..work.cost import Estimate, describe
@@ -18,11 +18,13 @@ from .checking import doubtful_lines
 
 
 def items(options) -> list:
-    """The files for which the command is called: those that were given, or of `list` those in a folder."""
+    """The files for which the command is called: those that were given; of `list` those in a folder, by default in
+    the working folder and in `studies`."""
     if options.command != "list":
         return options.items
     folder = Path(options.folder) if options.folder else STUDIES if STUDIES.is_dir() else packaged()
     files = files_in(folder) if folder.is_dir() else [folder]
+    files = files if options.folder else [*files_here(), *files]
     if not files:
         answer(f"no study files in {folder.as_posix()}")
     return files

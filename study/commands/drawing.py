@@ -17,7 +17,7 @@ from ..figures.registry import is_measured, study_beside
 from ..figures.style import style
 from ..inputs.definition import StudyError
 from ..inputs.grid import twins
-from ..inputs.places import known_studies, study_file
+from ..inputs.places import is_study, study_file
 from ..terminal import answer, on_one_line, say
 from ..work.second import Second
 from .computing import completed
@@ -46,7 +46,7 @@ def plot(options, name: str) -> int:
         return _write(options, name)
     except StudyError:
         what = "file" if Path(name).suffix == ".nc" else "study"
-        if name in catalogue.names("figure") or not (what == "file" or name in known_studies()):
+        if name in catalogue.names("figure") or not (what == "file" or is_study(name)):
             raise
         how = "give --x and --y to draw curves of it, such as --x P --y a"
         raise StudyError([f"{name} is a {what}, not a figure: {how}"]) from None
@@ -83,7 +83,7 @@ def _said(error: Exception) -> str:
 
 def table(options, name: str) -> int:
     """Write a table, or the results of a study or of a file as rows, and say which files they are in."""
-    if name in catalogue.names("table") or not (Path(name).suffix == ".nc" or name in known_studies()):
+    if name in catalogue.names("table") or not (Path(name).suffix == ".nc" or is_study(name)):
         return _write(options, name)
     return write_rows(options, name)
 

@@ -34,7 +34,7 @@ from ..store.parts import (
 from ..terminal import counted, program
 from .cases import blocks_of
 from .cost import Estimate, estimate
-from .plan import Order, Report, check_size, check_writable
+from .plan import Order, Report, check_size, check_writable, of_what
 from .run import compute_blocks, say_waiting
 
 log = logging.getLogger(__name__)
@@ -117,7 +117,8 @@ def check_replaceable_parts(order: Order, parts: list[Part], states: list[Condit
     if order.force or same_file or not besides:
         return
     way = f"{program()} run --force {order.definition.name}" if order.renew else "--force"
-    what = f"holds {counted(len(besides), 'part')} of another definition or version of the numerics"
+    of_these = of_what(besides[0], order.definition)
+    what = f"holds {counted(len(besides), 'part')} of {of_these}"
     raise StudyError([f"{order.store.parts}: {what}: {way} removes them, --results DIR writes elsewhere"])
 
 

@@ -21,6 +21,7 @@ from ..inputs.identity import law_versions
 from ..inputs.reading import same_tables
 from ..inputs.vocabulary import NOT_RUN, suggest
 from ..store.blocks import Store, lost_cases
+from ..store.edits import owner_of
 from ..terminal import on_one_line, program, shown
 from .cost import describe, estimate
 from .progress import screen_of
@@ -134,9 +135,10 @@ def belongs(definition: Definition, condition: Condition) -> bool:
     return condition.good and condition.digest == definition.digest
 
 
-def of_what(condition: Condition) -> str:
-    """To what the results in an undamaged file belong that are not those of this study: "another definition"."""
-    return "another definition" if condition.numerics == NUMERICS_VERSION else "another version of the numerics"
+def of_what(condition: Condition, definition: Definition) -> str:
+    """To what the results in an undamaged file belong that are not those of this study, see `owner_of`."""
+    same = condition.numerics == NUMERICS_VERSION
+    return owner_of(condition, definition) if same else "another version of the numerics"
 
 
 def check_replaceable(order: Order, condition: Condition) -> None:
@@ -159,7 +161,7 @@ def check_replaceable(order: Order, condition: Condition) -> None:
         raise StudyError([f"{condition.path}: holds results of {owner}: {choice}{made}"])
     lost = lost_cases(store, condition.digest)
     if lost is None or lost[0]:
-        owner = f"another definition (digest {condition.digest[:8]}, here {definition.digest[:8]})"
+        owner = owner_of(condition, definition)
         what = f"{lost[0]} of its {lost[1]} cases are not in this one" if lost else "which cases cannot be told"
         choice = f"{way} replaces them, --results DIR writes elsewhere"
         raise StudyError([f"{condition.path}: holds results of {owner}, {what}: {choice}{made}"])

@@ -87,7 +87,8 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
         from ..figures import beside
 
         words = ["all", *beside.names("figure" if command == "plot" else "table")]
-        words += [*known_studies(), *(path.as_posix() for path in files_here())]
+        words += known_studies() if command == "plot" else []
+        words += [path.as_posix() for path in files_here()]
     elif command == "--x":
         from ..data.derived import QUANTITIES
         from ..inputs.vocabulary import SCENE, VOCABULARY

@@ -213,9 +213,9 @@ def entry(kind: str, name: str) -> Any:
 
 
 def code_of(kind: str, name: str) -> list[Path]:
-    """Files beside studies that a figure or table may depend on, once its code has run; none if a script has it."""
+    """Files beside studies that a figure or table may depend on, by their texts; none if a script has it."""
     place = None if name in REGISTERS[""][kind] else beside.place_of(kind, name)
-    return beside.files_of(beside.package_of(place[0])) if place else []
+    return beside.files_of(place[0]) if place else []
 
 
 def study_beside(kind: str, name: str) -> Path | None:

@@ -120,7 +120,7 @@ def main(arguments=None) -> int:
         options = commands.parse_args(arguments)
         level = logging.DEBUG if options.verbose else logging.WARNING
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
-        kept = KEPT if options.command in ("run", "retry") else ""
+        kept = ending.state.kept = KEPT if options.command in ("run", "retry") else ""
         code = perform(options, kept)
         ending.state.code = code
     except SystemExit as ended:  # raised by the parser

@@ -20,7 +20,7 @@ from pathlib import Path
 from .commands import ending
 from .commands.arguments import Parser, Version, add_curves, add_engine, folder, part, proposed
 from .commands.ending import INTERRUPTED
-from .terminal import empty_buffers, interrupt, open_closed_streams, program, say
+from .terminal import empty_buffers, interrupt, memory_message, open_closed_streams, program, say, short_of_memory
 
 # The solver computes on one BLAS thread. A BLAS library that reads this before numpy is imported does not start others;
 # without it each worker process would have a thread for each processor.
@@ -177,8 +177,14 @@ def _attempt(act, options, item, kept: str) -> int:
         return act(options, item)
     except StudyError as error:
         text, code = str(error), error.code
-    except OSError as error:  # the disk is full, say, or the scheduler is gone
-        text, code = f"{item if isinstance(item, str) else options.command}: {error}{kept}", 1
+    except (OSError, MemoryError, RuntimeError) as error:  # the disk is full, say, or the scheduler is gone
+        what = item if isinstance(item, str) else options.command
+        if short_of_memory(error):
+            text, code = f"{what}: {memory_message(error)}{kept}", 1
+        elif isinstance(error, OSError):
+            text, code = f"{what}: {error}{kept}", 1
+        else:
+            raise
     except SystemExit as ended:  # of what is not ours, such as the function of a figure: it is no end of the command
         text, code = f"{item}: something that it needs calls sys.exit({ended})", 1
     if interrupt.came:  # a library has turned the interrupt into this error

@@ -67,7 +67,7 @@ def _curves(options, name: str) -> int:
             figure, columns = drawn(dataset, options.x, options.y, options.hue, dict(options.where), Figure)
         figure = catalogue.without_parameters(figure) if options.bare else figure
         written = catalogue.save(Path(options.folder) / stem, figure, columns, title)
-    except (StudyError, OSError):
+    except (StudyError, OSError, MemoryError):
         raise
     except Exception as error:  # of a file of another program, in which there may be anything
         log.info("%s", name, exc_info=True)
@@ -113,7 +113,7 @@ def _write(options, name: str) -> int:
             answer(*make(name, options.results, options.folder))
         else:
             answer(*(catalogue.noted(kind, name, options.folder, *made) if options.run and not bare else made[1]))
-    except (StudyError, OSError):
+    except (StudyError, OSError, MemoryError):
         raise
     except Exception as error:  # of the function of the figure or table; the others are made
         log.info("%s", name, exc_info=True)

@@ -174,7 +174,7 @@ def run(file: Path) -> str:
     try:
         invalidate_caches()  # the file may be a second old
         import_module(f"{package}.{Path(FILE).stem}")
-    except StudyError:
+    except (StudyError, MemoryError):
         raise
     except Exception as error:
         log.info("%s", file, exc_info=True)

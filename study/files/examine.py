@@ -16,17 +16,19 @@ import numpy as np
 
 from ..data.provenance import OF_THE_RUN
 from ..inputs.grid import Grid, windows
-from .access import Unusable
+from ..terminal import memory_message, short_of_memory
+from .access import Unusable, are_whole
 from .netcdf import File, check_regular
 from .seal import is_whole
 
 ATTRIBUTE = "contents_digest"
 FORMER = "checksums"  # what an earlier version wrote in place of the digest
 CHUNK = 8192  # cases in a chunk of the file: 2 MB of a profile
-BROKEN = (KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowError, MemoryError)
+BROKEN = (KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowError)
 """Exceptions while a file is read that is not laid out like our results."""
 OURS = ("study_digest", "numerics_version")
 """Attributes by which our results are known. Every results file has them."""
+PACKED = 10_000  # how many times as many bytes as its file a dataset may have; ours has up to a hundred times
 CHANGED = "is damaged, or another program has changed it: its numbers are not those that were written"
 
 
@@ -125,7 +127,14 @@ def examine(path, identity: Identity | None = None, most: float = inf) -> Condit
     except Unusable as error:
         state = replace(state, kind=error.kind, reason=error.reason)
     except OSError as error:
+        if short_of_memory(error):
+            raise
         state = Condition(path, "unreadable", f"cannot be read: {error.strerror}")
+    except MemoryError as error:
+        if are_whole(path) and state.unpacked < PACKED * path.stat().st_size:
+            raise
+        # a file that is not ours, or a damaged one, may say that it has terabytes
+        state = Condition(path, "unreadable", f"cannot be read: {memory_message(error)}")
     except BROKEN as error:
         state = replace(state, kind="damaged", reason=f"is damaged: no results are laid out like this ({error})")
     return replace(state, seen=seen)

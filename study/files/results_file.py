@@ -130,7 +130,8 @@ def numbers_digest(path: Path) -> str:
                 return str(file.attributes[ATTRIBUTE])
     except Unusable:
         pass
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def open_results(path: str | os.PathLike) -> xr.Dataset:
@@ -162,6 +163,8 @@ def open_results(path: str | os.PathLike) -> xr.Dataset:
         return for_users(read_of_others(path) if condition.unpacked > LAZY else read(path))
     except OSError:
         condition.raise_if_bad()
+        raise
+    except MemoryError:
         raise
     except Exception as error:  # of xarray, which takes attributes of variables for units of time and so on
         reason = f"{condition.reason}, which xarray cannot read: {on_one_line(str(error), 200)}"

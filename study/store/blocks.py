@@ -22,6 +22,7 @@ from ..files.atomic import remove_temporary
 from ..inputs.definition import Definition
 from ..inputs.identity import case_keys, find
 from ..inputs.vocabulary import BY_INPUT, NOT_RUN
+from ..terminal import short_of_memory
 from .block_file import Block, Damaged, read_block, write_block
 
 log = logging.getLogger(__name__)
@@ -140,8 +141,11 @@ def inventory(store: Store, retry: tuple = ()) -> Inventory:
         except FileNotFoundError:  # removed just now
             continue
         except OSError as error:  # its cases are computed again
+            if short_of_memory(error):
+                raise
             log.warning("%s", error)
-            blocks[path] = -1
+            if isinstance(error, (Damaged, Unusable)):  # what cannot be read now is perhaps read later, so it stays
+                blocks[path] = -1
             continue
         blocks[path] = len(block.keys)
         if usable(store.definition, block):

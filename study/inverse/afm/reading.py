@@ -31,6 +31,8 @@ def read(path: Path) -> dict[str, tuple[np.ndarray, str]]:
     try:
         loaded = afmformats.load_data(path)
         curves = [_of_curve(data) for data in (loaded if isinstance(loaded, list) else [loaded])]
+    except MemoryError:
+        raise
     except Exception as error:  # its classes depend on the format
         raise StudyError([f"{where}: afmformats cannot read it: {error}"]) from None
     if not curves:

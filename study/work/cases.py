@@ -19,7 +19,7 @@ from solver.shapes.table import TABLES, Rows
 from ..inputs.definition import Definition
 from ..inputs.grid import columns
 from ..inputs.vocabulary import BY_INPUT, CONTROLS, INTEGERS, TRUTHS
-from ..terminal import memory_message, short_of_memory
+from ..terminal import short_of_memory
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +136,7 @@ def guarded(task: Parcel) -> dict[str, np.ndarray] | Failure:
     except Exception as error:
         what = f"{type(error).__name__}: {error}"
         if short_of_memory(error):
-            what = f"{memory_message(error)}; a smaller `block` of [numerics] takes less"
+            what = f"MemoryError: {error}; a smaller `block` of [numerics] takes less"
         message = f"cases {task.first} to {task.last}: {what}"
         return Failure(message, traceback.format_exc())
 

@@ -94,7 +94,8 @@ def test_a_block_that_takes_too_much_says_how_to_take_less(file, monkeypatch, ca
     monkeypatch.setattr(cases, "compute", no_memory)
     assert main(["run", str(file), "--workers", "1", "--results", str(file.parent / "there")]) == 1
     said = capsys.readouterr().err
-    assert "0 to 22: MemoryError: Unable to allocate 7.45 GiB" in said and "a smaller `block` of [numerics] takes less" in said and "_ArrayMemoryError" not in said
+    assert "MemoryError: Unable to allocate 7.45 GiB" in said and "_ArrayMemoryError" not in said
+    assert "a smaller `block` of [numerics] takes less" in said
 
 
 def refused(path):

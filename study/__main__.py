@@ -20,7 +20,7 @@ from pathlib import Path
 from .commands import ending
 from .commands.arguments import Parser, Version, add_curves, add_engine, folder, part, proposed
 from .commands.ending import INTERRUPTED
-from .terminal import empty_buffers, interrupt, open_closed_streams, program, say
+from .terminal import empty_buffers, interrupt, memory_message, open_closed_streams, program, say, short_of_memory
 
 # The solver computes on one BLAS thread. A BLAS library that reads this before numpy is imported does not start others;
 # without it each worker process would have a thread for each processor.
@@ -77,7 +77,8 @@ def parser() -> argparse.ArgumentParser:
     command("reading", "materials_", "list the materials that are known by name; say all of one", "NAME", least="*")
     command("reading", "docs", "list the pages of the documentation; show one: docs/model.md", "PAGE", least="*")
     sub = command("computing", "list_", "list the study files, their size and state")
-    sub.add_argument("folder", type=folder, nargs="?", help="default: studies, or those of this package")
+    text = "default: the working folder and studies, or those of this package"
+    sub.add_argument("folder", type=folder, nargs="?", help=text)
     command("checking", "check", "check study files without computing", "FILE")
     sub = command("computing", "run", "compute what is missing and write the results", "FILE")
     add_engine(sub)
@@ -119,7 +120,7 @@ def main(arguments=None) -> int:
         options = commands.parse_args(arguments)
         level = logging.DEBUG if options.verbose else logging.WARNING
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
-        kept = KEPT if options.command in ("run", "retry") else ""
+        kept = ending.state.kept = KEPT if options.command in ("run", "retry") else ""
         code = perform(options, kept)
         ending.state.code = code
     except SystemExit as ended:  # raised by the parser
@@ -176,8 +177,14 @@ def _attempt(act, options, item, kept: str) -> int:
         return act(options, item)
     except StudyError as error:
         text, code = str(error), error.code
-    except OSError as error:  # the disk is full, say, or the scheduler is gone
-        text, code = f"{item if isinstance(item, str) else options.command}: {error}{kept}", 1
+    except (OSError, MemoryError, RuntimeError) as error:  # the disk is full, say, or the scheduler is gone
+        what = item if isinstance(item, str) else options.command
+        if short_of_memory(error):
+            text, code = f"{what}: {memory_message(error)}{kept}", 1
+        elif isinstance(error, OSError):
+            text, code = f"{what}: {error}{kept}", 1
+        else:
+            raise
     except SystemExit as ended:  # of what is not ours, such as the function of a figure: it is no end of the command
         text, code = f"{item}: something that it needs calls sys.exit({ended})", 1
     if interrupt.came:  # a library has turned the interrupt into this error

@@ -2,7 +2,7 @@
 
 import os
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -104,7 +104,8 @@ class Study:
         """What has been computed.
 
         The state is "done", "outdated", "partial" or "new". For a results file that cannot be used it is "damaged",
-        "foreign" (not written by roughcoat) or "unreadable", and `reason` says what is wrong. A file of up to 200 MB in
+        "foreign" (not written by roughcoat) or "unreadable", and `reason` says what is wrong; so it does of a large
+        study if a part holds other cases than its name says, which then count as missing. A file of up to 200 MB in
         memory is compared with its digest; `verify` compares a larger one too. Cases count as computed if they are in
         blocks. With spreads a case counts as often as it is solved; of complete results the statuses are counted once
         for each.
@@ -124,9 +125,9 @@ class Study:
     def _status(self) -> dict:
         store = self._store
         if self._is_in_parts:
-            state, counts = state_of(store)
+            state, counts, reason = state_of(store)
             cases = self.definition.grid.size
-            return {"state": state, "cases": cases, "counts": counts, "path": store.parts, "reason": ""}
+            return {"state": state, "cases": cases, "counts": counts, "path": store.parts, "reason": reason}
         found = look(store, LAZY)
         state = "outdated" if found.good else {"missing": "new"}.get(found.kind, found.kind)
         state = "done" if belongs(self.definition, found) else state
@@ -145,13 +146,20 @@ class Study:
         return {"state": state, "cases": cases, "counts": counts, "path": store.path, "reason": found.reason}
 
     def verify(self) -> Condition:
-        """Compare all of the results file with its digest.
+        """Compare all of the results file with its digest, and with the study: that it has these cases.
 
         Returns
         -------
-        Condition : its `kind` is "sound" where nothing is wrong, else `reason` says what is: `study.files.examine`
+        Condition : its `kind` is "sound" where nothing is wrong, else `reason` says what is: `study.files.examine`.
+            It is "outdated" for undamaged results of another definition
         """
-        return condition(self._store) if self._is_in_parts else look(self._store)
+        if self._is_in_parts:
+            return condition(self._store)
+        found = look(self._store)
+        if not found.good or belongs(self.definition, found):
+            return found
+        reason = f"nothing is damaged, but it holds results of {of_what(found, self.definition)}"
+        return replace(found, kind="outdated", reason=reason)
 
     def clean(self) -> list[str]:
         """Remove blocks that hold no case of the study as it is. Never touches results.
@@ -188,7 +196,7 @@ class Study:
         if partial:
             return partial_dataset(self.definition, self._folder)
         if found.good or found.kind == "missing":
-            reason = f"holds results of {of_what(found)}" if found.good else "does not exist"
+            reason = f"holds results of {of_what(found, self.definition)}" if found.good else "does not exist"
             raise StudyError([f"{path}: {reason}; run the study first"])
         again = "; run the study, which writes it again" if found.kind == "damaged" else ""
         raise Unusable(path, found.kind, found.reason + again)

@@ -16,6 +16,7 @@ from .figures.formats import as_latex, as_text, csv_text, write
 from .figures.labels import stated, wrapped
 from .figures.registry import FIGURES, TABLES, Columns, Drawing, code_of, entry, names, open_studies
 from .figures.style import style
+from .files.results_file import results_of
 from .inputs.definition import StudyError
 
 __all__ = ["FIGURES", "TABLES", "captions", "compose", "draw", "tabulate"]
@@ -59,7 +60,7 @@ def endings(kind: str, name: str) -> tuple[str, ...]:
 def digest(kind: str, name: str, results) -> str:
     """The digest of all that the files of a figure or table follow from: results, code, libraries."""
     made = entry(kind, name)
-    paths = [path for study in made.studies if (path := Path(results) / f"{study}.nc").exists()]
+    paths = [path for study in made.studies if (path := results_of(Path(results), study)).exists()]
     copied = list(copies(made)) if isinstance(made, Drawing) else []
     return record.digest_of(what(kind, name), endings(kind, name), paths, [*code_of(kind, name), *copied])
 

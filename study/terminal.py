@@ -63,6 +63,17 @@ def say(text: str, stream: TextIO | None) -> OSError | None:
     return None
 
 
+def short_of_memory(error: BaseException) -> bool:
+    """Whether an error says that there was no memory, or no room for another thread: nothing else is wrong then."""
+    return isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM or "new thread" in str(error)
+
+
+def memory_message(error: BaseException) -> str:
+    """ "there is not enough memory (Unable to allocate 7.45 GiB ...)"."""
+    said = getattr(error, "strerror", None) or str(error)
+    return "there is not enough memory" + f" ({on_one_line(said, 120)})" * bool(said)
+
+
 def answer(*lines) -> int:
     """Print the answer of a command. Returns its exit code, for a command that does nothing else: 1 for a full disk."""
     lost = say("\n".join(map(str, lines)), sys.stdout)

@@ -133,6 +133,8 @@ def _load_installed():
                 laws = entry.load()
             for law in laws if isinstance(laws, (list, tuple)) else [laws]:
                 places.setdefault(law.name, {}).setdefault(law, where)
+        except MemoryError:
+            raise
         except Exception as error:
             wrong.append(f"{where}: {error}")
     for name, laws in places.items():

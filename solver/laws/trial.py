@@ -144,6 +144,8 @@ def _called(law, name, *arguments, **named):
     try:
         with going_on():
             return getattr(law, name)(*arguments, **named)
+    except MemoryError:
+        raise
     except Exception as error:
         at = traceback.extract_tb(error.__traceback__)[-1]
         where = f" ({Path(at.filename).name}, line {at.lineno})" * (at.filename != __file__)

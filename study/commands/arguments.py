@@ -7,7 +7,7 @@ import sys
 from functools import partial
 from pathlib import Path
 
-from ..inputs.places import STUDIES, files_in, known_studies
+from ..inputs.places import STUDIES, files_here, files_in, known_studies
 from ..terminal import on_one_line, say
 from ..work.scheduler import address_error
 
@@ -91,6 +91,7 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
 
         words = ["all", *beside.names("figure" if command == "plot" else "table")]
         words += known_studies() if command == "plot" else []
+        words += [path.as_posix() for path in files_here()]
     elif command == "--x":
         from ..data.derived import QUANTITIES
         from ..inputs.vocabulary import SCENE, VOCABULARY
@@ -101,7 +102,7 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
 
         words = list(status_words().values())
     else:
-        files = [*Path().glob("*.toml"), *files_in(STUDIES)]
+        files = [*files_here(), *files_in(STUDIES)]
         files += Path("results").glob("*.nc") if command == "verify" else ()
         words = [*known_studies(), *(path.as_posix() for path in sorted(files))]
     return [name for name in words if name.startswith(prefix)]

@@ -6,9 +6,10 @@ from pathlib import Path
 from ..api import Study, load
 from ..data.dataset import NO_SOLUTION, status_words
 from ..files.examine import Condition, examine
+from ..files.parts_folder import named
 from ..in_words import doubts
 from ..inputs.definition import Definition, StudyError
-from ..inputs.places import STUDIES, files_in, packaged, study_file
+from ..inputs.places import STUDIES, files_here, files_in, packaged, study_file
 from ..inputs.vocabulary import NOT_RUN
 from ..terminal import answer, counted, on_one_line, say
 from ..work.cost import Estimate, describe
@@ -17,11 +18,13 @@ from .checking import doubtful_lines
 
 
 def items(options) -> list:
-    """The files for which the command is called: those that were given, or of `list` those in a folder."""
+    """The files for which the command is called: those that were given; of `list` those in a folder, by default in
+    the working folder and in `studies`."""
     if options.command != "list":
         return options.items
     folder = Path(options.folder) if options.folder else STUDIES if STUDIES.is_dir() else packaged()
     files = files_in(folder) if folder.is_dir() else [folder]
+    files = files if options.folder else [*files_here(), *files]
     if not files:
         answer(f"no study files in {folder.as_posix()}")
     return files
@@ -70,7 +73,7 @@ def retry(options, file: str) -> int:
 
 def verify(options, file: str) -> int:
     """Compare results with their digest."""
-    condition = examine(file) if Path(file).suffix == ".nc" else _opened(options, file).verify()
+    condition = named(examine(file)) if Path(file).suffix == ".nc" else _opened(options, file).verify()
     say(verified_line(condition.path, condition), sys.stdout if condition.good else sys.stderr)
     return 0 if condition.kind == "sound" else 2 if condition.kind == "missing" else 1
 
@@ -115,10 +118,11 @@ def state_line(definition: Definition, state: dict) -> str:
     return line + f"\n    {state['path']}: {state['reason']}" * bool(state["reason"])
 
 
-def verified_line(name: str, condition: Condition) -> str:
+def verified_line(name: str | Path, condition: Condition) -> str:
     """What `verify` says of a results file."""
     said = {
-        "sound": "verified, every number is the one that was written",
+        "sound": "verified, every number is the one that was written"
+        + f"; it holds results of the study {condition.name}" * (condition.name not in ("", Path(name).stem)),
         "unverified": "xarray or an earlier version wrote it, without a digest to compare; nothing wrong was seen",
         "missing": "does not exist",
     }

@@ -17,7 +17,7 @@ from ..figures.registry import is_measured, study_beside
 from ..figures.style import style
 from ..inputs.definition import StudyError
 from ..inputs.grid import twins
-from ..inputs.places import known_studies, study_file
+from ..inputs.places import is_study, study_file
 from ..terminal import answer, on_one_line, say
 from ..work.second import Second
 from .computing import completed
@@ -46,7 +46,7 @@ def plot(options, name: str) -> int:
         return _write(options, name)
     except StudyError:
         what = "file" if Path(name).suffix == ".nc" else "study"
-        if name in catalogue.names("figure") or not (what == "file" or name in known_studies()):
+        if name in catalogue.names("figure") or not (what == "file" or is_study(name)):
             raise
         how = "give --x and --y to draw curves of it, such as --x P --y a"
         raise StudyError([f"{name} is a {what}, not a figure: {how}"]) from None
@@ -67,7 +67,7 @@ def _curves(options, name: str) -> int:
             figure, columns = drawn(dataset, options.x, options.y, options.hue, dict(options.where), Figure)
         figure = catalogue.without_parameters(figure) if options.bare else figure
         written = catalogue.save(Path(options.folder) / stem, figure, columns, title)
-    except (StudyError, OSError):
+    except (StudyError, OSError, MemoryError):
         raise
     except Exception as error:  # of a file of another program, in which there may be anything
         log.info("%s", name, exc_info=True)
@@ -83,7 +83,7 @@ def _said(error: Exception) -> str:
 
 def table(options, name: str) -> int:
     """Write a table, or the results of a study or of a file as rows, and say which files they are in."""
-    if name in catalogue.names("table") or not (Path(name).suffix == ".nc" or name in known_studies()):
+    if name in catalogue.names("table") or not (Path(name).suffix == ".nc" or is_study(name)):
         return _write(options, name)
     return write_rows(options, name)
 
@@ -113,7 +113,7 @@ def _write(options, name: str) -> int:
             answer(*make(name, options.results, options.folder))
         else:
             answer(*(catalogue.noted(kind, name, options.folder, *made) if options.run and not bare else made[1]))
-    except (StudyError, OSError):
+    except (StudyError, OSError, MemoryError):
         raise
     except Exception as error:  # of the function of the figure or table; the others are made
         log.info("%s", name, exc_info=True)

@@ -2,22 +2,32 @@
 
 While it starts, it ends at once. While it works, KeyboardInterrupt ends it in good order, and a second signal at once.
 When it is done, it ends at once with the exit code of its work. A signal that the parent process ignores is ignored.
+
+Python raises KeyboardInterrupt between two of its own instructions. A long call of numpy, or of the compiled core, has
+none, and a library may lose what is raised. So a thread hears of the signal too, and ends the process if the main
+thread goes on. All files are written whole, so what is lost is the work since the last one.
 """
 
 import atexit
 import os
 import signal
 import sys
+import threading
+import time
 from types import SimpleNamespace
 
-from ..terminal import empty_buffers, interrupt
+from ..terminal import empty_buffers, interrupt, say
 
 INTERRUPTED = 130  # exit code
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
+#: Seconds that a command has to end in good order, which takes some hundredths, and the processor time of its main
+#: thread from which on it is known to compute. One that gets no processor, on a busy machine, has longer.
+ORDERLY, COMPUTING, BUSY = 0.6, 0.2, 2.0
 
 
-state = SimpleNamespace(working=False, code=None)
-"""working : the command has begun; code : the exit code, once it is known."""
+state = SimpleNamespace(working=False, code=None, kept="", elsewhere=False)
+"""working : the command has begun; code : the exit code, once it is known; kept : what an interrupt leaves, in words;
+elsewhere : another program has the terminal, such as a pager, which hears of the signals itself."""
 
 
 def listen() -> None:
@@ -27,6 +37,33 @@ def listen() -> None:
     for number in SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _first_signal)
+    told, tell = os.pipe()
+    os.set_blocking(tell, False)
+    signal.set_wakeup_fd(tell, warn_on_full_buffer=False)  # written to at once, whatever the main thread does
+    if hasattr(os, "register_at_fork"):  # a signal of a forked child is not one of this process
+        os.register_at_fork(after_in_child=lambda: signal.set_wakeup_fd(-1))
+    threading.Thread(target=_watch, args=(told,), daemon=True).start()
+
+
+def _watch(told: int) -> None:
+    """Wait for a signal, and end the process if it does not end by itself."""
+    while not {*os.read(told, 64)} & {*map(int, SIGNALS)} or state.elsewhere:
+        pass
+    begun, used = time.monotonic(), _used()
+    while True:
+        time.sleep(0.02)
+        passed = time.monotonic() - begun
+        if passed > BUSY or (passed > ORDERLY and _used() - used > COMPUTING):
+            if state.code is None and state.working:
+                say(f"\ninterrupted{state.kept}", sys.stderr)
+            _end_at_once()
+
+
+def _used() -> float:
+    """Processor time of the main thread, or of the process where threads have no clock, s."""
+    if hasattr(time, "pthread_getcpuclockid"):
+        return time.clock_gettime(time.pthread_getcpuclockid(threading.main_thread().ident))
+    return time.process_time()
 
 
 def _first_signal(*_) -> None:

@@ -14,7 +14,7 @@ from ..inputs.definition import Definition
 from ..inputs.scene.scene import Scene, bare_variable
 from ..inputs.vocabulary import ROWS, VOCABULARY
 from ..specimen.materials import Strength, known_strength
-from .dataset import Parts
+from .dataset import Parts, labelled
 from .spreads import spreads_of
 from .units import PHYSICAL_SCALE, physical_attributes, with_unit
 
@@ -37,6 +37,12 @@ def dataset_in_units(definition: Definition, parts: Parts) -> xr.Dataset:
     from .index import searchable
 
     return searchable(parts.dataset())
+
+
+def axes_of(definition: Definition) -> dict[str, np.ndarray]:
+    """Dimension of the cases in the results of a study -> the values of its coordinate, as the results have them."""
+    coords = in_units(definition, labelled(definition, {}, "")).coords
+    return {dim: np.asarray(coords[dim].data) for dim in definition.in_results(definition.grid.sizes)}
 
 
 def in_units(definition: Definition, parts: Parts) -> Parts:

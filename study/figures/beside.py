@@ -155,16 +155,19 @@ def package_of(file: Path) -> str:
 
     Chapters of one folder of studies are in one package: `from ..paper import numbers`.
     """
-    folder = file.resolve().parent
-    root, book = root_of(folder), packaged().resolve()
-    if folder.is_relative_to(book):
-        root, top = book, BOOK
-    else:
-        top = f"{BOOK}_{hashlib.sha256(str(root).encode()).hexdigest()[:8]}"
+    folder, root = file.resolve().parent, _root(file)
+    in_book = root == packaged().resolve()
+    top = BOOK if in_book else f"{BOOK}_{hashlib.sha256(str(root).encode()).hexdigest()[:8]}"
     if top not in sys.modules:
         sys.modules[top] = ModuleType(top)
         sys.modules[top].__path__ = [str(root)]
     return ".".join((top, *folder.relative_to(root).parts))
+
+
+def _root(file: Path) -> Path:
+    """The folder of studies that has a `figures.py`, resolved: the book, or that of which its folder is a chapter."""
+    folder, book = file.resolve().parent, packaged().resolve()
+    return book if folder.is_relative_to(book) else root_of(folder)
 
 
 def run(file: Path) -> str:
@@ -173,7 +176,7 @@ def run(file: Path) -> str:
     try:
         invalidate_caches()  # the file may be a second old
         import_module(f"{package}.{Path(FILE).stem}")
-    except StudyError:
+    except (StudyError, MemoryError):
         raise
     except Exception as error:
         log.info("%s", file, exc_info=True)
@@ -183,11 +186,35 @@ def run(file: Path) -> str:
     return package
 
 
-def files_of(package: str) -> list[Path]:
-    """Files from which figures of a package may follow: the code of its studies that has run, and the data beside."""
-    top = ".".join(package.split(".")[:2])
-    modules = [module for name, module in sys.modules.copy().items() if f"{name}.".startswith(f"{top}.")]
-    code = {Path(module.__file__) for module in modules if getattr(module, "__file__", None)}
+def files_of(file: Path) -> list[Path]:
+    """Files from which the figures of a `figures.py` may follow: itself, the files of studies that it imports, those
+    that these import, and the data beside all of them.
+
+    They are read from the texts. Which modules a program has imported before does not matter, nor in which process a
+    figure is drawn.
+    """
+    code, waiting, root = set[Path](), [file.resolve()], _root(file)
+    while waiting:
+        path = waiting.pop()
+        if path not in code and path.is_relative_to(root):
+            code.add(path)
+            state = path.stat()
+            waiting += _imported(path, (state.st_ino, state.st_size, state.st_mtime_ns))
     beside = {path for folder in {file.parent for file in code} for path in folder.iterdir()}
     data = {path for path in beside if path.suffix != ".py" and path.is_file() and path.stat().st_size <= LARGEST}
     return sorted(code | {path for path in data if not path.name.startswith(".")})
+
+
+@lru_cache(maxsize=256)
+def _imported(path: Path, _: tuple) -> list[Path]:
+    """The files that a file imports by relative imports, wherever these stand in it; see `read` for the rest."""
+    try:
+        nodes = [node for node in ast.walk(ast.parse(path.read_bytes())) if isinstance(node, ast.ImportFrom)]
+    except (SyntaxError, ValueError, RecursionError):  # whoever runs it is told
+        return []
+    paths = []
+    for node in (node for node in nodes if node.level):
+        place = path.parents[node.level - 1] / (node.module or "").replace(".", "/")
+        modules = [place, *(place / alias.name for alias in node.names)]
+        paths += [file for module in modules for file in (module.with_suffix(".py"), module / "__init__.py")]
+    return [file for file in paths if file.is_file()]

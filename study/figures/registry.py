@@ -213,9 +213,9 @@ def entry(kind: str, name: str) -> Any:
 
 
 def code_of(kind: str, name: str) -> list[Path]:
-    """Files beside studies that a figure or table may depend on, once its code has run; none if a script has it."""
+    """Files beside studies that a figure or table may depend on, by their texts; none if a script has it."""
     place = None if name in REGISTERS[""][kind] else beside.place_of(kind, name)
-    return beside.files_of(beside.package_of(place[0])) if place else []
+    return beside.files_of(place[0]) if place else []
 
 
 def study_beside(kind: str, name: str) -> Path | None:
@@ -230,7 +230,12 @@ def open_studies(name: str, studies: tuple[str, ...], results) -> list[xr.Datase
     missing = [path for path in paths.values() if not path.exists()]
     if missing:
         raise StudyError([f"{path}: does not exist, {name} needs it; {_way_out(path.stem)}" for path in missing])
-    return [opened(path) for path in paths.values()]
+    datasets = [opened(path) for path in paths.values()]
+    names = [dataset.attrs.get("study_name", study) for study, dataset in zip(studies, datasets, strict=True)]
+    others = [(paths[study], other) for study, other in zip(studies, names, strict=True) if other != study]
+    if others:
+        raise StudyError([f"{path}: holds results of the study {other}: move it away" for path, other in others])
+    return datasets
 
 
 def _way_out(study: str) -> str:

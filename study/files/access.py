@@ -13,9 +13,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
 from xarray.backends.netCDF4_ import NETCDF4_PYTHON_LOCK
 
 from ..inputs.definition import StudyError
+from ..terminal import short_of_memory
+from .seal import is_whole
+
+NEEDED = 256_000_000  # bytes; what was held when the error came is free by now
 
 
 class Unusable(StudyError, OSError):
@@ -29,14 +34,16 @@ class Unusable(StudyError, OSError):
 class Access:
     """The lock of xarray for netCDF, which a thread that holds it may take again, for work on the file `path`.
 
-    As a context manager it turns errors of netCDF into `Unusable`, or into OSError when the file is written. It has the
-    methods of a lock because xarray uses it as one, and it can be sent to another process with a dataset.
+    As a context manager it turns errors of netCDF into `Unusable`, or into OSError when a file is written, at the path
+    `writing`. NetCDF has one error for a damaged file, a full disk, and a want of memory: it is MemoryError where the
+    file is whole, or the disk has room, and memory is short. It has the methods of a lock because xarray uses it as
+    one, and it can be sent to another process with a dataset.
     """
 
     _mine = threading.RLock()  # taken first: xarray's own lock would block a thread that holds it
     _depth = 0  # how often the thread that holds the lock has taken it
 
-    def __init__(self, path, writing: bool = False):
+    def __init__(self, path, writing: Path | None = None):
         self.path, self.writing = Path(path), writing
 
     def acquire(self, blocking: bool = True) -> bool:
@@ -66,13 +73,45 @@ class Access:
     def __exit__(self, _, error, __) -> None:
         self.release()
         if isinstance(error, (RuntimeError, AttributeError)) and str(error).startswith("NetCDF: "):
+            what = "written" if self.writing else "read"
+            if memory_is_short() and (has_room(self.writing) if self.writing else are_whole(self.path)):
+                raise MemoryError(f"{self.path} cannot be {what}: {error}") from error
             if self.writing:
-                raise OSError(f"{self.path} cannot be written ({error}): is the disk full?") from error
+                why = "" if has_room(self.writing) else ": is the disk full?"
+                raise OSError(f"{self.path} cannot be written ({error}){why}") from error
             raise Unusable(self.path, "damaged", f"is damaged: a part of it cannot be read ({error})") from error
 
 
+def memory_is_short() -> bool:
+    """Whether there is no memory for what netCDF may need, where all else has worked: chunks of some megabytes."""
+    try:
+        np.empty(NEEDED, np.uint8)
+    except MemoryError:
+        return True
+    return False
+
+
+def has_room(path: Path) -> bool:
+    """Whether a file that could not be written can grow by a megabyte."""
+    try:
+        with open(path, "ab") as file:
+            file.write(bytes(1 << 20))
+    except (OSError, MemoryError) as error:
+        return short_of_memory(error)
+    return True
+
+
+def are_whole(path: Path) -> bool:
+    """Whether the seal of a file is right, or of all parts in a folder: then no part of it is damaged."""
+    try:
+        files = sorted(path.glob("*.nc")) if path.is_dir() else [path]
+        return bool(files) and all(file.is_file() and is_whole(file) for file in files)
+    except OSError:
+        return False
+
+
 @contextmanager
-def access(path, writing: bool = False) -> Iterator[None]:
+def access(path, writing: Path | None = None) -> Iterator[None]:
     """Hold the lock, with SIGINT and SIGTERM held back: their exception could leave a lock locked."""
     with interrupts_wait(), Access(path, writing):
         yield

@@ -16,18 +16,52 @@ import numpy as np
 
 from ..data.provenance import OF_THE_RUN
 from ..inputs.grid import Grid, windows
-from .access import Unusable
+from ..terminal import memory_message, short_of_memory
+from .access import Unusable, are_whole
 from .netcdf import File, check_regular
 from .seal import is_whole
 
 ATTRIBUTE = "contents_digest"
 FORMER = "checksums"  # what an earlier version wrote in place of the digest
 CHUNK = 8192  # cases in a chunk of the file: 2 MB of a profile
-BROKEN = (KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowError, MemoryError)
+BROKEN = (KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowError)
 """Exceptions while a file is read that is not laid out like our results."""
 OURS = ("study_digest", "numerics_version")
 """Attributes by which our results are known. Every results file has them."""
+PACKED = 10_000  # how many times as many bytes as its file a dataset may have; ours has up to a hundred times
 CHANGED = "is damaged, or another program has changed it: its numbers are not those that were written"
+
+
+@dataclass(frozen=True, eq=False)
+class Identity:
+    """What a file must say of itself to be that of certain cases of a study.
+
+    digest : of the study
+    coordinates : dimension of the cases -> its values
+    attributes : others of the file, which must have them too; None: it may lack this one
+    """
+
+    digest: str
+    coordinates: dict[str, np.ndarray]
+    attributes: dict[str, object] = field(default_factory=dict)
+
+    def differs(self, condition: "Condition", file: File) -> str:
+        """Why an undamaged file is not the one, "" if it is."""
+        if condition.digest != self.digest:
+            return "its results are of another definition or version of the numerics"
+        if list(condition.sizes) != list(self.coordinates):
+            return f"its dimensions are {list(condition.sizes)}, not {list(self.coordinates)}"
+        for dim, values in self.coordinates.items():
+            if dim not in file.variables or not _same(file.read(dim), values):
+                return f"its values of {dim} are not those of these cases"
+        others = {name: file.attributes.get(name) for name in self.attributes}
+        wrong = [name for name, value in others.items() if value is not None and value != self.attributes[name]]
+        return f"its {wrong[0]} is {others[wrong[0]]}, not {self.attributes[wrong[0]]}" if wrong else ""
+
+
+def _same(array: np.ndarray, values: np.ndarray) -> bool:
+    texts = {array.dtype.kind, values.dtype.kind} & {*"OUS"}
+    return np.array_equal(array.astype(str), values.astype(str)) if texts else np.array_equal(array, values)
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,10 +69,11 @@ class Condition:
     """The condition of a results file.
 
     kind : "sound"; "unverified": it seems right, but has no digest, since an earlier version or another program wrote
-        it; "damaged"; "foreign": not written by roughcoat; "unreadable"; "missing"
+        it; "damaged"; "foreign": not written by roughcoat; "misplaced": its cases are others than those that are
+        wanted; "unreadable"; "missing"
     reason : what is wrong; it follows the path in a message
     digest, numerics : of the study and of the solver, as the file says; "" where it does not
-    title, text, command : of the study, of its file, and how it was run
+    title, text, command, name : of the study, of its file, how it was run, and the name of the study
     sizes : of the dimensions of the cases, in order; {} of a file without cases
     seen : its `stamp` before it was examined, None where there was no file
     unpacked : bytes of its variables in memory
@@ -52,6 +87,7 @@ class Condition:
     title: str = ""
     text: str = ""
     command: str = ""
+    name: str = ""
     sizes: dict[str, int] = field(default_factory=dict)
     seen: tuple | None = None
     unpacked: int = 0
@@ -68,9 +104,10 @@ class Condition:
             raise Unusable(self.path, self.kind, self.reason)
 
 
-def examine(path, most: float = inf) -> Condition:
+def examine(path, identity: Identity | None = None, most: float = inf) -> Condition:
     """The condition of a results file. All of it is read, and compared with its digest.
 
+    identity : of the cases that it must hold; of others it is "misplaced"
     most : of a file of more bytes in memory the attributes alone are read
     """
     path = Path(path)
@@ -83,12 +120,21 @@ def examine(path, most: float = inf) -> Condition:
                 state = _described(file)
                 if state.kind == "sound" and state.unpacked <= most and contents(file) != file.attributes[ATTRIBUTE]:
                     state = replace(state, kind="damaged", reason=CHANGED)
+                if state.good and identity and (reason := identity.differs(state, file)):
+                    state = replace(state, kind="misplaced", reason=reason)
     except FileNotFoundError:
         state = Condition(path, "missing")
     except Unusable as error:
         state = replace(state, kind=error.kind, reason=error.reason)
     except OSError as error:
+        if short_of_memory(error):
+            raise
         state = Condition(path, "unreadable", f"cannot be read: {error.strerror}")
+    except MemoryError as error:
+        if are_whole(path) and state.unpacked < PACKED * path.stat().st_size:
+            raise
+        # a file that is not ours, or a damaged one, may say that it has terabytes
+        state = Condition(path, "unreadable", f"cannot be read: {memory_message(error)}")
     except BROKEN as error:
         state = replace(state, kind="damaged", reason=f"is damaged: no results are laid out like this ({error})")
     return replace(state, seen=seen)
@@ -115,7 +161,7 @@ def _described(file: File) -> Condition:
     unpacked = sum(variable.unpacked for variable in variables.values())
     if not {*OURS} & {*attributes}:
         return Condition(file.path, "foreign", "is a netCDF file of another program", unpacked=unpacked)
-    about = [str(attributes.get(name, "")) for name in (*OURS, "title", "study", "command")]
+    about = [str(attributes.get(name, "")) for name in (*OURS, "title", "study", "command", "study_name")]
     status = variables.get("status")
     of_cases = dict(zip(status.dims, status.shape, strict=True)) if status else {}
     kind = "sound" if ATTRIBUTE in attributes else "unverified"

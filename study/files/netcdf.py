@@ -1,5 +1,6 @@
 """Results files are opened, read and written here alone, always under the lock of `access`."""
 
+import errno
 import os
 import stat
 from contextlib import suppress
@@ -11,7 +12,7 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from .access import Access, Unusable, access
+from .access import Access, Unusable, access, are_whole, memory_is_short
 from .lock import locked
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -46,7 +47,7 @@ class File:
 
         Raises FileNotFoundError, Unusable, and when it is written OSError.
         """
-        self.path, self._writing = Path(called or path), mode == "w"
+        self.path, self._writing = Path(called or path), Path(path) if mode == "w" else None
         if not self._writing:
             check_regular(path)
         with self._access():
@@ -200,6 +201,8 @@ def _cannot_be_opened(path: Path, error: OSError) -> Exception:
         return Unusable(path, "unreadable", "is open for writing in another program, which has locked it")
     if not head.startswith(HDF5):
         return Unusable(path, "foreign", "is empty" if not size else "is no netCDF file")
+    if error.errno == errno.ENOMEM or (memory_is_short() and are_whole(path)):
+        return MemoryError(f"{path} cannot be opened: {error.strerror or error}")
     place = END.get(head[8] if len(head) > 8 else -1, 64)
     length = int.from_bytes(head[place : place + 8], "little")
     if len(head) < place + 8 or size < length:

@@ -1,9 +1,9 @@
 """Results files as datasets: made, written and opened. They are exports: no case is read back from them."""
 
 import hashlib
+import json
 import os
 from functools import partial
-from math import prod
 from pathlib import Path
 
 import numpy as np
@@ -18,14 +18,13 @@ from ..terminal import on_one_line
 from .access import Unusable
 from .atomic import replacing
 from .examine import ATTRIBUTE, FORMER, Condition, Sums, examine, stamp
-from .netcdf import File, check_regular, read, read_lazily, read_of_others, read_together
+from .netcdf import File, check_regular, read, read_lazily, read_of_others
+from .parts_folder import open_parts
 from .seal import seal
 
 #: Bytes of all variables in memory; a larger file is opened lazily. Files are packed by up to a hundred times, so their
 #: own size says little. Reading and verifying so much takes a second or two.
 LAZY = 200_000_000
-DIVIDED = "parts"
-"""Attribute of a part of large results: how many parts there are along each dimension that is cut, "h 5, n 2"."""
 
 
 def encoding(array: xr.DataArray) -> dict:
@@ -119,7 +118,10 @@ def put(there: Condition, digest: str, temporary: Path, path: Path) -> None:
 
 
 def numbers_digest(path: Path) -> str:
-    """The digest that a results file carries; sha256 of all its bytes if it has none."""
+    """The digest that a results file carries; sha256 of all its bytes if it has none; of a folder that of its parts."""
+    if path.is_dir():
+        parts = [(part.name, numbers_digest(part)) for part in sorted(path.glob("*.nc"))]
+        return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
     check_regular(path)
     try:
         with File(path) as file:
@@ -127,7 +129,8 @@ def numbers_digest(path: Path) -> str:
                 return str(file.attributes[ATTRIBUTE])
     except Unusable:
         pass
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def open_results(path: str | os.PathLike) -> xr.Dataset:
@@ -151,14 +154,16 @@ def open_results(path: str | os.PathLike) -> xr.Dataset:
     """
     path = Path(os.path.expanduser(path))
     if path.is_dir() and any(path.glob("*.nc")):
-        return open_parts(path)
+        return for_users(open_parts(path))
     condition = examine(path, most=LAZY)
     if condition.kind != "foreign":
         return opened(condition)
     try:
-        return _for_users(read_of_others(path) if condition.unpacked > LAZY else read(path))
+        return for_users(read_of_others(path) if condition.unpacked > LAZY else read(path))
     except OSError:
         condition.raise_if_bad()
+        raise
+    except MemoryError:
         raise
     except Exception as error:  # of xarray, which takes attributes of variables for units of time and so on
         reason = f"{condition.reason}, which xarray cannot read: {on_one_line(str(error), 200)}"
@@ -169,7 +174,7 @@ def opened(condition: Condition) -> xr.Dataset:
     """The dataset in a results file that has been examined. A large one has dask arrays in the chunks of the file:
     numbers are read when they are asked for, in any thread, and netCDF verifies each chunk (StudyError, an OSError)."""
     condition.raise_if_bad()
-    return _for_users(read_lazily(condition.path) if condition.unpacked > LAZY else read(condition.path))
+    return for_users(read_lazily(condition.path) if condition.unpacked > LAZY else read(condition.path))
 
 
 def results_of(folder: Path, study: str) -> Path:
@@ -178,21 +183,7 @@ def results_of(folder: Path, study: str) -> Path:
     return parts if parts.is_dir() and not file.exists() else file
 
 
-def open_parts(folder: Path) -> xr.Dataset:
-    """The dataset of all parts in a folder, lazily. Raises Unusable if they are not the parts of one study."""
-    paths = sorted(folder.glob("*.nc"))
-    with File(paths[0]) as file:
-        words = [word.split(" ") for word in str(file.attributes.get(DIVIDED, "")).split(", ") if word]
-    counts = {dim: int(count) for dim, count in words}
-    if len({path.name.rpartition("-")[2] for path in paths}) > 1 or len(paths) != prod(counts.values()):
-        raise Unusable(folder, "foreign", f"has {len(paths)} files, not all {prod(counts.values())} parts of one study")
-    nested = np.array([os.fspath(path) for path in paths], dtype=object).reshape(tuple(counts.values())).tolist()
-    dataset = read_together(nested, folder, list(counts)) if counts else read_lazily(paths[0])
-    dataset.attrs.pop(DIVIDED, None)
-    return _for_users(dataset)
-
-
-def _for_users(dataset: xr.Dataset) -> xr.Dataset:
+def for_users(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset without the digest, which would be wrong in a file that a user makes of it. Its laws are known."""
     for name in (ATTRIBUTE, FORMER):
         dataset.attrs.pop(name, None)

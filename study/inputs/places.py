@@ -4,6 +4,7 @@ Both hold study files and chapters, which are folders of study files. A file `fi
 """
 
 import os
+import re
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -11,6 +12,7 @@ from tempfile import TemporaryDirectory
 
 STUDIES = Path("studies")
 PACKAGE = Path(__file__).resolve().parents[1]
+SECTION = re.compile(r"^[ \t]*\[{1,2}[ \t]*(model|axes|cases|sample)[ \t]*\]", re.MULTILINE)
 BOOK = "study.studies"  # the package of the code in the book, in a clone and from a wheel
 
 
@@ -58,6 +60,26 @@ def root_of(folder: Path) -> Path:
 def known_studies() -> list[str]:
     """Names of the studies in `studies`, and of those of the book."""
     return list(dict.fromkeys(path.stem for root in (STUDIES, packaged()) for path in files_in(root)))
+
+
+def files_here() -> list[Path]:
+    """The study files in the working folder, among the files .toml of other programs. A study file is known by the
+    heading of a section that only these have."""
+    return [path for path in sorted(Path().glob("*.toml")) if path.is_file() and SECTION.search(_text(path))]
+
+
+def _text(path: Path) -> str:
+    from .reading import text_in  # here: it loads numpy
+
+    try:
+        return text_in(path)
+    except (OSError, ValueError):  # whoever names the file hears why
+        return ""
+
+
+def is_study(name: str) -> bool:
+    """Whether a name, or a path, is that of a study file, and not of a figure, a table or a results file."""
+    return Path(name).suffix == ".toml" or name in known_studies()
 
 
 def study_file(path, beside: Path | None = None) -> Path:

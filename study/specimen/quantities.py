@@ -118,6 +118,8 @@ def _quantity(name: str, entry: Any, unit: str) -> Quantity:
         value, spread = float(value), float(spread)
     except OverflowError as error:
         raise ValueError(f"{name} = {shown(entry)}: must be finite") from error
+    except MemoryError:
+        raise
     except Exception as error:  # its class depends on the registry of the quantity
         raise ValueError(f"{name} = {shown(entry)}: {wanted}") from error
     if not 0 <= spread < math.inf:
@@ -185,6 +187,8 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
     registry = _registry()  # outside `try`: an error of pint itself is not one of the unit
     try:
         parsed = registry.Quantity(text)
+    except MemoryError:
+        raise
     except Exception as error:  # pint raises many kinds of errors
         raise ValueError(f'{name} = "{said}": no unit is called like this{_near(text, unit)}; {wanted}') from error
     if unit != "1" and parsed.unitless:
@@ -216,6 +220,8 @@ def _size(word: str, unit: str) -> Decimal | None:
     registry = _registry()
     try:
         magnitude = registry.Quantity(word).to(unit).magnitude
+    except MemoryError:
+        raise
     except Exception:  # pint then reads the whole text, and the message says what is wrong
         return None
     # it is the integer 1 for the SI unit itself

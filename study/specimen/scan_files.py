@@ -278,7 +278,7 @@ def _as_value_error(refused: str, ending: str):
     """
     try:
         yield
-    except (FileNotFoundError, PermissionError, IsADirectoryError):
+    except (FileNotFoundError, PermissionError, IsADirectoryError, MemoryError):
         raise
     except Exception as error:
         tried = dict(re.findall(r"tried (\w+): *\n *(.*)", str(error)))

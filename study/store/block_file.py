@@ -12,9 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ..files.access import has_room
 from ..files.atomic import replacing
 from ..files.netcdf import check_regular
 from ..files.seal import is_whole, seal
+from ..terminal import short_of_memory
 
 
 class Damaged(OSError):
@@ -39,6 +41,8 @@ def write_block(path: Path, block: Block) -> None:
                 for array in (head, block.keys, *block.arrays.values()):
                     np.save(file, array, allow_pickle=False)
             except OSError as error:
+                if error.errno is None and has_room(temporary):
+                    raise MemoryError(f"{path} cannot be written, though the disk has room: {error}") from error
                 if error.errno is None:  # numpy says how much of an array was written, not why no more
                     raise OSError(f"{path} cannot be written ({error}): is the disk full?") from error
                 raise
@@ -46,7 +50,8 @@ def write_block(path: Path, block: Block) -> None:
 
 
 def read_block(path: Path) -> Block:
-    """The block in a file. Raises Damaged, Unusable for a folder or a pipe, or OSError when it cannot be read."""
+    """The block in a file. Raises Damaged, Unusable for a folder or a pipe, OSError when it cannot be read, or
+    MemoryError."""
     check_regular(path)
     again = "the same command computes its cases again"
     if not is_whole(path):
@@ -59,5 +64,8 @@ def read_block(path: Path) -> Block:
         if keys.dtype != np.uint64 or keys.shape[1:] != (2,) or {len(keys), *map(len, arrays)} != {len(keys)}:
             raise ValueError("its columns are not as long as its keys")
         return block
-    except Exception as error:  # the checksum fits, the content does not: not written by us
+    except Exception as error:
+        if short_of_memory(error) or getattr(error, "errno", None):
+            raise
+        # the checksum fits, the content does not: not written by us
         raise Damaged(f"{path}: is no whole block; {again}") from error

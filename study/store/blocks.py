@@ -22,6 +22,7 @@ from ..files.atomic import remove_temporary
 from ..inputs.definition import Definition
 from ..inputs.identity import case_keys, find
 from ..inputs.vocabulary import BY_INPUT, NOT_RUN
+from ..terminal import short_of_memory
 from .block_file import Block, Damaged, read_block, write_block
 
 log = logging.getLogger(__name__)
@@ -32,18 +33,21 @@ class Source:
     """The file of a block.
 
     keys : (N, 2), of its cases; status : (N,) int8
+    facts, columns : as of `Block`, of the columns the names
     inputs : the inputs of the study's derivatives, by their places among those of the block
     """
 
     path: Path
     keys: np.ndarray
     status: np.ndarray
+    facts: dict
+    columns: list[str]
     inputs: list[int]
 
     def read(self, rows: np.ndarray) -> dict[str, np.ndarray]:
         """Columns of the cases at `rows` (n,): name -> (n, ...). Raises Damaged if the file has other cases now."""
         block = read_block(self.path)
-        if not np.array_equal(block.keys, self.keys):
+        if not np.array_equal(block.keys, self.keys) or block.facts != self.facts or {*self.columns} - {*block.arrays}:
             raise Damaged(f"{self.path}: has become a block of other cases; the same command finds out of which")
         rows_of = {name: array[rows] for name, array in block.arrays.items()}
         return {name: a[:, self.inputs] if name.endswith(BY_INPUT) else a for name, a in rows_of.items()}
@@ -137,13 +141,16 @@ def inventory(store: Store, retry: tuple = ()) -> Inventory:
         except FileNotFoundError:  # removed just now
             continue
         except OSError as error:  # its cases are computed again
+            if short_of_memory(error):
+                raise
             log.warning("%s", error)
-            blocks[path] = -1
+            if isinstance(error, (Damaged, Unusable)):  # what cannot be read now is perhaps read later, so it stays
+                blocks[path] = -1
             continue
         blocks[path] = len(block.keys)
         if usable(store.definition, block):
             places = [block.facts["inputs"].index(name) for name in store.definition.inputs]
-            sources.append(Source(path, block.keys, block.arrays["status"], places))
+            sources.append(Source(path, block.keys, block.arrays["status"], block.facts, [*block.arrays], places))
     keys = case_keys(store.definition.grid, bool(store.definition.stresses))
     return Inventory(keys, sources, *_places(keys, sources, retry), blocks)
 
@@ -165,11 +172,12 @@ def add(store: Store, stock: Inventory, index: np.ndarray, arrays: dict[str, np.
     """Write a block of the cases at `index` (n,), in the types that the study keeps, and put it into the inventory."""
     types = {name: array.dtype for name, array in not_run(store.definition, 0).items()}
     arrays = {name: array.astype(types[name], copy=False) for name, array in arrays.items()}
-    path = put(store, Block(facts(store.definition.x, store.definition.inputs), stock.keys[index], arrays))
+    block = Block(facts(store.definition.x, store.definition.inputs), stock.keys[index], arrays)
+    path = put(store, block)
     stock.source[index], stock.row[index] = len(stock.sources), np.arange(len(index))
     stock.status[index] = arrays["status"]
     places = list(range(len(store.definition.inputs)))
-    stock.sources.append(Source(path, stock.keys[index], arrays["status"], places))
+    stock.sources.append(Source(path, block.keys, arrays["status"], block.facts, [*block.arrays], places))
     stock.blocks[path] = len(index)
 
 
@@ -221,9 +229,9 @@ def remove_litter(store: Store) -> None:
 
 def note_export(store: Store, stock: Inventory) -> None:
     """Write the record of the results file that is about to be written."""
-    write_block(
-        store.record(store.definition.digest), Block(facts(store.definition.x, store.definition.inputs), stock.keys, {})
-    )
+    definition = store.definition
+    about = facts(definition.x, definition.inputs) | {"study_digest": definition.digest}
+    write_block(store.record(definition.digest), Block(about, stock.keys, {}))
 
 
 def forget_other_exports(store: Store) -> None:
@@ -236,12 +244,15 @@ def forget_other_exports(store: Store) -> None:
 def lost_cases(store: Store, digest: str) -> tuple[int, int] | None:
     """Of the results of a study of this digest: how many cases the study as it is lacks, and how many cases there are.
 
-    None if no record says which cases these are.
+    None if no record says which cases these are. A record of an earlier version does not say of which study it is.
     """
     try:
-        keys = read_block(store.record(digest)).keys
+        record = read_block(store.record(digest))
     except OSError:
         return None
+    if record.facts.get("study_digest", digest) != digest:  # a copy of another
+        return None
+    keys = record.keys
     definition = store.definition
     wanted = case_keys(definition.grid, bool(definition.stresses))
     rows = find(keys, wanted, np.zeros(definition.grid.size))

@@ -1,21 +1,24 @@
 """The results of a large study: results/NAME/*.nc, a file for each part of its grid.
 
 A part is a window of the grid, cases that follow each other. Its file is a results file of these cases, and it is the
-progress too: its name tells its first case and the study. So every number is written once, and no key of a case is in
+progress too: its name tells its first case and the study, and it counts if that is what is in it, by its digest of the
+study, its coordinates and its first case. So every number is written once, and no key of a case is in
 memory or on disk: memory does not grow with the study. In return an edited study computes all of its cases.
 """
 
 from dataclasses import dataclass, field, replace
-from math import prod
+from itertools import count
+from math import inf, prod
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from ..data.dataset import not_run, parts
-from ..data.si import dataset_of
-from ..files.examine import Condition, examine, stamp, statuses
-from ..files.results_file import DIVIDED, write
+from ..data.si import axes_of, dataset_of
+from ..files.examine import Condition, Identity, examine, stamp, statuses
+from ..files.parts_folder import DIVIDED, FIRST
+from ..files.results_file import write
 from ..files.seal import is_whole
 from ..inputs.definition import LARGE, Definition
 from ..inputs.grid import cut_out, usual_block, windows
@@ -30,6 +33,7 @@ CASES, NUMBERS = 4_000_000, LARGE
 PART = 128_000_000
 #: Usual blocks in a part, at most: of cases that take long a part has fewer.
 BLOCKS = 64
+NO_PART = "is no part of the study as it is; move it away"
 
 
 class Part(NamedTuple):
@@ -68,10 +72,58 @@ def divisions(definition: Definition, parts: list[Part]) -> str:
     return ", ".join(f"{dim} {count}" for dim, count in definition.in_results(starts).items() if count > 1)
 
 
-def present(store: Store, parts: list[Part]) -> list[Part]:
-    """The parts whose files are there."""
-    names = {path.name for path in store.parts.glob("*.nc")}
-    return [part for part in parts if part.path.name in names]
+def identities(store: Store, parts: list[Part]) -> list[Identity]:
+    """What the file of each part must say of itself. One without its first case is of an earlier version."""
+    definition, axes, divided = store.definition, axes_of(store.definition), divisions(store.definition, parts)
+    found = []
+    for part in parts:
+        window = definition.in_results(part.window)
+        coordinates = {dim: values[window[dim]] for dim, values in axes.items()}
+        found.append(Identity(definition.digest, coordinates, {DIVIDED: divided, FIRST: part.first}))
+    return found
+
+
+def conditions(store: Store, parts: list[Part], most: float = 0) -> list[Condition]:
+    """The condition of the file of each part: "sound" if it has the cases of this part, "misplaced" if others.
+
+    most : as of `examine`
+    """
+    return [examine(part.path, identity, most) for part, identity in zip(parts, identities(store, parts), strict=True)]
+
+
+def checked(store: Store, parts: list[Part], before: list[Condition] | None = None) -> list[Condition]:
+    """As `conditions`, with all bytes read: by the seal, or by the digest where another program has removed that.
+
+    before : the conditions of a moment ago, which are those of files that have not changed
+    """
+    states = []
+    for number, identity in enumerate(identities(store, parts)):
+        path = parts[number].path
+        if before and before[number].seen == stamp(path):
+            states.append(before[number])
+        elif path.is_file() and (whole := _is_whole(path)) is not None:
+            damaged = Condition(path, "damaged", "is damaged", seen=stamp(path))
+            states.append(examine(path, identity, 0) if whole else damaged)
+        else:
+            states.append(examine(path, identity))
+    return states
+
+
+def _is_whole(path: Path) -> bool | None:
+    try:
+        return is_whole(path)
+    except OSError:  # `examine` says why
+        return None
+
+
+def sound(parts: list[Part], states: list[Condition]) -> list[Part]:
+    """The parts whose files are there, with their cases."""
+    return [part for part, state in zip(parts, states, strict=True) if state.kind == "sound"]
+
+
+def wrong(states: list[Condition]) -> list[Condition]:
+    """Of the files that are there those that are not the parts that their names say."""
+    return [state for state in states if state.kind not in ("sound", "missing")]
 
 
 def others(store: Store, parts: list[Part]) -> list[Path]:
@@ -79,12 +131,13 @@ def others(store: Store, parts: list[Part]) -> list[Path]:
     return sorted({*store.parts.glob("*.nc")} - {part.path for part in parts})
 
 
-def put_damaged_away(parts: list[Part]) -> list[Part]:
-    """Rename the files of damaged parts to NAME.nc.damaged; returns these parts. All bytes are read."""
-    damaged = [part for part in parts if not is_whole(part.path)]
-    for part in damaged:
-        part.path.replace(f"{part.path}.damaged")
-    return damaged
+def put_away(state: Condition) -> Path:
+    """Rename the file of a part that is damaged, or is another one; returns its new path."""
+    kind = "misplaced" if state.kind == "misplaced" else "damaged"
+    paths = (Path(f"{state.path}.{kind}{f'-{number}' * (number > 1)}") for number in count(1))
+    path = next(path for path in paths if not path.exists())
+    state.path.replace(path)
+    return path
 
 
 def counts(parts: list[Part], missing: int = 0) -> dict[int, int]:
@@ -103,9 +156,13 @@ def having(parts: list[Part], status: tuple[int, ...]) -> list[Part]:
 
 def condition(store: Store) -> Condition:
     """The condition of the first part that is not sound, else of all together. All is read."""
-    states = (examine(part.path) for part in parts_of(store))
-    bad = next((state for state in states if state.kind != "sound"), None)
-    return bad or Condition(store.parts, "sound", digest=store.definition.digest)
+    parts = parts_of(store)
+    bad = [state for state in conditions(store, parts, inf) if state.kind != "sound"]
+    if bad:
+        return bad[0]
+    if besides := others(store, parts):
+        return replace(examine(besides[0], most=0), kind="misplaced", reason=NO_PART)
+    return Condition(store.parts, "sound", digest=store.definition.digest)
 
 
 @dataclass(eq=False)
@@ -151,6 +208,6 @@ class Growing:
         scene = definition.scene and definition.scene.within(part.window)
         here = replace(definition, grid=cut_out(definition.grid, part.window), scene=scene)
         dataset = dataset_of(here, parts(here, arrays, self.command))
-        dataset.attrs[DIVIDED] = self.divided
+        dataset.attrs |= {DIVIDED: self.divided, FIRST: part.first}
         write(dataset, part.path, Condition(part.path, "missing", seen=stamp(part.path)))
         self.written += len(part.cases)

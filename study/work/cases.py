@@ -19,6 +19,7 @@ from solver.shapes.table import TABLES, Rows
 from ..inputs.definition import Definition
 from ..inputs.grid import columns
 from ..inputs.vocabulary import BY_INPUT, CONTROLS, INTEGERS, TRUTHS
+from ..terminal import short_of_memory
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +134,10 @@ def guarded(task: Parcel) -> dict[str, np.ndarray] | Failure:
             raise RuntimeError(f"the worker has version {NUMERICS_VERSION} of the numerics, not {task.numerics}")
         return compute(task)
     except Exception as error:
-        message = f"cases {task.first} to {task.last}: {type(error).__name__}: {error}"
+        what = f"{type(error).__name__}: {error}"
+        if short_of_memory(error):
+            what = f"MemoryError: {error}; a smaller `block` of [numerics] takes less"
+        message = f"cases {task.first} to {task.last}: {what}"
         return Failure(message, traceback.format_exc())
 
 

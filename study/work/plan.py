@@ -12,14 +12,16 @@ import numpy as np
 from solver import NUMERICS_VERSION
 
 from ..data.dataset import status_words
+from ..data.si import axes_of
 from ..files.access import Unusable
 from ..files.atomic import make_folder, target
-from ..files.examine import Condition, examine, statuses
+from ..files.examine import Condition, Identity, examine, statuses
 from ..inputs.definition import LARGE, Definition, StudyError
 from ..inputs.identity import law_versions
 from ..inputs.reading import same_tables
 from ..inputs.vocabulary import NOT_RUN, suggest
 from ..store.blocks import Store, lost_cases
+from ..store.edits import owner_of
 from ..terminal import on_one_line, program, shown
 from .cost import describe, estimate
 from .progress import screen_of
@@ -117,13 +119,15 @@ class Order:
 
 
 def look(store: Store, most: float = inf) -> Condition:
-    """`examine` the results file of a study. One with other dimensions than the study is foreign."""
-    definition, condition = store.definition, examine(store.path, most)
-    sizes = list(definition.in_results(definition.grid.sizes).items())
-    if condition.good and condition.digest == definition.digest and list(condition.sizes.items()) != sizes:
-        dims = f"{list(condition.sizes)}, not {[dim for dim, _ in sizes]}"
-        return replace(condition, kind="foreign", reason=f"another program has changed it: its dimensions are {dims}")
-    return condition
+    """`examine` the results file of a study. One of the same study with other cases is foreign: another program has
+    changed it, or it is a part of the results."""
+    definition, condition = store.definition, examine(store.path, most=most)
+    if not belongs(definition, condition):
+        return condition
+    state = examine(store.path, Identity(definition.digest, axes_of(definition)), 0)
+    if state.kind != "misplaced":
+        return condition
+    return replace(condition, kind="foreign", reason=f"another program has changed it: {state.reason}")
 
 
 def belongs(definition: Definition, condition: Condition) -> bool:
@@ -131,9 +135,10 @@ def belongs(definition: Definition, condition: Condition) -> bool:
     return condition.good and condition.digest == definition.digest
 
 
-def of_what(condition: Condition) -> str:
-    """To what the results in an undamaged file belong that are not those of this study: "another definition"."""
-    return "another definition" if condition.numerics == NUMERICS_VERSION else "another version of the numerics"
+def of_what(condition: Condition, definition: Definition) -> str:
+    """To what the results in an undamaged file belong that are not those of this study, see `owner_of`."""
+    same = condition.numerics == NUMERICS_VERSION
+    return owner_of(condition, definition) if same else "another version of the numerics"
 
 
 def check_replaceable(order: Order, condition: Condition) -> None:
@@ -156,7 +161,7 @@ def check_replaceable(order: Order, condition: Condition) -> None:
         raise StudyError([f"{condition.path}: holds results of {owner}: {choice}{made}"])
     lost = lost_cases(store, condition.digest)
     if lost is None or lost[0]:
-        owner = f"another definition (digest {condition.digest[:8]}, here {definition.digest[:8]})"
+        owner = owner_of(condition, definition)
         what = f"{lost[0]} of its {lost[1]} cases are not in this one" if lost else "which cases cannot be told"
         choice = f"{way} replaces them, --results DIR writes elsewhere"
         raise StudyError([f"{condition.path}: holds results of {owner}, {what}: {choice}{made}"])

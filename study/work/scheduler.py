@@ -40,6 +40,8 @@ def connected(address: str, listens: float, answers: float):
                 raise OSError("TLS needs certificates, which dask's configuration must name: see docs/cluster.md")
         seconds = answers if _is_there(address, listens, answers) else listens
         return Client(address, timeout=seconds, set_as_default=False)
+    except MemoryError:
+        raise
     except Exception as error:  # any: an answer that the client does not understand raises whatever it does
         said = str(error) or type(error).__name__
         raise StudyError([f"--scheduler {address}: no scheduler answers there ({said})"]) from None

@@ -11,6 +11,7 @@ from conftest import ROOT, STUDIES
 
 import study
 from study.__main__ import main
+from study.commands.arguments import proposed
 from study.work import cases
 from study.work import run as running
 
@@ -87,8 +88,35 @@ def test_where_there_are_no_studies_those_of_the_package_are_known_by_name(studi
     assert main(["check", "main_case"]) == 0
     assert capsys.readouterr().out.startswith("main_case: 6 cases (case 6), digest ")
     assert main(["list"]) == 0
-    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == OURS.split(", ")
+    listed = [line.split()[0] for line in capsys.readouterr().out.splitlines()]
+    assert listed == ["good", *OURS.split(", ")], "and those of the working folder"
     assert main(["check", "main_case.toml"]) == 2
+
+
+def test_a_study_file_in_the_working_folder_is_known_to_every_command(studies, monkeypatch, capsys):
+    """Beside files .toml of other programs."""
+    (studies.parent / "pyproject.toml").write_text("[project]\nname = 'model'\n[tool.axes]\n", encoding="utf-8")
+    (studies.parent / "mine.toml").write_text(GOOD, encoding="utf-8")
+    for command in (
+        "check",
+        "run",
+        "status",
+        "verify",
+        "table",
+        "plot --x P --y a",
+        "retry --status diverged",
+        "clean",
+    ):
+        name, *options = command.split()
+        assert main([name, *options, "mine.toml"]) == 0, command
+    assert main(["plot", "mine.toml"]) == 2 and "mine.toml is a study, not a figure" in capsys.readouterr().err
+    assert main(["list"]) == 0 and [line.split()[0] for line in capsys.readouterr().out.splitlines()] == [
+        "mine",
+        "good",
+    ]
+    assert Path("tables/mine.csv").exists() and Path("figures/mine_a.csv").exists()
+    assert "mine.toml" in proposed("table", "mi") and proposed("status", "pypr") == []
+    assert main(["table", "mien.toml"]) == 2 and 'did you mean "mine.toml"' in capsys.readouterr().err
 
 
 def test_a_file_of_the_same_name_in_studies_is_meant(studies, capsys):

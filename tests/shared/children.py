@@ -94,7 +94,10 @@ def _command(folder: Path, first: int, arguments, ignoring, stuck: bool, prepare
     import hold  # noqa: F401
 
     if stuck:
+        from study.commands import ending
         from study.work.progress import Progress
+
+        ending.BUSY = PATIENCE
 
         def close(_):
             note(folder / "ending", "")

@@ -1,6 +1,7 @@
 """What an edit of a study file computes anew, of a finished study and of one that stopped half-way."""
 
 import json
+import re
 
 import pytest
 import xarray as xr
@@ -8,6 +9,7 @@ from line_study import store_block
 from same import assert_same
 
 import study
+from study.store.edits import differences
 
 
 @pytest.fixture
@@ -86,3 +88,41 @@ def test_an_edit_of_the_title_is_in_the_results_and_computes_nothing(load):
         assert edited.run().computed == 0
         assert edited.open().title == (title or "two")
     assert not load().run().counts  # nothing to do
+
+
+def test_results_of_another_definition_name_the_input_that_differs(load):
+    load(numerics="rtol = 1e-4").run()
+    edited = load(numerics="rtol = 1e-6", title="another")
+    said = "; numerics.rtol: 0.0001 there, 1e-06 here)"
+    for act in (edited.run, edited.open, lambda: edited.verify().raise_if_bad()):
+        with pytest.raises(study.StudyError, match=re.escape(said)):
+            act()
+
+
+MODEL = "title = 'a'\n[model]\nRa = 0.004\nh = '5 um'\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (MODEL.replace("'a'", "'b'") + "# comment", []),
+        (MODEL.replace("0.004", "0.002"), ["Ra: 0.004 there, 0.002 here"]),
+        (MODEL.replace("Ra = 0.004\n", ""), ["Ra: 0.004 there, none here"]),
+        ("[model]\nh = '5 um'\n[axes]\nRa = [0.004, 0.1]\n", ["Ra: 0.004 there, [0.004, 0.1] here"]),
+        (MODEL + "[axes]\nn = {start = 1, stop = 2}\n", ["n.start: none there, 1 here", "n.stop: none there, 2 here"]),
+        (
+            MODEL + "[[cases]]\nP = 1\n[[cases]]\nP = 2\n",
+            ["cases[0].P: none there, 1 here", "cases[1].P: none there, 2 here"],
+        ),
+        (MODEL + "[numerics]\nblock = 3\n", []),
+        (MODEL + "[output]\nx = 5\n", ["output.x: none there, 5 here"]),
+        (
+            "[model]\nRa = 1\nh = 2\nn = 3\nm = 4\n",
+            ["Ra: 0.004 there, 1 here", 'h: "5 um" there, 2 here', "n: none there, 3 here", "and 1 more"],
+        ),
+        ("no TOML", []),
+    ],
+    ids=["same", "changed", "gone", "an axis", "a range", "cases", "block", "output", "many", "no study"],
+)
+def test_differences_of_study_files(text, said):
+    assert differences(MODEL, text) == said

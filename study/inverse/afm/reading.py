@@ -109,7 +109,7 @@ def read(path: Path, reading: Reading) -> dict[str, tuple[np.ndarray, str]]:
         warnings.simplefilter("ignore")  # of columns that are not complete: they are said where they are needed
         try:
             return _columns(_loaded(afmformats, path, reading), reading, where)
-        except (StudyError, *_INTERRUPTS):
+        except (StudyError, MemoryError, *_INTERRUPTS):
             raise
         except BaseException as error:  # those of afmformats are no Exceptions
             raise StudyError([f"{where}: {_said(error)}"]) from None

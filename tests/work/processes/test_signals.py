@@ -3,6 +3,7 @@
 At whatever moment one comes, there is no traceback, and exit code 0 means that the results are complete.
 """
 
+import hashlib
 import logging
 import os
 import subprocess
@@ -135,6 +136,40 @@ def test_an_interrupt_at_an_odd_moment(opened, tmp_path, moment, said):
     assert "Traceback" not in text and "HDF" not in text and "Exception" not in text
     assert text.endswith(said)
     assert opened.run().complete
+
+
+def in_a_long_call(number: int) -> None:
+    """Of C, which has no Python between its instructions; it takes a quarter of an hour."""
+    _before_a_block_is_stored(lambda: _long(number))
+
+
+def _long(number: int) -> None:
+    os.kill(os.getpid(), number)
+    # time.sleep would hear of the signal; hashes of a gigabyte do not, and other threads go on meanwhile
+    hashlib.pbkdf2_hmac("sha256", b"word", b"salt", 2_000_000_000)
+
+
+def in_a_loop_that_loses_it(number: int) -> None:
+    """As libraries that take KeyboardInterrupt for an error of one of many items."""
+
+    def loop():
+        os.kill(os.getpid(), number)
+        while True:
+            with suppress(BaseException):
+                sum(range(1000))
+
+    _before_a_block_is_stored(loop)
+
+
+@pytest.mark.parametrize("number", [SIGINT, SIGTERM])
+@pytest.mark.parametrize("moment", [in_a_long_call, in_a_loop_that_loses_it], ids=["a call", "a loop"])
+def test_the_first_ends_a_command_that_computes_on(opened, tmp_path, moment, number):
+    """Each would go on for a quarter of an hour, or for ever."""
+    process = command(tmp_path, 60, *RUN, prepared=partial(moment, number))
+    process.join(PATIENCE)
+    assert process.exitcode == 130
+    assert (tmp_path / "errors").read_text().endswith(INTERRUPTED)
+    assert opened.run().complete and leftovers(tmp_path / "results") == []
 
 
 def when_all_is_done(number: int) -> None:

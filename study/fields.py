@@ -11,6 +11,7 @@ from solver import Status, solve
 from solver.fields.contact import of_contacts as fields_of
 from solver.fields.invariants import invariants
 from solver.fields.sliding import in_plane
+from solver.fields.waves import farthest
 from solver.yields.contact import of_contacts as extremes_of
 from solver.yields.extremes import EXTREMES
 
@@ -54,7 +55,8 @@ def stresses(
     Parameters
     ----------
     contact : results of `study.solve` or of a results file, in SI units or dimensionless; a selected part too
-    r, z : radii and depths >= 0 in units of a, one-dimensional; with mu > 0 r may be negative: behind the contact
+    r, z : radii and depths >= 0 in units of a, one-dimensional; with mu > 0 r may be negative: behind the contact. The
+        largest radius is 27,000 h, or 5.6 a if that is more; without a layer 1e9 a
     mu : >= 0; with mu > 0 the punch slides in full, and the plane y = 0 is given: r is x, trz is sxz, ur is ux
     sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where the contact has units
 
@@ -83,6 +85,7 @@ def stresses(
     refuse_without_stresses(again, "stresses", largest=False)
     unit, size = units_of(again)
     solution = _solved(again, contact)
+    _refuse_far_away(r, again, solution)
     fields = fields_of(again.problem, solution, np.abs(r), z, mu)
     residual, bare = residual_stress(sigma_res, again) / unit, again.problem.base == "half_space"
     within = (z <= (again.problem.h / solution.a)[:, None]) & ~bare[:, None]
@@ -112,6 +115,15 @@ def stresses(
             about = {"long_name": "radius" if name == "r" else "depth", "units": "m"}
             coords[f"{name}_length"] = _labelled(again, lengths * axis, (name,), about)
     return carried(contact, variables).assign_coords(coords)
+
+
+def _refuse_far_away(r: np.ndarray, again: Again, solution: Any) -> None:
+    """Raise StudyError for radii whose fields would take minutes."""
+    bare = again.problem.base == "half_space"
+    largest = np.nanmin(farthest(np.where(bare, np.inf, again.problem.h / solution.a)), initial=np.inf)
+    if (far := np.abs(r).max()) > largest:
+        why = "" if bare.all() else ": farther away the field of the layer takes minutes"
+        raise StudyError([f"r = {far:g}: must be at most {largest:.3g} in units of a{why}"])
 
 
 _WHERE = {"": "", "_above": ", in the layer at the interface", "_below": ", in the body at the interface"}

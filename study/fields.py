@@ -1,5 +1,6 @@
 """Stresses of contacts: at points of layer and body, and where they are largest."""
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -11,21 +12,23 @@ from solver import Status, solve
 from solver.fields.contact import of_contacts as fields_of
 from solver.fields.invariants import invariants
 from solver.fields.sliding import in_plane
+from solver.fields.waves import farthest
 from solver.yields.contact import of_contacts as extremes_of
 from solver.yields.extremes import EXTREMES
 
 from .again import Again, of_all_cases, refuse_without_stresses
 from .inputs.definition import StudyError
-from .inputs.vocabulary import VOCABULARY, finite
+from .inputs.vocabulary import VOCABULARY
+from .solving import solve as solve_inputs
 from .specimen.foreign import plain
-from .specimen.quantities import has_unit, quantity
+from .specimen.quantities import quantity
 from .terminal import shown
 
 SIGNS = "tension is positive; z points down from the surface"
 #: Radii and depths in a that are taken where none are given: r = 1, where p ends, is among them.
 _RADII, _DEPTHS = np.linspace(0, 2, 41), np.linspace(0, 2, 41)
-#: Beyond these a coefficient of friction, and a residual stress over E2*, is a slip: squares of stresses overflow.
-_MOST_FRICTION, _MOST_RESIDUAL = 1e6, 1e15
+#: Larger coefficients of friction, and residual stresses over E2*, are slips of the keyboard.
+_MOST_FRICTION, _MOST_RESIDUAL = 1e3, 1e6
 _LONG_NAMES = {
     "sr": "radial stress",
     "st": "circumferential stress",
@@ -42,11 +45,12 @@ _LONG_NAMES = {
 
 
 def stresses(
-    contact: xr.Dataset,
+    contact: xr.Dataset | None = None,
     r: ArrayLike | None = None,
     z: ArrayLike | None = None,
     mu: float = 0.0,
     sigma_res: float | str = 0.0,
+    **parameters: Any,
 ) -> xr.Dataset:
     """Stresses and displacements in layer and body of contacts that are solved: docs/stresses.md.
 
@@ -56,9 +60,11 @@ def stresses(
     Parameters
     ----------
     contact : results of `study.solve` or of a results file, in SI units or dimensionless; a selected part too
-    r, z : radii and depths >= 0 in units of a, one-dimensional; with mu > 0 r may be negative: behind the contact
+    r, z : radii and depths >= 0 in units of a, one-dimensional; with mu > 0 r may be negative: behind the contact. The
+        largest radius is 27,000 h, or 5.6 a if that is more; without a layer 1e9 a
     mu : >= 0; with mu > 0 the punch slides in full, and the plane y = 0 is given: r is x, trz is sxz, ur is ux
     sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where the contact has units
+    parameters : those of `study.solve`, in place of the contact
 
     Returns
     -------
@@ -79,12 +85,14 @@ def stresses(
     -1.0
     """
     mu = friction(mu)
+    contact = contact_of("stresses", contact, parameters)
     r = _axis("r", _mirrored(_RADII) if r is None and mu > 0 else _RADII if r is None else r, mu > 0)
     z = _axis("z", _DEPTHS if z is None else z, False)
     again = Again.of(contact, "stresses")
     refuse_without_stresses(again, "stresses", largest=False)
     unit, size = units_of(again)
     solution = _solved(again, contact)
+    _refuse_far_away(r, again, solution)
     fields = fields_of(again.problem, solution, np.abs(r), z, mu)
     residual, bare = residual_stress(sigma_res, again) / unit, again.problem.base == "half_space"
     within = (z <= (again.problem.h / solution.a)[:, None]) & ~bare[:, None]
@@ -116,10 +124,21 @@ def stresses(
     return carried(contact, variables).assign_coords(coords)
 
 
+def _refuse_far_away(r: np.ndarray, again: Again, solution: Any) -> None:
+    """Raise StudyError for radii whose fields would take minutes."""
+    bare = again.problem.base == "half_space"
+    largest = np.nanmin(farthest(np.where(bare, np.inf, again.problem.h / solution.a)), initial=np.inf)
+    if (far := np.abs(r).max()) > largest:
+        why = "" if bare.all() else ": farther away the field of the layer takes minutes"
+        raise StudyError([f"r = {far:g}: must be at most {largest:.3g} in units of a{why}"])
+
+
 _WHERE = {"": "", "_above": ", in the layer at the interface", "_below": ", in the body at the interface"}
 
 
-def extremes(contact: xr.Dataset, mu: float = 0.0, sigma_res: float | str = 0.0) -> xr.Dataset:
+def extremes(
+    contact: xr.Dataset | None = None, mu: float = 0.0, sigma_res: float | str = 0.0, **parameters: Any
+) -> xr.Dataset:
     """Where and how large the stresses of contacts are at most: docs/stresses.md.
 
     z points down from the surface; tension is positive; 1 is the layer, 2 the body under it. Without a layer the body
@@ -130,6 +149,7 @@ def extremes(contact: xr.Dataset, mu: float = 0.0, sigma_res: float | str = 0.0)
     contact : results of `study.solve` or of a results file, in SI units or dimensionless; a selected part too
     mu : >= 0; with mu > 0 the punch slides in full, and the extremes are those in the plane y = 0
     sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where the contact has units
+    parameters : those of `study.solve`, in place of the contact
 
     Returns
     -------
@@ -150,7 +170,9 @@ def extremes(contact: xr.Dataset, mu: float = 0.0, sigma_res: float | str = 0.0)
     >>> round(study.extremes(contact).mises2.item() / contact.p0.item(), 5)
     0.62004
     """
-    mu, again = friction(mu), Again.of(contact, "extremes")
+    mu = friction(mu)
+    contact = contact_of("extremes", contact, parameters)
+    again = Again.of(contact, "extremes")
     refuse_without_stresses(again, "extremes")
     unit, _ = units_of(again)
     residual = residual_stress(sigma_res, again) / unit
@@ -180,9 +202,32 @@ def units_of(again: Again) -> tuple[np.ndarray, np.ndarray]:
     return tuple(of_all_cases(value, again.dims, again.shape).astype(float) for value in values)
 
 
+def contact_of(who: str, contact: Any, parameters: dict[str, Any]) -> xr.Dataset:
+    """The contact, or that of the parameters of `study.solve`. Raises StudyError for both and for neither.
+
+    who : the name of the public function, for messages
+    """
+    refuse_both(who, contact, parameters)
+    if contact is not None:
+        return contact
+    try:
+        return solve_inputs(**{"profiles": False} | parameters)
+    except StudyError as error:
+        raise StudyError(re.sub("^solve: ", f"{who}: ", message) for message in error.messages) from None
+
+
+def refuse_both(who: str, contact: Any, parameters: dict[str, Any]) -> None:
+    """Raise StudyError where there is a contact beside inputs, or neither."""
+    if contact is not None and parameters:
+        raise StudyError([f"{who}: {next(iter(parameters))}: give a contact or its inputs, not both"])
+    if contact is None and not parameters:
+        raise StudyError([f"{who}: give a contact, which is a dataset of study.solve, or its inputs"])
+
+
 def friction(mu: Any) -> float:
-    mu = plain(mu)
-    if not finite(mu) or mu < 0:
+    """The coefficient of friction as a number. Raises StudyError."""
+    mu = plain(mu.item() if np.ndim(mu) == 0 and hasattr(mu, "item") else mu)
+    if type(mu) not in (int, float) or not (np.isfinite(mu) and mu >= 0):
         raise StudyError([f"mu = {shown(mu)}: must be a finite number, at least 0"])
     if mu > _MOST_FRICTION:
         raise StudyError([f"mu = {shown(mu)}: must be at most {_MOST_FRICTION:g}"])
@@ -209,24 +254,25 @@ def _axis(name: str, values: Any, signed: bool) -> np.ndarray:
 
 
 def residual_stress(sigma_res: Any, again: Again) -> float:
-    """In Pa, or without a unit where the contact has none."""
-    sigma_res = plain(sigma_res)
+    """In Pa, or without a unit where the contact has none. Raises StudyError."""
+    single = not again.scene and np.ndim(sigma_res) == 0 and hasattr(sigma_res, "item")
+    sigma_res = plain(sigma_res.item() if single else sigma_res)
+    number = type(sigma_res) in (int, float)
     try:
-        if again.scene and not (np.isscalar(sigma_res) and not isinstance(sigma_res, str) and sigma_res == 0):
+        if again.scene and not (number and sigma_res == 0):
             value = quantity("sigma_res", sigma_res, "Pa").value
-        elif isinstance(sigma_res, str) or has_unit(sigma_res):
+        elif not number:
             raise ValueError(f"sigma_res = {shown(sigma_res)}: the contact has no units: must be a number, over E2*")
-        elif sigma_res is None or isinstance(sigma_res, bool):
-            raise ValueError(f"sigma_res = {shown(sigma_res)}: must be a finite number")
         else:
             value = float(sigma_res)
-    except (TypeError, ValueError) as error:
+    except (OverflowError, ValueError) as error:
         raise StudyError([str(error)]) from None
     if not np.isfinite(value):
         raise StudyError([f"sigma_res = {shown(sigma_res)}: must be finite"])
-    if np.any(np.abs(value) > _MOST_RESIDUAL * units_of(again)[0]):
-        bound = f"must be at most {_MOST_RESIDUAL:g} E2*, either way"
-        raise StudyError([f"sigma_res = {shown(sigma_res)}: {bound}"])
+    unit, _ = units_of(again)
+    if np.any(np.abs(value) > _MOST_RESIDUAL * unit):
+        most = f"{_MOST_RESIDUAL:g} times E2*, or E1* on a rigid base"
+        raise StudyError([f"sigma_res = {shown(sigma_res)}: must be at most {most}"])
     return value
 
 

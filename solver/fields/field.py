@@ -27,6 +27,8 @@ def integrals(load, layers, h, pressure, r, z, body, roughly=False):
     if same:  # no layer is felt; a thick one takes the fewest waves
         h, body = np.full(len(h), 2 * max(1.0, z.max())), np.zeros(len(body), dtype=bool)
     near = ~body & (z.min(axis=0) < _NEAR * (1 + r.max()) / 2)
+    if roughly:  # at the interface the difference decays no faster, and a rough one of two large fields is not small
+        near &= (z < h[:, None]).any(axis=0)
     kinds = np.where(body, Kind.BODY, np.where(near, Kind.DIFFERENCE, Kind.LAYER))
     whole = np.zeros((len(load.orders), len(h), z.shape[1], len(r)))
     waves, closed = np.flatnonzero(~(near & same)), np.flatnonzero(near)

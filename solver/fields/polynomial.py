@@ -12,6 +12,7 @@ from ..threads import one_blas_thread
 from . import normal, sliding
 from .field import integrals
 from .pressure import Pressure
+from .waves import farthest
 
 #: Nodes that are tried: a polynomial of fewer degrees is told by the first that has all of it.
 _NODES = (6, 16, 32, 64)
@@ -77,6 +78,8 @@ def of_pressure(
     r, z = (_checked(name, value) for name, value in (("r", r), ("z", z)))
     if not (np.ndim(mu) == 0 and np.isfinite(mu) and mu >= 0):
         raise ValueError(f"mu = {mu}: must be finite and at least 0")
+    if r.max(initial=0.0) > farthest(h):
+        raise ValueError(f"r = {r.max():g}: must be at most {farthest(h):.3g}: farther away the field takes minutes")
     if side not in (None, "layer", "base"):
         raise ValueError(f'side = "{side}": must be None, "layer" or "base"')
     shape = np.broadcast_shapes(r.shape, z.shape)

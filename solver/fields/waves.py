@@ -24,6 +24,10 @@ _END = 36.0
 #: But no later than at SHORTEST, whose waves take some seconds: in thinner films, h below THINNEST, a stress next to
 #: the edge is wrong by up to MISSED of the largest, and farther away by far less (tests/fields/test_of_pressure.py).
 SHORTEST, MISSED = 1.5e5, 1e-3
+#: So many waves take some seconds; the farther away a radius is the more it takes.
+_MOST = 1e6
+#: No radius is looked at beyond this, in a: squares of larger ones overflow.
+_FARTHEST = 1e9
 #: Where some percent do, these are the ends.
 _ROUGH_END, _ROUGH_SHORTEST = 8.0, 2e3
 THINNEST = _END / SHORTEST
@@ -66,6 +70,12 @@ class Row(NamedTuple):
     def reach(self, h):
         """How far from the source the waves are, (B,)."""
         return 2 * h - self.z if self.kind == Kind.DIFFERENCE else self.z
+
+
+def farthest(h):
+    """The largest radius in a at which fields are computed, of layers of the thickness h in a; h = inf: of a
+    half-space, which is a closed form there. Shape of h."""
+    return np.minimum(_MOST * np.maximum(h / _END, 1 / SHORTEST) - 1, _FARTHEST)
 
 
 def quadrature(first, last, reach):

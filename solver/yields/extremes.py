@@ -38,13 +38,15 @@ _RIVAL = 0.9
 #: The coarse grid (tests/yields/test_largest_stresses.py finds all references from it): radii in a; beyond the edge in
 #: lengths over which a layer bends, h or n^(1/3) h; depths in a, in octaves of h, and below the interface in a.
 _RADII = np.array([0, 0.15, 0.3, 0.45, 0.6, 0.7, 0.8, 0.9, 0.95, 1, 1.05, 1.15, 1.3, 1.6])
-_BEYOND = np.array([0.25, 0.5, 1, 1.5, 2, 3, 4.5, 6.5])
+_BEYOND, _OF_LENGTHS = np.array([0.25, 0.5, 1, 1.5, 2, 3, 4.5, 6.5]), np.array([0.25, 0.4, 0.5, 0.75, 1])
 _DEPTHS = np.array([0.06, 0.12, 0.2, 0.3, 0.4, 0.48, 0.6, 0.8, 1.1])
 _OF_OCTAVE = np.array([0.25, 0.4, 0.55, 0.7, 0.85, 1, 1.2, 1.4, 1.6])
 _BELOW = np.array([0, 0.05, 0.15, 0.3, 0.48, 0.65, 0.9, 1.3])
 #: And where the pressure is largest in a ring: how far inside the edge and how deep below it, in its own distance.
 _OF_RING, _BELOW_RING = np.array([-1, -0.4, 0, 0.3, 0.6, 1, 1.5, 2.2]), np.array([0.25, 0.5, 0.8, 1.2, 1.8, 2.7, 4, 6])
-#: No place is farther away than this, in a + h.
+#: Lengths of a thick or stiff layer are no farther apart than _APART, and one where they differ by less than _ALIKE.
+_APART, _ALIKE = 25.0, 2.0
+#: No place is farther away than this, in a plus the length over which a layer spreads the pressure.
 _FARTHEST = 10.0
 
 
@@ -120,10 +122,12 @@ def regions(loaded):
     """Name -> :class:`Grid` of each region that the cases have."""
     h, B = loaded.h, len(loaded.h)
     octave = 2.0 ** np.floor(np.log2(h[0]))
-    far = _FARTHEST * (1 + (0.0 if loaded.bare else h.max()))
-    bending = 0.5 if loaded.bare else octave * max(1.0, np.cbrt(loaded.layers.n.max()))
+    stiff = 1.0 if loaded.bare else max(1.0, np.cbrt(loaded.layers.n.max()))
+    far = _FARTHEST * (1 + (0.0 if loaded.bare else stiff * h.max()))
+    bending = 0.5 if loaded.bare else octave * stiff
     beyond = np.minimum(1 + bending * _BEYOND, far)
-    thick = [] if loaded.bare else octave * np.array([0.25, 0.5, 0.75, 1]) * (octave > 1)
+    lengths = _lengths(octave, bending)
+    thick = np.outer(lengths, _OF_LENGTHS).ravel() * (not loaded.bare and lengths[-1] > 1)
     ring, deep = (np.unique(loaded.ring * values) for values in (_OF_RING, _BELOW_RING))
     radii = np.unique(np.concatenate([_RADII, beyond[:5], thick, 1 - ring]))
     wide = np.unique(np.concatenate([_RADII, beyond, thick, 1 - ring]))
@@ -142,8 +146,27 @@ def regions(loaded):
     made["layer"] = Grid(radii, np.tile(depths, (B, 1)), (0.0, far), np.stack([0 * h, h], axis=1), False)
     made["above"] = Grid(wide, h[:, None], (0.0, far), np.stack([h, h], axis=1), False)
     if np.all(loaded.layers.n > 0):
-        made["body"] = Grid(radii, h[:, None] + _BELOW, (0.0, far), np.stack([h, 0 * h + far], axis=1), True)
+        bounds = np.stack([h, h + far], axis=1)
+        across, below = _of_body(radii, lengths)
+        made["body"] = Grid(across, h[:, None] + below, (0.0, far), bounds, True)
     return made
+
+
+def _of_body(radii, lengths):
+    """Radii and depths below the interface of the coarse grid of a body, whose stresses change over these lengths."""
+    if lengths[-1] <= 1:
+        return radii, _BELOW
+    axes = radii[radii <= _RADII[-1]], _BELOW
+    return (np.unique(np.concatenate([axis, (lengths[:, None] * axis).ravel()])) for axis in axes)
+
+
+def _lengths(octave, bending):
+    """Lengths over which stresses change far from the contact: from a or h, whichever is longer, to that over which a
+    stiff layer spreads the pressure, each at most _APART times the one before it."""
+    least = max(1.0, octave)
+    if bending <= _ALIKE * least:
+        return np.array([least])
+    return np.geomspace(least, bending, 2 + int(np.log(bending / least) / np.log(_APART)))
 
 
 def _starts(i, value, kinds, coarse, grids):

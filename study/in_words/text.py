@@ -15,6 +15,7 @@ from .notes.punch import OF_PULL_OFF
 from .numbers import given_text, peak_text, result_text, ring_text
 from .pressures import largest
 from .sentences import sentences
+from .stresses import of_stresses
 
 MOST_CASES = 20  # of a grid that a summary writes out
 SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
@@ -59,7 +60,8 @@ def summary(contact: xr.Dataset) -> Summary:
     ----------
     contact : of `study.solve`, in physical units or dimensionless; of a grid the first 20 cases are written out. Of
         `study.fit` the text has what was fitted to each curve, and what a curve could not tell; of `study.design` what
-        was found for each contact, and of a single one each solution
+        was found for each contact, and of a single one each solution; of `study.first_yield`, `h_protect`, `extremes`
+        and `stresses` what they found
 
     Returns
     -------
@@ -76,7 +78,10 @@ def summary(contact: xr.Dataset) -> Summary:
     'Given: a rigid punch'
     """
     if not is_contact(contact):
-        raise ValueError(f"summary takes what study.solve, fit or design gives, not {type(contact).__name__}")
+        kind = type(contact).__name__
+        raise ValueError(f"summary takes what study.solve, fit, design or a function of stresses gives, not {kind}")
+    if text := of_stresses(contact):
+        return Summary(text)
     if "fit_status" in contact:
         return Summary(of_fit(contact))
     if "design_status" in contact and "solution" in contact.dims:

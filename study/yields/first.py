@@ -1,6 +1,5 @@
 """The load at which something first yields."""
 
-import warnings
 from typing import Any
 
 import numpy as np
@@ -10,20 +9,18 @@ from solver.yields.crossing import NUMBERS, Crossing
 from solver.yields.first import first_yield as crossing_of
 from solver.yields.way import ROUND, STEEPEST
 
-from ..again import Again, of_all_cases, refuse_without_stresses, strengths
-from ..fields import carried, friction, residual_stress, units_of
-from ..inputs.definition import StudyError
-from ..inputs.request import Request
+from ..again import Again, of_all_cases, strengths
+from ..fields import carried, friction, refuse_both, residual_stress, units_of
 from ..inputs.vocabulary import CONTROLS
 from ..rules.rule import validity_attributes
-from ..solving import solve
-from ..specimen.materials import Material
+from .asked import contacts, control_of, of_dataset, own_materials, refuse, without_control
 from .beyond import said_of, validity_at
 
 BODIES = {"layer": "_Y1", "body": "_Y2", "asperities": "_Ya", "punch": "_Y_punch"}
 """What may yield, in the order of the codes of `first_yield` -> the end of the names of its numbers."""
 FOUND = ("first_crossing", "none_up_to_0.2_R", "strength_not_known")
 """Meanings of the values of found_Y1 and so on; of other shapes than balls the second is another."""
+_NO_ASPERITIES = "no_asperities"  # the value 3 of found_Ya
 _FOUND_OF_SHAPES = (FOUND[0], f"none_up_to_a_slope_of_{STEEPEST}", FOUND[2])
 _LONG_NAMES = {"P": "load", "a": "contact radius", "D": "indentation depth", "p0": "nominal pressure in the centre"}
 _POWERS = {"P": (1, 2), "a": (0, 1), "D": (0, 1), "p0": (1, 0)}
@@ -32,6 +29,7 @@ _UNITS = {(1, 2): ("N", "E2* R^2"), (0, 1): ("m", "R"), (1, 0): ("Pa", "E2*")}
 
 
 def first_yield(
+    contact: xr.Dataset | None = None,
     *,
     Y1: Any = None,
     Y2: Any = None,
@@ -51,6 +49,7 @@ def first_yield(
 
     Parameters
     ----------
+    contact : contacts of `study.solve` or of a results file, in place of the parameters. Their loads do not count
     Y1, Y2, Y_punch : yield strengths of layer, body and punch, > 0
     hardness, yield_strength : of the softer of asperity and what it presses on, > 0; one of both is enough
     mu : >= 0; with mu > 0 the punch slides in full
@@ -63,10 +62,10 @@ def first_yield(
         first yields, and r_Y1, z_Y1, the place in units of a (r is x, behind the contact < 0, if mu > 0). The same of
         the body with Y2, of the asperities with Ya, of an elastic punch, a half-space under the same pressure, with
         Y_punch. found_Y1 and so on: 0, it is the first crossing; 1, there is none up to a = 0.2 R, or up to that slope;
-        2, the strength is not known. Where it is not 0 the numbers are NaN, and P_Y1 has a `message`. validity_Y1 and
-        so on: `validity` of the contact at that load, 0 where there is none; P_Y1 has a `comment` that says it in
-        words. P_Y1_spread and so on, of a strength with a spread: what that alone makes. `first_yield`: what yields
-        first, of those that are known
+        2, the strength is not known; 3, of found_Ya alone, the punch is smooth. Where it is not 0 the numbers are NaN,
+        and P_Y1 has a `message`. validity_Y1 and so on: `validity` of the contact at that load, 0 where there is none;
+        P_Y1 has a `comment` that says it in words. P_Y1_spread and so on, of a strength with a spread: what that alone
+        makes. `first_yield`: what yields first, of those that are known
 
     Raises
     ------
@@ -82,9 +81,14 @@ def first_yield(
     mu = friction(mu)
     given = {"Y1": Y1, "Y2": Y2, "Y_punch": Y_punch, "hardness": hardness, "yield_strength": yield_strength}
     given = {name: value for name, value in given.items() if value is not None}
-    refuse("first_yield", parameters, (*CONTROLS, "cases"), "it is what is looked for")
-    name = "P" if "flat_radius" in parameters else "a"  # any value that a flat end allows
-    contact, again = contacts("first_yield", parameters | given, name, 1e-3)
+    if contact is not None:
+        refuse_both("first_yield", contact, parameters)
+        contact, again = of_dataset("first_yield", contact, given, CONTROLS)
+        name = control_of(contact)
+    else:
+        refuse("first_yield", parameters, (*CONTROLS, "cases"), "it is what is looked for")
+        name = "P" if "flat_radius" in parameters else "a"  # any value that a flat end allows
+        contact, again = contacts("first_yield", parameters | given, name, 1e-3)
     stress, _ = units = units_of(again)
     own, problem = own_materials(parameters), again.problem
     known, spreads = (strengths(contact, again, own, spread) for spread in (False, True))
@@ -97,8 +101,8 @@ def first_yield(
             crossing = crossing_of(problem, body, strength, mu, residual, nu_punch, bool(np.any(spreads[body] > 0)))
         else:
             crossing = Crossing.none(len(problem))
-        lacking = np.isnan(known[body]) | (body == "asperities") & ~np.isfinite(problem.Nbar)
-        found = np.where(crossing.crossed, 0, np.where(lacking, 2, 1)).astype(np.int8)
+        found = np.where(crossing.crossed, 0, np.where(np.isnan(known[body]), 2, 1))
+        found = np.where((body == "asperities") & ~_there(problem, "asperities"), 3, found).astype(np.int8)
         loads.append(np.where(crossing.crossed, crossing.numbers["P"], np.inf))
         variables |= _variables(again, units, body, end, crossing, found)
         if np.any(spreads[body] > 0):
@@ -108,34 +112,6 @@ def first_yield(
     about = _flags("what yields first", ("not_known", *BODIES))
     variables["first_yield"] = labelled(again, first, about)
     return without_control(carried(contact, variables), name)
-
-
-def refuse(who: str, parameters: dict, names: tuple, reason: str) -> None:
-    wrong = [f"{who}: leave out {name}: {reason}" for name in names if parameters.get(name) is not None]
-    if wrong:
-        raise StudyError(wrong)
-
-
-def contacts(who: str, parameters: dict, name: str, value: float) -> tuple[xr.Dataset, Again]:
-    """Contacts with these inputs, of which one is any value: no warning of these contacts is shown."""
-    physical = Request.in_python(parameters, [], False, {}).physical
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        try:
-            any_ = ("1 nN" if name == "P" else "1 um") if physical else value
-            contact = solve(**parameters, **{name: any_}, x=2, profiles=False)
-        except StudyError as error:
-            raise StudyError(message.replace("solve: ", f"{who}: ", 1) for message in error.messages) from None
-    again = Again.of(contact, who)
-    refuse_without_stresses(again, who)
-    return contact, again
-
-
-def own_materials(parameters: dict) -> dict[str, Material]:
-    """The materials that are given as such, by name."""
-    given = [parameters.get(body) for body in ("punch", "layer", "body")]
-    several = [one for value in given for one in (value if isinstance(value, (list, tuple)) else [value])]
-    return {one.name: one for one in several if isinstance(one, Material)}
 
 
 def _there(problem: Any, body: str) -> np.ndarray:
@@ -162,7 +138,7 @@ def _variables(again: Again, units: tuple, body: str, end: str, crossing: Crossi
     made[f"r{end}"] = labelled(again, crossing.r, {"long_name": f"radius of the place {where}, over a"})
     made[f"z{end}"] = labelled(again, crossing.z, {"long_name": f"depth of the place {where}, over a"})
     round_ = np.isin(again.problem.shape, ROUND)
-    words = FOUND if round_.all() else _FOUND_OF_SHAPES
+    words = (FOUND if round_.all() else _FOUND_OF_SHAPES) + (_NO_ASPERITIES,) * (body == "asperities")
     made[f"found{end}"] = labelled(again, found, _flags(f"whether the load {where} was found", words))
     if found.any():
         made[f"P{end}"].attrs["message"] = _message(body, found, crossing.unsolved, round_.all())
@@ -191,6 +167,7 @@ def _message(body: str, found: np.ndarray, unsolved: np.ndarray, round_: bool) -
     need = {"layer": "Y1", "body": "Y2", "punch": "Y_punch", "asperities": "hardness or yield_strength"}[body]
     reasons = {
         f"the strength of the {body} is not known: give {need}": found == 2,
+        "the punch is smooth and has no asperities": found == 3,
         "contacts on the way have no solution, or it yields at the least that is looked at": (found == 1) & unsolved,
         f"the {body} does not yield up to {farthest}, or is rigid or not there": (found == 1) & ~unsolved,
     }
@@ -219,7 +196,3 @@ def about_of(again: Again, long_name: str, powers: tuple[int, int]) -> dict[str,
 
 def labelled(again: Again, values: np.ndarray, about: dict) -> xr.Variable:
     return xr.Variable(again.dims, values.reshape(again.shape), about)
-
-
-def without_control(dataset: xr.Dataset, name: str) -> xr.Dataset:
-    return dataset.drop_vars([name, f"{name}_spread"], errors="ignore")

@@ -1,5 +1,6 @@
 """The thickness of a layer that protects the body."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -7,19 +8,24 @@ import xarray as xr
 
 from solver.yields.protect import protection
 
-from ..again import strengths
-from ..fields import carried, friction, units_of
+from ..again import Again, strengths
+from ..fields import carried, friction, refuse_both, units_of
 from ..inputs.definition import StudyError
-from .first import about_of, contacts, labelled, own_materials, refuse, without_control
+from .asked import contacts, of_dataset, own_materials, refuse, without_control
+from .first import about_of, labelled
 
 
-def h_protect(*, P: Any, Y2: Any = None, mu: float = 0.0, **parameters: Any) -> xr.Dataset:
+def h_protect(
+    contact: xr.Dataset | None = None, *, P: Any = None, Y2: Any = None, mu: float = 0.0, **parameters: Any
+) -> xr.Dataset:
     """The thickness above which a layer protects the body from yielding: docs/stresses.md.
 
     Under a stiff layer the largest stress of the body first rises with the thickness, before it falls.
 
     Parameters
     ----------
+    contact : contacts of `study.solve` or of a results file on layers, in place of P and the parameters. Their load
+        counts, and their h does not
     P : load
     Y2 : yield strength of the body, > 0; without it that of the material that is named
     mu : >= 0; with mu > 0 the punch slides in full
@@ -43,12 +49,15 @@ def h_protect(*, P: Any, Y2: Any = None, mu: float = 0.0, **parameters: Any) -> 
     0.0238
     """
     mu = friction(mu)
-    given = {"P": P} | ({} if Y2 is None else {"Y2": Y2})
-    refuse("h_protect", parameters, ("h",), "it is what is looked for")
-    refuse("h_protect", parameters, ("a", "D", "cases"), "the load P is given")
-    if np.any(np.asarray(parameters.get("base", "layered")) == "half_space"):
+    given = {} if Y2 is None else {"Y2": Y2}
+    if contact is not None:
+        refuse_both("h_protect", contact, parameters | ({} if P is None else {"P": P}))
+        contact, again = of_dataset("h_protect", contact, given, ("h",))
+        again = _under_its_load(contact, again)
+    else:
+        contact, again = _of_inputs(P, parameters, given)
+    if np.any(again.problem.base == "half_space"):
         raise StudyError(['h_protect: base = "half_space" has no layer that could protect it'])
-    contact, again = contacts("h_protect", parameters | given, "h", 0.01)
     known = strengths(contact, again, own_materials(parameters))["body"]
     if np.isnan(known[again.problem.n > 0]).any():
         raise StudyError(["h_protect needs Y2, the yield strength of the body: it is not given, or not known of it"])
@@ -69,3 +78,24 @@ def h_protect(*, P: Any, Y2: Any = None, mu: float = 0.0, **parameters: Any) -> 
             about["message"] = f"{name} of {count} of {values.size} cases: {reason}"
         variables[name] = labelled(again, values * size, about)
     return without_control(carried(contact, variables), "h")
+
+
+def _of_inputs(P: Any, parameters: dict, strengths: dict) -> tuple[xr.Dataset, Again]:
+    if P is None:
+        raise StudyError(["h_protect: give the load P, or a contact, which is a dataset of study.solve"])
+    refuse("h_protect", parameters, ("h",), "it is what is looked for")
+    refuse("h_protect", parameters, ("a", "D", "cases"), "the load P is given")
+    if np.any(np.asarray(parameters.get("base", "layered")) == "half_space"):
+        raise StudyError(['h_protect: base = "half_space" has no layer that could protect it'])
+    return contacts("h_protect", parameters | {"P": P} | strengths, "h", 0.01)
+
+
+def _under_its_load(contact: xr.Dataset, again: Again) -> Again:
+    """The contacts with P given, whatever controlled them."""
+    if again.problem.control == "P":
+        return again
+    if "P" not in contact:
+        raise StudyError(["h_protect: the dataset has no load P"])
+    stress, size = units_of(again)
+    load = np.broadcast_to(contact["P"].transpose(*again.dims).values, again.shape).ravel() / (stress * size**2)
+    return again._replace(problem=replace(again.problem, control="P", value=load))

@@ -43,6 +43,20 @@ def test_of_a_wave_on_a_sliding_layer_and_a_stack_of_the_same():
     assert_allclose(left(**stack, w_adhesion="50 mJ/m^2"), left(**SLIDING), rtol=1e-9)
 
 
+def test_an_elastic_punch_gives_way_beside_a_layer():
+    """Compliances add, 1/E = L/E1 + 1/E3: the punch is as soft as the layer, of a layer alone and in a stack."""
+    u, E1, E3 = Q * 0.2e-6, 1e6 / (1 - 0.3**2), 1e6 / (1 - 0.4**2)
+    L = (np.cosh(2 * u) - 1) / (np.sinh(2 * u) + 2 * u)
+    punch, how = {"E_punch": "1 MPa", "nu_punch": 0.4}, {"form": "mean", "periodic": True}
+    wanted = energy(1 / (L / E1 + 1 / E3))
+    assert_allclose(0.05 - left(**SLIDING, **punch, **how), wanted, rtol=1e-9)
+    layer = {"h": "0.1 um", "E1": "1 MPa", "nu": 0.3}
+    stack = {"layers": [layer | {"bonding": "bonded"}, layer | {"bonding": "frictionless"}], "E2": "rigid"}
+    assert_allclose(0.05 - left(**stack, w_adhesion="50 mJ/m^2", **punch, **how), wanted, rtol=1e-9)
+    same = {"E1": "1 MPa", "nu1": 0.5, "h": "0.2 um", "bonding": "bonded"} | RUBBER | {"base": "layered"}
+    assert_allclose(0.05 - left(**same, **punch, **how), energy(1 / ((1 - 0.5**2) / 1e6 + 1 / E3)), rtol=1e-9)
+
+
 def test_the_roughness_may_take_all():
     assert left(**RUBBER | {"w_adhesion": "1 uJ/m^2"}) < 0
 

@@ -1,5 +1,7 @@
 """`study.stresses` and `study.extremes`: dimensions, units, what is NaN, messages."""
 
+import re
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -78,6 +80,19 @@ def test_messages_name_the_argument(arguments, text):
     if not {"r", "z"} & {*arguments}:
         with pytest.raises(study.StudyError, match=text):
             study.extremes(contact, **arguments)
+
+
+def test_far_away_is_refused_where_it_would_take_minutes():
+    """A half-space is a closed form, at any distance that of a point load."""
+    bare = study.solve(P=1e-5, base="half_space", nu2=0.3, micro="smooth")
+    r = 1e5 * bare.a.item()
+    far = study.stresses(bare, r=[1e5], z=[0.0])
+    assert_allclose(far.sr.item(), 0.4 * 1e-5 / (2 * np.pi * r**2), rtol=1e-6)
+    assert_allclose(far.uz.item(), 1e-5 / (np.pi * r), rtol=1e-9)
+    layered = study.solve(a=[0.01, 0.1], **PLAIN | {"h": 1e-3})
+    for r, contact, most in ((-2e5, layered.isel(a=0), "2.78e.03"), (3e3, layered, "277"), (1e10, bare, "1e.09")):
+        with pytest.raises(study.StudyError, match=f"^r = {re.escape(f'{abs(r):g}')}: must be at most {most}"):
+            study.stresses(contact, r=[r], mu=0.1)
 
 
 def test_messages_of_datasets(contact):

@@ -141,6 +141,7 @@ def test_extreme_bodies_warn_of_nothing(n, bonding):
         ({"bonding": "glued"}, 'bonding = "glued": must be one of frictionless, bonded'),
         ({"mu": -0.1}, "mu = -0.1: must be finite and at least 0"),
         ({"mu": np.nan}, "mu = nan"),
+        ({"r": [0.5, 1e6]}, "r = 1e+06: must be at most"),
         ({"side": "body"}, 'side = "body": must be None, "layer" or "base"'),
         ({"p": lambda x: np.sqrt(1 - x)}, "p: must be a polynomial of up to 60 degrees"),
         ({"p": lambda x: np.nan * x}, "p: must give a finite number"),
@@ -150,7 +151,7 @@ def test_extreme_bodies_warn_of_nothing(n, bonding):
 @pytest.mark.filterwarnings("ignore:divide by zero")
 def test_bad_input_is_told(change, said):
     arguments = {"p": HERTZ, "r": 0.5, "z": 0.1} | LAYER | change
-    with pytest.raises(ValueError, match=said.replace("(", r"\(")):
+    with pytest.raises(ValueError, match=said.replace("(", r"\(").replace("+", r"\+")):
         of_pressure(**arguments)
 
 

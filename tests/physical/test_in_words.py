@@ -161,7 +161,9 @@ def test_grids_are_written_out_and_long_ones_are_cut():
     assert text.count("Given:") == 2 and "--- P = 1 N" in text and "--- P = 10 N" in text
     long = study.solve(P=np.linspace(1e-6, 1e-5, MOST_CASES + 5), base="half_space", micro="smooth", x=2)
     assert "--- and 5 more cases" in study.summary(long)
-    with pytest.raises(ValueError, match="summary takes what study.solve, fit or design gives, not int"):
+    with pytest.raises(
+        ValueError, match="summary takes what study.solve, fit, design or a function of stresses gives, not int"
+    ):
         study.summary(3)
     with pytest.raises(ValueError, match="this dataset is not one of contacts: it has no status"):
         study.summary(long.drop_vars("status"))

@@ -28,8 +28,8 @@ ROOMS = {
         *("flat", "schemes", "smooth_contact", "models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (
-        *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives", "fields"),
-        *("in_words", "files", "store", "work", "carried", "lazy", "solving", "inverse", "adhesion"),
+        *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives"),
+        *("in_words", "files", "store", "work", "carried", "lazy", "solving", "fields", "inverse", "adhesion"),
         *("yields", "figures", "api", "catalogue", "explorer", "commands", "__main__"),
     ),
 }

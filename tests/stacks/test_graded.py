@@ -1,10 +1,14 @@
 """Graded layers: exponential and linear profiles and tables, against many uniform layers and against each other."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from solver import Problem, Status, solve
+from solver.body.graded import cuts
+from solver.body.stacked import kernel_of
 
 SMOOTH, ROUGH = {"micro": "smooth"}, {"Nbar": 250000, "Ra": 0.004}
 
@@ -61,6 +65,28 @@ def test_a_profile_that_does_not_change_is_uniform():
     same = layer | {"n": [3.0, 3.0], "profile": "exponential"}
     one, other = (solve(Problem.of(a=0.05, layers=[own], **SMOOTH)) for own in (layer, same))
     assert_allclose([other.P, other.D, other.p0], [one.P, one.D, one.p0], rtol=5e-8)
+
+
+@pytest.mark.parametrize("below", [{"cn": 0.02, "ct": 0.01}, {"cn": 0.0, "ct": 0.05}, "frictionless"])
+@pytest.mark.parametrize("covered", [False, True])
+def test_what_is_below_a_graded_layer_is_below_its_last_sublayer(below, covered):
+    """Springs and sliding are where the layer ends, not within it: a profile that does not change gives way like the
+    uniform layer on the same springs, and one that does like uniform layers of which the last is on springs."""
+    cover = [{"h": 0.01, "n": 2.0, "bonding": "bonded"}] * covered
+    layer = {"h": 0.05, "nu": 0.3, "bonding": below}
+    ends = cuts(1, 4 if covered else 8)
+    parts = [
+        {"h": 0.05 * (b - a), "n": 4.0 ** ((a + b) / 2), "nu": 0.3, "bonding": "bonded"} for a, b in pairwise(ends)
+    ]
+    parts[-1]["bonding"] = below
+    k = np.geomspace(0.1, 300, 30)
+    for n, uniform in (([3.0, 3.0], [layer | {"n": 3.0}]), ([1.0, 4.0], parts)):
+        graded = [*cover, layer | {"n": n, "profile": "exponential"}]
+        softness = []
+        for layers in (graded, [*cover, *uniform]):
+            kernel, h = kernel_of(Problem.of(a=0.05, layers=layers, sublayers=1, **SMOOTH))
+            softness.append(kernel.whole(k[None] * h[:, None]) / kernel.E1[:, None])
+        assert_allclose(*softness, rtol=1e-10)
 
 
 def test_a_table_is_a_profile(tmp_path):

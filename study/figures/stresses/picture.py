@@ -1,11 +1,13 @@
 """`plot_stresses`: where layer and body are stressed, and what surface and interface bear."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from ...fields import contact_of, friction
 from ...in_words.inputs import is_rigid
 from ...rules.rule import RULES, broken
 from ..labels import stated, value_text, wrapped
@@ -21,7 +23,9 @@ _SHARE = 0.3, 0.6  # of the height: the layer has no less, and no more
 _LETTERS = 130  # on a line above the figure
 
 
-def plot_stresses(contact: xr.Dataset, mu: float = 0.0, sigma_res: float | str = 0.0) -> Figure:
+def plot_stresses(
+    contact: xr.Dataset | None = None, mu: float = 0.0, sigma_res: float | str = 0.0, **parameters: Any
+) -> Figure:
     """A figure of the stresses of one contact: docs/stresses.md.
 
     Panels: von Mises' stress in a section of the layer and of the body under it, with a cross where it is largest;
@@ -34,6 +38,7 @@ def plot_stresses(contact: xr.Dataset, mu: float = 0.0, sigma_res: float | str =
     ----------
     contact : one contact of `study.solve` or of a results file: a dataset without dimensions, but for `x`
     mu, sigma_res : as of `study.stresses`; with mu > 0 the section is the plane y = 0, and the punch moves to the right
+    parameters : those of `study.solve` of one contact, in place of it
 
     Returns
     -------
@@ -49,6 +54,8 @@ def plot_stresses(contact: xr.Dataset, mu: float = 0.0, sigma_res: float | str =
     >>> contact = study.solve(P=1e-5, h=0.02, n=4.0, bonding="bonded", micro="smooth", base="layered")
     >>> figure = study.plot_stresses(contact)
     """
+    mu = friction(mu)
+    contact = contact_of("plot_stresses", contact, parameters)
     with style():
         return drawn(contact, mu, sigma_res, StyledFigure)
 
@@ -123,7 +130,7 @@ def _heights(shown: Stresses) -> list[float]:
 def _above(contact: xr.Dataset, mu: float, sigma_res: float | str) -> list[str]:
     """What is stated above the panels: the inputs, and what the contact violates of the model's assumptions."""
     stress = str(sigma_res).replace("-", "\u2212")
-    sliding = [rf"$\mu$ = {mu:g}"] * (mu > 0) + [rf"$\sigma_{{\mathrm{{res}}}}$ = {stress}"] * (sigma_res != 0)
+    sliding = [rf"$\mu$ = {mu:g}"] * (mu > 0) + [rf"$\sigma_{{\mathrm{{res}}}}$ = {stress}"] * bool(sigma_res != 0)
     bodies = [name for name in ("nu1", "nu2") if name in contact and not (name == "nu2" and is_rigid(contact, "base"))]
     ratios = [value_text(name, contact[name], contact[name].item()) for name in bodies]
     texts = dict.fromkeys([*stated([contact]), *ratios, *sliding])  # the pressure may not depend on them

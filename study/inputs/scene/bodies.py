@@ -14,7 +14,8 @@ from .names import RIGID_TEXTS
 
 _MAY_BE_RIGID = ("punch", "body")
 #: Shapes that people give as `punch`, which is a material. A proposal of materials with like names would mislead.
-_SHAPES = ("sphere", "ball", "paraboloid", "cone", "berkovich", "vickers", "flat", "cylinder", "roller", "pyramid")
+_LINES = ("cylinder", "roller")
+_SHAPES = ("sphere", "ball", "paraboloid", "cone", "berkovich", "vickers", "flat", "pyramid", *_LINES)
 
 
 def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict, dict]:
@@ -93,7 +94,9 @@ def _material(body: str, name: str | materials.Material) -> tuple[str, Quantity,
     if body in _MAY_BE_RIGID and str(name).lower() in RIGID_TEXTS:
         return "rigid", Quantity(np.inf), Quantity(0.3), materials.Strength()
     if body == "punch" and str(name).lower() in _SHAPES:
-        raise LookupError(f'{shown(name)} is no material, such as "steel 52100"; {absent(str(name))}')
+        lines = str(name).lower() in _LINES
+        shape = absent(str(name)) if lines else 'the punch is a ball of radius R, or has another shape = "cone" or so on'
+        raise LookupError(f'{shown(name)} is no material, such as "steel 52100"; {shape}')
     material = materials.get(name) if isinstance(name, str) else name  # one of the user's own
     if not all(map(finite, (material.E, material.nu, material.E_spread, material.nu_spread))):
         raise LookupError(f"{shown(material.name)}: E, nu and their spreads must be finite numbers, E in Pa")

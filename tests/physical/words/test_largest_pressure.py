@@ -67,7 +67,8 @@ def test_under_asperities_both_pressures_are_those_of_the_ring():
     assert float(spread) * SIZES[unit] == pytest.approx(moved_spread(PLATE | ROUGH, peak_pressure), rel=0.06)
     plain = study.solve(P=1e-5, h=0.002, n=100, bonding="bonded", Nbar=1e5, Ra=0.004)
     assert re.search(r"ppeak  = \S+ E2\*\n", study.summary(plain)), "no input has a spread"
-    assert re.search(r"pring  = \S+ E2\* at r = 0\.0118\d+ R\n", study.summary(plain))
+    # the pitch is above h: model_error makes a ±
+    assert re.search(r"pring  = \S+ ± \S+ E2\* at r = 0\.0118\d+ R\n", study.summary(plain))
 
 
 def test_without_a_ring_nothing_is_said_of_one():

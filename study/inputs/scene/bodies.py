@@ -95,7 +95,7 @@ def _material(body: str, name: str | materials.Material) -> tuple[str, Quantity,
         return "rigid", Quantity(np.inf), Quantity(0.3), materials.Strength()
     if body == "punch" and str(name).lower() in _SHAPES:
         lines = str(name).lower() in _LINES
-        shape = absent(str(name)) if lines else 'the punch is a ball of radius R, or has another shape = "cone" or so on'
+        shape = absent(str(name)) if lines else 'the punch is a ball of radius R, or has a shape = "cone" or so on'
         raise LookupError(f'{shown(name)} is no material, such as "steel 52100"; {shape}')
     material = materials.get(name) if isinstance(name, str) else name  # one of the user's own
     if not all(map(finite, (material.E, material.nu, material.E_spread, material.nu_spread))):

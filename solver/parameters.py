@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .numerics import profiles
-from .numerics.locks import shared_lock
+from .numerics.kept import shared_lock
 
 BONDINGS = ("frictionless", "bonded")
 BASES = ("half_space", "thin_layer", "layered", "auto", "stack", "thin_stack")

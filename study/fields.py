@@ -261,6 +261,8 @@ def residual_stress(sigma_res: Any, again: Again) -> float:
     try:
         if again.scene and not (number and sigma_res == 0):
             value = quantity("sigma_res", sigma_res, "Pa").value
+        elif sigma_res is None or isinstance(sigma_res, bool):
+            raise ValueError(f"sigma_res = {shown(sigma_res)}: must be a finite number")
         elif not number:
             raise ValueError(f"sigma_res = {shown(sigma_res)}: the contact has no units: must be a number, over E2*")
         else:

@@ -19,7 +19,7 @@ from ..body.operator import Body, Operator
 from ..edges import FREE
 from ..edges.edge import Edge
 from ..laws import Bound, Curve
-from ..numerics.locks import once
+from ..numerics.kept import once
 from ..punches import PARABOLOID
 from ..punches.punch import Punch, largest
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from solver.numerics.locks import once
+from solver.numerics.kept import once
 
 from ..arrays import xarray_later as xr
 from ..arrays.labelled import Labelled

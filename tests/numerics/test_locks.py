@@ -6,8 +6,7 @@ import threading
 
 import pytest
 
-from solver.numerics.kept import Kept
-from solver.numerics.locks import once, shared_lock
+from solver.numerics.kept import Kept, once, shared_lock
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
 

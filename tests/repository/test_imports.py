@@ -257,7 +257,7 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
 
 #: Files with locks -> why a forked process does not wait for one that a thread held which it does not have.
 LOCKS = {
-    "solver/numerics/locks.py": "the fork waits until they are free",
+    "solver/numerics/kept.py": "the fork waits until they are free",
     "solver/threads.py": "renewed",
     "study/files/access.py": "the fork waits until it is free",
     "study/work/engine.py": "renewed",

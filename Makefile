@@ -6,6 +6,8 @@ PYTHON ?= python3
 # make kernels KERNELS="Nehalem Haswell Zen SkylakeX"
 KERNELS ?= Nehalem
 VENV := .venv
+SEED ?= 0
+N ?= 100
 READY := $(VENV)/.ready
 RUN := $(VENV)/bin/python -m study
 # As many processes as processors, but no more than pays; one that is done takes tests from another. Compiled modules are
@@ -65,8 +67,15 @@ docs: $(READY) ## the site of the documentation, with a gallery: docs/_build/htm
 	$(VENV)/bin/sphinx-build --quiet -W -n --keep-going -c docs/site docs docs/_build/html
 	@echo docs/_build/html/index.html
 
-test: $(READY) ## all tests
-	$(PYTEST)
+test: $(READY) ## the tests, in some minutes; what each room may cost is in tests/budget.toml
+	$(PYTEST) --budget
+
+verify: $(READY) ## all tests, on other kernels, with the lowest versions, of the explorer in a browser; the docs (an hour)
+	$(PYTEST) --verify
+	@$(MAKE) --no-print-directory kernels ALL=--verify
+	@$(MAKE) --no-print-directory lowest
+	@$(MAKE) --no-print-directory explorer-test
+	@$(MAKE) --no-print-directory docs
 
 # Debian's node and chromium; without them these tests are skipped.
 explorer-test: $(READY) ## install node, chromium and playwright, and test the page of `roughcoat explore` with them
@@ -85,7 +94,7 @@ check: $(READY) lint ## for the inner loop: lint, and the tests in tests/quick.t
 # calls no BLAS.
 kernels: $(READY) ## the tests in tests/computing.txt under the BLAS kernels of other processors
 	@for kernel in $(KERNELS); do echo "OPENBLAS_CORETYPE=$$kernel"; \
-	  OPENBLAS_CORETYPE=$$kernel $(PYTEST) @tests/computing.txt || exit 1; done
+	  OPENBLAS_CORETYPE=$$kernel $(PYTEST) $(ALL) @tests/computing.txt || exit 1; done
 
 lowest: ## all tests with the lowest versions that pyproject.toml allows, installed into .venv-lowest
 	$(PYTHON) -m venv .venv-lowest
@@ -94,11 +103,20 @@ lowest: ## all tests with the lowest versions that pyproject.toml allows, instal
 	@touch .venv-lowest/.ready
 	@$(MAKE) --no-print-directory test VENV=.venv-lowest
 
-mutants: $(READY) ## which of some 500 small mistakes in the code the tests notice: docs/mutants.md
-	$(VENV)/bin/python tools/mutants/mutate.py --table docs/mutants.md
+# Of the rooms that have changed since a commit alone: make mutants SEED=1 N=50 BASE=HEAD~3
+mutants: $(READY) ## N mistakes that the program makes, drawn by SEED: which do the tests notice? docs/mutants.md
+	$(VENV)/bin/python tools/mutants/mutate.py --seed $(SEED) --number $(N) $(if $(BASE),--base $(BASE))
 
-fresh_mutants: $(READY) ## which mistakes of the latest list in tests/mutants/fresh all the tests notice: hours
-	$(VENV)/bin/python tools/mutants/fresh.py
+# SANITIZED: the options of the compiler; the tests build the core with them. Debian: clang, libclang-rt-14-dev.
+SANITIZED := -fsanitize=address,undefined -fno-sanitize-recover=all -g
+sanitize: export ASAN_OPTIONS := detect_leaks=0
+sanitize: $(READY) ## the compiled core under AddressSanitizer and UndefinedBehaviorSanitizer, by gcc and by clang
+	CC=gcc CFLAGS="$(SANITIZED)" LDFLAGS="$(SANITIZED)" LD_PRELOAD=$$(gcc -print-file-name=libasan.so) \
+	  $(VENV)/bin/python -m pytest -q -s --verify tests/compiled
+	@command -v clang >/dev/null || { echo "clang is not installed: the core was tried under gcc alone"; exit 2; }
+	CC=clang LDSHARED="clang -shared -shared-libsan" CFLAGS="$(SANITIZED) -shared-libsan" LDFLAGS="$(SANITIZED)" \
+	  LD_PRELOAD=$$(clang -print-file-name=libclang_rt.asan-$$(uname -m).so) \
+	  $(VENV)/bin/python -m pytest -q -s --verify tests/compiled -k sse2
 
 fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crashes, nothing is silently wrong (minutes)
 	$(VENV)/bin/python tools/fuzz/fuzz_solver.py --cases 4800

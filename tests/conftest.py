@@ -14,8 +14,10 @@ os.environ |= {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL")
 
 import pytest
 import xarray as xr
+from budget import pytest_addoption, pytest_configure  # noqa: F401
 from explorer_page import explorer  # noqa: F401
 from interrupted_study import undisturbed  # noqa: F401
+from left_out import left_out
 from line_study import computed, file, quiet  # noqa: F401
 from screens import impatient, stderr  # noqa: F401
 
@@ -48,11 +50,18 @@ def shrunken(tables: dict) -> dict:
     return tables | ({"axes": axes} if axes else {}) | sample
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Files that look at the shrunken results come first. So the first of several processes of pytest has them all: it
-    computes the results while others have other things to do, and no other draws the same figures again."""
+    computes the results while others have other things to do, and no other draws the same figures again.
+
+    What tests/verify.txt names is left out, unless pytest was asked for it or for --verify."""
     asking = {item.path for item in items if "results" in getattr(item, "fixturenames", ())}
     items.sort(key=lambda item: item.path not in asking)
+    if not config.getoption("verify"):
+        named = tuple(argument for argument in config.args if "::" in argument)
+        out = {item for item in items if left_out(item.nodeid) and not item.nodeid.startswith(named)}
+        config.hook.pytest_deselected(items=list(out))
+        items[:] = [item for item in items if item not in out]
 
 
 @pytest.fixture(autouse=True)

@@ -7,6 +7,8 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -41,6 +43,26 @@ def name(path: Path) -> str:
     return path.relative_to(ROOT).as_posix()
 
 
+def of_each(paths: list[Path]) -> Callable:
+    """Make one test of a check of each file: some hundred tests of a thousandth of a second take longer to collect."""
+
+    def decorate(check: Callable) -> Callable:
+        def test():
+            failed = []
+            for path in paths:
+                try:
+                    check(path)
+                except AssertionError as error:
+                    failed.append(f"{name(path)}: {error}")
+            assert not failed, "\n".join(failed)
+
+        test.__name__, test.__doc__ = check.__name__, check.__doc__
+        return test
+
+    return decorate
+
+
+@cache
 def imported(path: Path) -> set[str]:
     """Absolute dotted names that a file imports anywhere, relative ones resolved against its package."""
     found = set()
@@ -66,14 +88,14 @@ def tops(path: Path) -> set[str]:
     return {name.split(".")[0] for name in imported(path)}
 
 
-@pytest.mark.parametrize("path", SOLVER, ids=name)
+@of_each(SOLVER)
 def test_solver_imports_numpy_and_scipy_only(path):
     """And threadpoolctl, in the one file that sets the number of BLAS threads."""
     more = {"threadpoolctl"} if path.name == "threads.py" else set()
     assert tops(path) - set(sys.stdlib_module_names) <= {"numpy", "scipy", "solver"} | more
 
 
-@pytest.mark.parametrize("path", SOLVER, ids=name)
+@of_each(SOLVER)
 def test_importing_the_solver_does_nothing_to_the_process(path):
     """A library defines names: no call whose effect stays, such as one that makes malloc keep freed memory."""
     docstring, *statements = ast.parse(path.read_text(encoding="utf-8")).body
@@ -82,7 +104,7 @@ def test_importing_the_solver_does_nothing_to_the_process(path):
     assert all(isinstance(statement, defining) for statement in statements)
 
 
-@pytest.mark.parametrize("path", STUDY, ids=name)
+@of_each(STUDY)
 def test_study_imports_what_is_declared(path):
     """And extras in one file each: SurfaceTopography, which reads scans, openpyxl, argcomplete, which serves shells."""
     allowed = {"numpy", "scipy", "xarray", "netCDF4", "dask", "matplotlib", "pint", "solver", "study"}
@@ -94,7 +116,7 @@ def test_study_imports_what_is_declared(path):
     assert tops(path) - set(sys.stdlib_module_names) <= allowed
 
 
-@pytest.mark.parametrize("path", [*SOLVER, *STUDY], ids=name)
+@of_each([*SOLVER, *STUDY])
 def test_rooms_import_one_way(path):
     """A room imports from those to its left alone, so that each can be read with only these in mind."""
     package, room = name(path).split("/")[:2]
@@ -125,7 +147,7 @@ def test_no_function_is_handed_upward():
         assert not arguments & public, name(path)
 
 
-@pytest.mark.parametrize("path", BOOK, ids=name)
+@of_each(BOOK)
 def test_the_book_imports_the_face_and_the_figures(path):
     """And the solver. What a chapter needs beyond it is missing to a user as well."""
     assert tops(path) - set(sys.stdlib_module_names) <= {"numpy", "scipy", "xarray", "matplotlib", *OURS}
@@ -135,7 +157,7 @@ def test_the_book_imports_the_face_and_the_figures(path):
     assert names <= {*dir(study), "figures"}
 
 
-@pytest.mark.parametrize("path", [*SOLVER, *STUDY], ids=name)
+@of_each([*SOLVER, *STUDY])
 def test_nothing_imports_the_book(path):
     """It is found as the studies of a user are, and run when it is asked for."""
     assert not {full for full in imported(path) if full.startswith(("studies", "study.studies"))}

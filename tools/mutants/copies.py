@@ -11,7 +11,7 @@ import time
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 
@@ -23,12 +23,12 @@ MEMORY = 8_000_000_000  # bytes: a mutant may ask for all there are
 
 @dataclass(frozen=True)
 class Task:
-    """What a child does: `action(folder)` gives its answer (JSON). `change`: a file and its text while it runs."""
+    """What a child does: `action(folder)` gives its answer (JSON). `change`: files and their bytes while it runs."""
 
     key: object
     action: Callable[[Path], object]
     seconds: float = NIGHT
-    change: tuple[str, str] | None = None
+    change: dict[str, bytes] = field(default_factory=dict)
 
 
 def answers(tasks: list[Task], folders: list[Path]) -> Iterator[tuple[Task, object]]:
@@ -48,8 +48,8 @@ def answers(tasks: list[Task], folders: list[Path]) -> Iterator[tuple[Task, obje
                     _swept(child)
                     del running[child]
                     yield task, "takes too long" if late else _answer(folder)
-                    if task.change:
-                        os.replace(folder.with_suffix(".kept"), folder / task.change[0])
+                    for number, name in enumerate(task.change):
+                        os.replace(folder.with_suffix(f".kept{number}"), folder / name)
                     free.append(folder)
     finally:
         for child in running:
@@ -60,10 +60,10 @@ def _begun(task: Task, folder: Path) -> int:
     """Fork the child of a task; returns its process id."""
     answer = folder.with_suffix(".json")
     answer.unlink(missing_ok=True)
-    if task.change:
-        path, text = folder / task.change[0], task.change[1]
-        shutil.copy2(path, folder.with_suffix(".kept"))  # beside the tree: tests ask which files a package has
-        path.write_text(text, encoding="utf-8")
+    for number, (name, content) in enumerate(task.change.items()):
+        path = folder / name
+        shutil.copy2(path, folder.with_suffix(f".kept{number}"))  # beside the tree: tests ask which files a package has
+        path.write_bytes(content)
         os.utime(path, (315_619_200,) * 2)  # 1980, the first year of zip; else a compiled form of this second may count
     child = os.fork()
     if child:
@@ -76,9 +76,10 @@ def _begun(task: Task, folder: Path) -> int:
         os.dup2(log, 1), os.dup2(log, 2)
         os.chdir(folder)
         tests = folder / "tests"
-        sys.path[:] = [str(folder), str(tests), str(tests / "shared"), *sys.path[1:]]  # the first was that of this file
+        # The first was that of this file.
+        sys.path[:] = [str(folder), *(str(tests / name) for name in ("", "shared", "suite")), *sys.path[1:]]
         sys.modules["__main__"] = ModuleType("__main__")  # which worker processes import
-        for name in ("mutants", "mutate", "copies"):  # tests import those in the folder
+        for name in ("kept", "mutate", "trials", "operators", "copies"):  # tests import those in the folder
             sys.modules.pop(name, None)
         sys.dont_write_bytecode = True  # nor may that of the mutant before, of the same size
         os.environ |= {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}

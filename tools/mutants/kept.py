@@ -1,0 +1,36 @@
+"""Mistakes written by hand, of kinds that operators.py does not make: tests/mutants/kept.toml."""
+
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+from operators import Change
+
+ROOT = Path(__file__).resolve().parents[2]
+MOST = 150  # a longer list says no more, and each has to be kept in step with the code
+
+
+def read(root: Path = ROOT) -> Iterator[tuple[str, str, str, str]]:
+    """Name, file, old and new text of each mistake of a tree: [PACKAGE.ROOM.MODULE.NAME], of the file MODULE.py, or of
+    the `file` that it names."""
+    return _within(tomllib.loads((root / "tests/mutants/kept.toml").read_text(encoding="utf-8")), ())
+
+
+def _within(tables: dict, path: tuple[str, ...]) -> Iterator[tuple[str, str, str, str]]:
+    for name, entry in tables.items():
+        if "old" in entry:
+            yield ".".join((*path, name)), entry.get("file", f"{'/'.join(path)}.py"), entry["old"], entry["new"]
+        else:
+            yield from _within(entry, (*path, name))
+
+
+def changes(root: Path = ROOT) -> list[Change]:
+    """The list as changes of the files. Raises ValueError for an old text that is not in its file exactly once."""
+    found = []
+    for name, file, old, new in read(root):
+        source = (root / file).read_bytes()
+        if source.count(old.encode()) != 1:
+            raise ValueError(f"{name}: {file} has this {source.count(old.encode())} times: {old}")
+        start = source.index(old.encode())
+        found.append(Change(file, start, start + len(old.encode()), new, "by hand"))
+    return found

@@ -181,7 +181,9 @@ TOKEN = re.compile(
     r"|(?P<operator>===|!==|=>|->|\+\+|--|[-+*/&|^%<>=!]=|&&|\|\||<<|>>|\?\?|\?\.|[-+*/%<>=!&|^~?:;,.(){}\[\]])",
     re.DOTALL | re.MULTILINE,
 )
-TYPES = set(["double", "int", "void", "char", "const", "float", "long", "size_t", "static", "restrict", "unsigned", "return"])
+TYPES = {
+    *("double", "int", "void", "char", "const", "float", "long", "size_t", "static", "restrict", "unsigned", "return"),
+}
 
 
 def _in_tokens(file: str, text: str) -> Iterator[Change]:

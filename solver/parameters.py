@@ -1,7 +1,7 @@
 """What describes a case: the one table of bounds, defaults and choices, and of which cases need and use a parameter."""
 
 import re
-from collections.abc import Callable, ItemsView, Iterator, KeysView, ValuesView
+from collections.abc import Callable, Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -90,13 +90,13 @@ class Register(dict):
     def __iter__(self) -> Iterator:
         return iter(list(super().keys()))
 
-    def keys(self) -> KeysView:
+    def keys(self):
         return self._now().keys()
 
-    def values(self) -> ValuesView:
+    def values(self):
         return self._now().values()
 
-    def items(self) -> ItemsView:
+    def items(self):
         return self._now().items()
 
 

@@ -137,7 +137,7 @@ def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:
             raise ValueError(f"the dataset is in physical units already: {name} has units = {array.attrs['units']!r}")
     changed = {}
     for name, array in dataset.variables.items():
-        if name in VOCABULARY and VOCABULARY[name].powers != (0, 0):
+        if isinstance(name, str) and name in VOCABULARY and VOCABULARY[name].powers != (0, 0):
             attributes = physical_attributes(name, array.attrs)
             fill = {key: value for key, value in array.encoding.items() if key == "_FillValue"}
             changed[name] = array.dims, array.data * factor(name, **scales), attributes, fill

@@ -32,6 +32,8 @@ _OF_STRENGTHS = "2"
 _OF_CELLS = "asperities far apart on a layer, 1"
 #: Stresses depend on these even where the contact does not, as on nu2 of a body on which the layer slides.
 RATIOS = ("nu1", "nu2")
+#: In the keys and digests of stored stresses: raised when the search for the largest ones finds others.
+_OF_STRESSES = "2"
 #: In the keys of cases that have another shape than the paraboloid, or that stick, beside NUMERICS_VERSION: raised when
 #: numbers of these alone change.
 _OF_SHAPES = "3"
@@ -87,7 +89,7 @@ def digest_of(definition) -> str:
     compared = [name for name in STRENGTHS if name in grid.values and name not in grid.sizes]
     strengths = {name: digest_of_array(along(grid, name)) for name in compared}
     content |= {"strengths": strengths | {"masks": _OF_STRENGTHS}} if compared else {}
-    content |= {"stresses": _digest_of_ratios(grid)} if definition.stresses else {}
+    content |= {"stresses": [_OF_STRESSES, *_digest_of_ratios(grid)]} if definition.stresses else {}
     content |= {"laws": law_versions(grid)} if law_versions(grid) else {}
     content |= {"cells": _OF_CELLS} if _far_apart(grid).any() else {}
     digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
@@ -152,7 +154,7 @@ def case_keys(grid: Grid, stresses: bool = False) -> np.ndarray:
     if (far := _far_apart(grid)).any():
         lanes += np.where(far, _hashed("cells", np.array(_OF_CELLS).reshape((1,) * len(grid.shape))), np.uint64(0))
     for name in RATIOS if stresses else ():
-        lanes += _hashed(f"{name} of stresses", along(grid, name))
+        lanes += _hashed(f"{name} of stresses {_OF_STRESSES}", along(grid, name))
     return np.ascontiguousarray(lanes.reshape(2, -1).T)
 
 

@@ -8,9 +8,8 @@ from ..solution import Solution
 from .equation import Response, respond
 from .pressure import flat_pressure, pressure_changes, pressures
 from .radius import NEAR
+from .tension import LOOKED_AT, seen
 
-#: Radii at which the pressure is looked at, for tension and for its error; denser towards the edge.
-_LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
 #: Where dD/da is below this part of what the shape adds to it, D has its minimum, to rounding.
 _FLAT = 1e-12
 #: Rounding of a pressure over the largest one: 3e-13 at most beside kinks of the shape (tools/errors/shape_errors.py).
@@ -117,14 +116,14 @@ def answer(part, shape, state, counts, x, ring=None):
     """:class:`~..solution.Solution` of the states of a problem, and whether there is tension inside (B,). Its error is
     that of a, P and D under the control, and of p(0) where that is finite. ``ring(x)`` is what is added to p."""
     response, A = state.response, state.A
-    radii = np.concatenate([x, [0.0], _LOOKED_AT])
+    radii = np.concatenate([x, [0.0], LOOKED_AT])
     p = pressures(shape, response, A, radii)
     if ring is not None:
         p = p + ring(radii)
     p_x, p0, looked_at = np.split(p, [len(x), len(x) + 1], axis=1)
     p0 = p0[:, 0]
     moved, error = _error(part.control, state)
-    of_p = np.abs(pressure_changes(response, A, _LOOKED_AT))
+    of_p = np.abs(pressure_changes(response, A, LOOKED_AT))
     along = np.where(moved > 0, np.abs(flat_pressure(response) * state.dD) * moved, 0.0)
     largest = np.max(np.where(np.isfinite(looked_at), np.abs(looked_at), 0.0), axis=1)
     over = np.where(state.a > shape.least(), state.a - shape.least(), state.a)
@@ -143,7 +142,7 @@ def answer(part, shape, state, counts, x, ring=None):
         *p_x.shape, **numbers, p0=p0, p_max=p0, Ar_An=1.0, A0=0.0, dP_dD=state.stiffness, residual=0.0,
         error=error, profile_error=between, p=p_x, lam=1.0, iterations=counts, nodes=np.nan_to_num(response.size),
     )  # fmt: skip
-    return solution, (looked_at < 0).any(axis=1)
+    return solution, seen(looked_at, of_p)
 
 
 def _error(control, state):

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...numerics.bracket import between
+from ...numerics.bracket import between, turns_between
 from ...shapes.shape import column
 from ..radius import LAST, MOST, Radii, rising_root
 from .jkr import State
@@ -178,14 +178,9 @@ def _looked_at(curve, holder, x, index):
 def _turns(curve, x, Q, dQ, index):
     """(b,) bool: between two radii at which Q rises, or falls, the cubic polynomial through both turns."""
     _, da = curve.radii.at(x.ravel(), np.repeat(index, x.shape[1]))
-    slope, width = dQ * da.reshape(x.shape), -np.diff(x, axis=1)
-    high, low, mean = slope[:, :-1], slope[:, 1:], -np.diff(Q, axis=1) / width
-    # the slope of the polynomial is low + linear t + quadratic t², 0 <= t <= 1
-    quadratic, linear = 3 * (low + high - 2 * mean), 2 * (3 * mean - 2 * low - high)
-    t = -linear / (2 * quadratic)
-    extreme = low + linear * t / 2
-    inside = (t > 0) & (t < 1) & (np.sign(high) == np.sign(low)) & (np.sign(extreme) == -np.sign(low))
-    return inside.any(axis=1)
+    slope = dQ * da.reshape(x.shape)
+    pairs = ((values[:, 1:], values[:, :-1]) for values in (Q, slope))
+    return turns_between(-np.diff(x, axis=1), *pairs).any(axis=1)
 
 
 def _with_middles(curve, holder, x, Q, dQ, index):

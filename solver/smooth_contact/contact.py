@@ -7,7 +7,7 @@ from ..shapes import PARABOLOID, shape_of
 from ..shapes.power import Power
 from ..solution import Solution
 from ..status import Status
-from .adhesion import adhesive
+from .adhesion import adhesive, limits
 from .branches import smallest
 from .equation import respond
 from .radius import touching
@@ -59,4 +59,12 @@ def _touching(part, shape, body, at_radius, x):
 
 def sticking(part, x):
     """The same of cases with adhesion, w > 0."""
-    return adhesive.solve(part, shape_in(part), Tabulated.of(BODIES[str(part.base[0])](part)), x)
+    shape, body = shape_in(part), Tabulated.of(BODIES[str(part.base[0])](part))
+    solution = adhesive.solve(part, shape, body, x)
+    if str(part.adhesion[0]) == "maugis":
+
+        def with_edge(few, index, x):
+            return adhesive.solve(few, shape.take(index), body.take(index), x)
+
+        solution = limits.with_edges(part, body, solution, with_edge, x)
+    return limits.without(part, body, solution, not_sticking, x)

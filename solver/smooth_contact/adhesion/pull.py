@@ -27,6 +27,10 @@ _ABOVE, _BELOW, _THIN = 4.0, 1e-3, 0.02
 _CORNER = 1e-6
 #: Waves u = kh at which the kernel is looked at.
 _WAVES = np.geomspace(1e-9, 30.0, 72)
+#: The first step of that search is no longer than others, up to this distance.
+_FAR = 100.0
+#: Below this the square of a number is 0.
+_SMALL = 1e-150
 #: Width of a bracket, in the variable, in which a minimum or a radius is found.
 _NARROW = 1e-14
 
@@ -58,10 +62,14 @@ def highest(law, radii):
         a, da = radii.at(x, index)
         part = law.shape.take(index)
         F, slope = (f(column(a))[:, 0] for f in (part.lifted, part.lifted_slope))
-        g = np.log(F**2 / a) - np.log(4.5 * np.pi * law.w[index] * softest[index] / body.E[index])
+        size = np.where(F > _SMALL, np.log(F**2 / a), 2 * np.log(F) - np.log(a))  # if F² underflows
+        g = size - np.log(4.5 * np.pi * law.w[index] * softest[index] / body.E[index])
         return np.where(np.abs(g) < 0.01, 0.0, g), (2 * slope / F - 1 / a) * da
 
-    x, _ = rising_root(evaluate, np.where(np.isfinite(radii.most) | (radii.least > 0), -1.0, np.log(0.05)))
+    start = np.where(np.isfinite(radii.most) | (radii.least > 0), -1.0, np.log(0.05))
+    g, slope = evaluate(start, np.arange(len(start)))
+    start = np.where(np.abs(g / slope) > _FAR, start - g / slope, start)  # tiny w: more steps than there are
+    x, _ = rising_root(evaluate, start)
     return np.where(radii.ends, np.minimum(x + np.log(_ABOVE), LAST), x + np.log(_ABOVE))
 
 

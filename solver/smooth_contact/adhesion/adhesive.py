@@ -101,12 +101,12 @@ def _at_minimum(part, state, at_turn):
     return state._replace(**{name: np.where(at_turn, np.inf, getattr(state, name))})
 
 
-def _answered(part, shape, state, pulled, counts, x, ring=None):
+def _answered(part, shape, state, ends, counts, x, ring=None):
     """The solution of the states, with PULLED_OFF where they are NaN.
 
-    pulled : the numbers of pull-off and pull-in, by how much they are off, and the :class:`~..state.Scales`
+    ends : the numbers of pull-off and pull-in, by how much they are off, and the :class:`~..state.Scales`
     """
-    pulls, off, scales = pulled
+    pulls, off, scales = ends
     solution, _ = answer(part, shape, state, counts, x, ring, scales)
     solution = replace(solution, error=np.maximum(solution.error, off))
     solution = solution.refused(~np.isfinite(state.P), Status.PULLED_OFF)
@@ -169,5 +169,5 @@ def _flat(part, law, x):
     off, state = law.at(law.shape.b), pinned(part, law.shape, law.body)
     holds = (state.A >= off.A * (1 + _SAME)) & (part.branch == "stable")
     pulls = {"P_off": off.P, "D_off": off.D, "a_off": off.a, "P_in": 0 * off.a, "a_in": off.a}
-    pulled = pulls, _off(off), _scales(law, off, state)
-    return _answered(part, law.shape, state.only(holds), pulled, np.ones(len(part), dtype=np.int32), x)
+    ends = pulls, _off(off), _scales(law, off, state)
+    return _answered(part, law.shape, state.only(holds), ends, np.ones(len(part), dtype=np.int32), x)

@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 from rows import SMOOTH
 
 from solver import Problem, Status, solve
+from solver.sensitivity import sensitivities
 
 BODIES = [{"base": "half_space"}, {"h": 0.05, "n": 20.0, "nu1": 0.3, "nu2": 0.3, "bonding": "bonded"}]
 LAWS = [{}, {"adhesion": "maugis", "sigma0": 0.01}, {"adhesion": "maugis", "z0": 0.02}, {"adhesion": "dmt"}]
@@ -99,3 +100,27 @@ def test_pull_in_of_dmt(body):
     assert_allclose(free.D, -contact.P_in / k, rtol=1e-8, atol=0)
     if "base" in body:
         assert_allclose(contact.a_in**2 + (4 / 3 * contact.a_in**3 - 2 * np.pi * w) / k, 0, atol=1e-9 * w)
+
+
+def test_slopes_where_a_load_is_0():
+    """P = 4/3 a³ - sqrt(8π w a³) on a half-space: its derivatives by ln w and ln a at P = 0, and next to it, to 1e-6;
+    and their quotient by P as the sensitivity, but of 0 itself."""
+    w = 1e-5
+    a = np.cbrt(4.5 * np.pi * w) * np.array([1.0, 1 + 1e-9, 1 - 1e-5, 1.001])
+    problem = Problem.of(a=a, w_adhesion=w, base="half_space", **SMOOTH)
+    contact = solve(problem)
+    found = sensitivities(problem, contact, inputs=("a", "w_adhesion"))
+    edge = np.sqrt(8 * np.pi * w * a**3)
+    assert_allclose(found.slopes["P"], np.stack([4 * a**3 - 1.5 * edge, -edge / 2], axis=1), rtol=1e-6, atol=0)
+    assert_allclose(found.logs["P"][1:] * contact.P[1:, None], found.slopes["P"][1:], rtol=1e-6, atol=0)
+    assert_allclose(found.slopes["D"], found.logs["D"] * contact.D[:, None], rtol=1e-12, atol=0)
+
+
+def test_a_load_of_0_on_a_graded_layer():
+    """Its error by its own radius is that by the load: what is extrapolated is 0 too."""
+    layer = {"h": 0.03, "n": [2.0, 1.5], "nu": 0.3, "profile": "linear", "bonding": "bonded"}
+    case = SMOOTH | {"layers": [layer], "w_adhesion": 1e-5, "rtol": 1e-4}
+    contact = solve(Problem.of(P=0.0, **case))
+    again = solve(Problem.of(a=contact.a, **case))
+    assert contact.status == again.status == Status.CONVERGED and again.error < 2 * contact.error
+    assert np.abs(again.P) < 1e-4 * np.abs(again.P_off)

@@ -28,6 +28,11 @@ _FINER = 0.03
 _TO_PANELS = (Verdict.LIFTED, Verdict.OPEN, Verdict.STUCK, Verdict.COARSE)
 _ENDS = dict.fromkeys((Verdict.FLOOR, Verdict.STUCK, Verdict.COARSE), Status.TOLERANCE_NOT_MET)
 _ENDS[Verdict.SPENT] = Status.BUDGET_SPENT
+#: How a contact ends that may be on another branch than the first guess, at smaller radii, where load and depth do not
+#: rise with the radius throughout; the parts of the first guess at which it is looked for; and the largest L of a
+#: kernel under which they do rise.
+_LOST = (Status.LIFT_OFF, Status.BUDGET_SPENT, Status.ITERATION_LIMIT, Status.DIVERGED)
+_NEARER, _SOFT = (0.5, 0.25, 0.1), 2.0
 
 
 def solve_newton(cases, rtol, nodes, limit, x):
@@ -73,8 +78,20 @@ def _split(cases, settings, direct, limit, x):
     before = Answer(none, np.zeros(1), np.zeros(1, bool), np.full(1, Verdict.OPEN, np.int8), None)
     for i in np.flatnonzero(direct):
         case = cases.take([i])
-        pieces.append(([i], _on_panels(case, before, settings[0][i], x, budget_of(case))))
+        solution = _on_panels(case, before, settings[0][i], x, budget_of(case))
+        for nearer in _NEARER if solution.status[0] in _LOST and _has_branches(case) else ():
+            other = _on_panels(case, before, settings[0][i], x, budget_of(case), nearer)
+            if other.status[0] == Status.CONVERGED:
+                solution = replace(other, iterations=solution.iterations + other.iterations)
+                break
+        pieces.append(([i], solution))
     return Solution.join(size, len(x), pieces)
+
+
+def _has_branches(case):
+    """Whether more than one radius may have the load or depth of a case, as under a hard layer, which bends."""
+    kernel = getattr(case.body, "kernel", None)
+    return case.control != "a" and kernel is not None and kernel.stiffness[0] > _SOFT
 
 
 def _together(rungs, size, points):
@@ -99,7 +116,7 @@ def _ended(solution, verdict):
     return replace(solution, status=status).refused(verdict == Verdict.LIFTED, Status.LIFT_OFF)
 
 
-def _on_panels(case, before, rtol, x, left):
+def _on_panels(case, before, rtol, x, left, nearer=1.0):
     """:class:`~solver.solution.Solution` of one case on panels of its own, with `left` of its budget; or that of
     `before`, the :class:`.answer.Answer` on the finest mesh, if its error is smaller.
 
@@ -111,7 +128,7 @@ def _on_panels(case, before, rtol, x, left):
         if left <= 0:
             spent = True
             break
-        iterated, work = solve_on_panels(case, goal, left, at)
+        iterated, work = solve_on_panels(case, goal, left, at, nearer)
         left, count, spent = left - work, count + iterated.count, work > left
         if not iterated.closed[0]:
             continue

@@ -39,15 +39,18 @@ _SHARE = 0.3
 _FLOOR = 1e-12
 
 
-def solve_on_panels(case, rtol, budget, at=None):
+def solve_on_panels(case, rtol, budget, at=None, nearer=1.0):
     """Solve one case (a batch of one) on panels that resolve it, or as far as the budget goes.
 
-    at : :class:`.equation.Evaluation` at a solution on panels, to go on from; None: begin anew.
+    at : :class:`.equation.Evaluation` at a solution on panels, to go on from; None: begin anew, at this part, `nearer`,
+    of what the guessed radius is larger than what is flat of the punch.
 
     Returns its :class:`.driver.Iterated`, and the work: more than the budget if that was spent before every panel was
     resolved.
     """
     radius, count = guess_radius(case), 0
+    if nearer < 1.0:
+        radius = case.shape.least() + nearer * (radius - case.shape.least())
     if at is None:
         iterated, work, place = _first(case, rtol, budget, radius)
     else:

@@ -20,6 +20,8 @@ _ORDERS = 2
 _NUMBERS = (*JUDGED, "A0", "dP_dD", *PULLS, "p", "lam")
 #: Those whose last change is the error; of cases that stick P_off and D_off are among them.
 _JUDGED = (*JUDGED, "P_off", "D_off")
+#: p(0) of what sticks counts as at least this part of the load of pull-off over the area.
+_LEAST = 0.1
 #: Statuses of cases that have numbers; of the last, those of pull-off and pull-in.
 _SOLVED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET, Status.PULLED_OFF)
 
@@ -52,7 +54,7 @@ def _extrapolated(rows, rtol):
         values, before = _limits([getattr(row, name) for row in rows])
         numbers[name] = np.clip(values, 0.0, 1.0) if name in ("lam", "Ar_An") else values
         if name in _JUDGED:
-            change = np.maximum(change, _change(values, before, getattr(last, name)))
+            change = np.maximum(change, _change(values, before, last, name))
         elif name == "p":
             finite = np.where(np.isfinite(values), values, 0.0)
             largest = np.fmax(np.abs(finite).max(axis=1, initial=0.0), np.where(np.isfinite(last.p0), last.p0, 0.0))
@@ -67,10 +69,15 @@ def _extrapolated(rows, rtol):
     return replace(last, **numbers, error=error, profile_error=profile_error, status=status)
 
 
-def _change(values, before, last):
-    """Relative change (B,) of extrapolated numbers: 0 where there is none, or the `last` solution has no number."""
+def _change(values, before, last, name):
+    """Relative change (B,) of extrapolated numbers: 0 where there is none, or the `last` solution has no number. That
+    of a load, a depth or a p(0) of what sticks is relative to those of pull-off at least."""
     change = np.abs(values / before - 1)
-    change = np.where((values == before) | ~np.isfinite(last), 0.0, change)
+    if name in ("P", "D", "p0", "p_max"):
+        off = np.abs(last.D_off if name == "D" else last.P_off)
+        off = _LEAST * off / (np.pi * last.a**2) if name in ("p0", "p_max") else off
+        change = np.where(off > np.abs(before), np.abs(values - before) / off, change)
+    change = np.where((values == before) | ~np.isfinite(getattr(last, name)), 0.0, change)
     return np.where(np.isnan(change), np.inf, change)
 
 

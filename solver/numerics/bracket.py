@@ -40,6 +40,17 @@ def between(evaluate, low, high, g_low, g_high, tolerance):
     return x, g
 
 
+def turns_between(width, ends, slopes):
+    """(...) bool: the cubic polynomial through both `ends` of an interval, low and high, with the `slopes` there, which
+    have the same sign, turns within; `width` is that of the interval."""
+    (low, high), mean = slopes, (ends[1] - ends[0]) / width
+    # the slope of the polynomial is low + linear t + quadratic t², 0 <= t <= 1
+    quadratic, linear = 3 * (low + high - 2 * mean), 2 * (3 * mean - 2 * low - high)
+    t = -linear / (2 * quadratic)
+    extreme = low + linear * t / 2
+    return (t > 0) & (t < 1) & (np.sign(high) == np.sign(low)) & (np.sign(extreme) == -np.sign(low))
+
+
 def _outwards(evaluate, start):
     """Both ends (2, B) of a bracket around the start, and the function there (2, B)."""
     index, sign = np.tile(np.arange(len(start)), 2), np.repeat([-1.0, 1.0], len(start))

@@ -14,17 +14,22 @@ from .changes import moved, slope_of
 #: `fine` is True the inputs are moved twice as far as well, which leaves _STEP⁴: results of a cone, for example, change
 #: ten times as fast as its angle.
 _STEP, _RTOL = 1e-3, 1e-9
+#: Numbers that pass through 0 where a punch sticks, and the powers of E2* and R of their units. Near 0 a step goes to
+#: the other side, and the logarithm says nothing.
+SIGNED = {"P": (1, 2), "D": (0, 1), "p0": (1, 0), "p_max": (1, 0)}
 
 
 def by_differences(problem, inputs, quantities, x, fine=False):
-    """Quantity -> (k, B), derivatives of the logarithm of its size; and those of p and λ at the radii x, (2, k, B, m).
-    `problem` is in units R = E2* = 1; NaN where a moved case has no numbers, or infinite ones."""
-    logs, profiles = _by_step(problem, inputs, quantities, x, _STEP)
+    """Quantity -> (k, B), derivatives of the logarithm of its size; those of p and λ at the radii x, (2, k, B, m); and
+    quantity -> (k, B), those of :data:`SIGNED` numbers themselves. `problem` is in units R = E2* = 1; NaN where a moved
+    case has no numbers, or infinite ones."""
+    logs, profiles, slopes = _by_step(problem, inputs, quantities, x, _STEP)
     if fine:
-        wide, wide_profiles = _by_step(problem, inputs, quantities, x, 2 * _STEP)
+        wide, wide_profiles, wide_slopes = _by_step(problem, inputs, quantities, x, 2 * _STEP)
         logs = {name: (4 * values - wide[name]) / 3 for name, values in logs.items()}
+        slopes = {name: (4 * values - wide_slopes[name]) / 3 for name, values in slopes.items()}
         profiles = (4 * profiles - wide_profiles) / 3
-    return logs, profiles
+    return logs, profiles, slopes
 
 
 def _by_step(problem, inputs, quantities, x, step):
@@ -32,7 +37,8 @@ def _by_step(problem, inputs, quantities, x, step):
     solution = solve(cases.but(rtol=np.minimum(cases.rtol, _RTOL)), x)
     k = len(inputs)
     logs = {name: slope_of(np.log(np.abs(getattr(solution, name))), k, step) for name in quantities}
-    return logs, np.stack([slope_of(_finite(values), k, step) for values in (solution.p, solution.lam)])
+    slopes = {name: slope_of(_finite(getattr(solution, name)), k, step) for name in SIGNED}
+    return logs, np.stack([slope_of(_finite(values), k, step) for values in (solution.p, solution.lam)]), slopes
 
 
 def _finite(values):

@@ -22,7 +22,7 @@ from ..threads import one_blas_thread
 from .added import added_slopes
 from .again import found_again, meshes, same, stacks, without_state
 from .changes import changes_of, inputs_of, moved, slope_of
-from .differences import by_differences
+from .differences import SIGNED, by_differences
 from .held import Held, held
 from .points import of_corners, profiles
 from .state import implicit, operators_of
@@ -32,6 +32,8 @@ from .stiffness import stiffness_slopes
 #: unit has the modulus as a factor.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD", "A0")
 _OF_MODULUS = ("P", "p0", "p_max", "dP_dD")
+#: Where a number changes by more than so many times itself with ln input it is taken to be near 0.
+_NEAR_0 = 5.0
 #: Those whose sensitivity is not known where they are 0, as a load may be under adhesion, or infinite, or not known.
 _NEVER_0 = tuple(name for name in QUANTITIES if name != "A0")
 #: Those that the pressure on the axis decides, which is not known under a point.
@@ -48,11 +50,13 @@ class Sensitivities(NamedTuple):
     inputs : their names, the control first
     logs : quantity -> (B, k), d ln quantity/d ln input; by a Poisson ratio d ln quantity/d ratio. 0 where an input does
         not act, or is 0; NaN of a case without numbers. A smooth punch has 0 for A0, which is 0
+    slopes : quantity -> (B, k), d quantity/d ln input in its unit, also where the quantity is 0
     p, lam : (B, k, m), d p/d ln input at fixed r/a, in the unit of p, and d λ/d ln input
     """
 
     inputs: tuple
     logs: dict
+    slopes: dict
     p: np.ndarray
     lam: np.ndarray
 
@@ -87,18 +91,34 @@ def sensitivities(
     index, acting = np.flatnonzero(solved), [name for name in inputs if _acts(problem, name)]
     size, places = len(problem), [inputs.index(name) for name in acting]
     logs = {name: np.where(solved[:, None], 0.0, np.full((size, len(inputs)), np.nan)) for name in QUANTITIES}
+    signed = {name: logs[name].copy() for name in SIGNED}
     shapes = np.where(solved[:, None, None], 0.0, np.full((2, size, len(inputs), len(x)), np.nan))
     if acting and len(index):
         part, ended = problem.take(index), solution.take(index)
         ended = replace(ended, a=ended.a / part.R, D=ended.D / part.R)
-        by_name, at_x = _of_solved(dimensionless(part), ended, acting, x)
-        for name, values in by_name.items():
-            logs[name][np.ix_(index, places)] = values.T
+        by_name, at_x, slopes = _of_solved(dimensionless(part), ended, acting, x)
+        for found, into in (by_name, logs), (slopes, signed):
+            for name, values in found.items():
+                into[name][np.ix_(index, places)] = values.T
         shapes[np.ix_((0, 1), index, places)] = np.moveaxis(at_x, 1, 2)
+    near = {name: _near_0(problem, getattr(solution, name), name, values) for name, values in signed.items()}
+    for name, (at, straight) in near.items():
+        logs[name] = np.where(at, straight / getattr(solution, name)[:, None], logs[name])
     for name in _NEVER_0:
         values = getattr(solution, name)
         logs[name][~np.isfinite(values) | (values == 0)] = np.nan
-    return Sensitivities(inputs, logs, shapes[0] * problem.E2[:, None, None], shapes[1])
+    slopes = {name: values * getattr(solution, name)[:, None] for name, values in logs.items()}
+    slopes |= {name: np.where(*pair, slopes[name]) for name, pair in near.items()}
+    return Sensitivities(inputs, logs, slopes, shapes[0] * problem.E2[:, None, None], shapes[1])
+
+
+def _near_0(problem, value, name, slopes):
+    """(B, k) bool, where a number with the `value` (B,) is near 0, or 0, under adhesion; and its `slopes` (B, k) in its
+    unit."""
+    of_E2, of_R = SIGNED[name]
+    straight = slopes * (problem.E2**of_E2 * problem.R**of_R)[:, None]
+    sticks, size = (problem.w_adhesion > 0)[:, None], np.abs(value)[:, None]
+    return sticks & ((np.abs(straight) > _NEAR_0 * size) | (size == 0) & np.isfinite(straight)), straight
 
 
 def _acts(problem, name):
@@ -112,10 +132,11 @@ def _acts(problem, name):
 
 
 def _of_solved(scaled, solution, inputs, x):
-    """Quantity -> (k, B), and (2, k, B, m), of solutions that have numbers; `scaled`, and a and D of the `solution`,
-    are in units R = E2* = 1."""
+    """Quantity -> (k, B), and (2, k, B, m), of solutions that have numbers; and quantity -> (k, B) of SIGNED ones by
+    differences. `scaled`, and a and D of the `solution`, are in units R = E2* = 1."""
     k, size = len(inputs), len(scaled)
     logs = {name: np.full((k, size), np.nan) for name in QUANTITIES}
+    slopes = {name: np.full((k, size), np.nan) for name in SIGNED}
     shapes, left = np.full((2, k, size, len(x)), np.nan), np.ones(size, dtype=bool)
     now, above = held(scaled, solution.model_used), moved(scaled, inputs)
     beside = held(above, np.tile(solution.model_used, 2 * k))
@@ -134,10 +155,11 @@ def _of_solved(scaled, solution, inputs, x):
         rest = np.flatnonzero(left & ~now.added & (stateless == fine))
         if not len(rest):
             continue
-        derivatives, shapes[:, :, rest] = by_differences(now.named.take(rest), inputs, QUANTITIES, x, fine)
-        for name, values in derivatives.items():
-            logs[name][:, rest] = values
-    return logs, shapes
+        derivatives, shapes[:, :, rest], signed = by_differences(now.named.take(rest), inputs, QUANTITIES, x, fine)
+        for found, into in (derivatives, logs), (signed, slopes):
+            for name, values in found.items():
+                into[name][:, rest] = values
+    return logs, shapes, slopes
 
 
 def _of_stack(now: Held, beside: Held, above, solution, nodes, x):

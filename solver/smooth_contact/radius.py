@@ -45,16 +45,16 @@ class Radii:
             return np.log(np.where(self.ends, over / (self.most - a), over))
 
 
-def rising_root(evaluate, start, low=-np.inf):
+def rising_root(evaluate, start, low=-np.inf, high=np.inf):
     """Root of a rising function g of each of B cases, by Newton's method inside a bracket that it narrows itself: x
     (B,), and how often each case was evaluated (B,).
 
     evaluate : ``evaluate(x, index) -> g, slope`` at x (b,) for the cases `index` (b,)
     start : (B,). A case whose g is NaN somewhere on the way is given up: x is NaN
-    low : (B,), or a number below all roots
+    low, high : (B,), or numbers below and above all roots
     """
     x, counts = start.copy(), np.zeros(len(start), dtype=np.int32)
-    low, high = np.full(len(x), low), np.full(len(x), np.inf)
+    low, high = np.full(len(x), low), np.full(len(x), high)
     active = np.arange(len(x))
     for _ in range(MOST):
         g, slope = evaluate(x[active], active)
@@ -77,11 +77,25 @@ def rising_root(evaluate, start, low=-np.inf):
 
 def touching(control, value, shape, body):
     """The :class:`~.equation.Response` of B contacts without adhesion, at the radius a, or where the load P or the
-    depth D is `value` (B,); and how often the equation was solved (B,). Where there is no such contact it is NaN.
+    depth D is `value` (B,); and how often the equation was solved (B,). Where there is no such contact it is NaN, and
+    where the search ends on another branch than the contact (:mod:`.branches`).
 
     A full circle of contact ends where D does not rise with a any more: the punch lifts off inside.
     """
-    radii, pieces = Radii(shape), []
+    if control == "a":
+        return respond(shape, body, value), np.ones(len(value), dtype=np.int32)
+    radii = Radii(shape)
+    return _searched(control, value, (shape, body, radii), guess(control, value, shape, body, radii))
+
+
+def bracketed(control, value, shape, body, low, high):
+    """The same of a load or depth between the radii with the variable `low` and `high` (B,), where D rises."""
+    return _searched(control, value, (shape, body, Radii(shape)), (low + high) / 2, low, high)
+
+
+def _searched(control, value, parts, start, low=-np.inf, high=np.inf):
+    """The Response of the `parts`, shapes, a body and :class:`Radii`, by a search from `start` (B,), and counts."""
+    (shape, body, radii), pieces = parts, []
 
     def evaluate(x, index):
         a, da = radii.at(x, index)
@@ -91,10 +105,7 @@ def touching(control, value, shape, body):
         g = np.log(Q / value[index])
         return np.where(slope > 0, g, np.maximum(g, 1.0)), slope * da / Q
 
-    if control == "a":
-        pieces.append((np.arange(len(value)), respond(shape, body, value)))
-        return pieces[0][1], np.ones(len(value), dtype=np.int32)
-    x, counts = rising_root(evaluate, guess(control, value, shape, body, radii))
+    x, counts = rising_root(evaluate, start, low, high)
     response = Response.join(len(value), pieces)
     rounding = _ROUNDED * response.a / (response.a - radii.least)
     reached = np.abs(np.log(getattr(response, control) / value)) < _REACHED + rounding

@@ -8,9 +8,8 @@ from ..solution import Solution
 from .equation import Response, respond
 from .pressure import flat_pressure, pressure_changes, pressures
 from .radius import NEAR
+from .tension import LOOKED_AT, seen
 
-#: Radii at which the pressure is looked at, for tension and for its error; denser towards the edge.
-_LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
 #: Where dD/da is below this part of what the shape adds to it, D has its minimum, to rounding.
 _FLAT = 1e-12
 #: Rounding of a pressure over the largest one: 3e-13 at most beside kinks of the shape (tools/errors/shape_errors.py).
@@ -113,18 +112,30 @@ def beyond_profile(part, shape, at):
     return outside
 
 
-def answer(part, shape, state, counts, x, ring=None):
+class Scales(NamedTuple):
+    """What a load, a depth and a p(0) that may be 0 count as at least, where their errors are relative, (B,) each."""
+
+    P: np.ndarray | float = 0.0
+    D: np.ndarray | float = 0.0
+    p0: np.ndarray | float = 0.0
+
+
+#: Of contacts that do not stick, where nothing is 0.
+NOT_STICKING = Scales()
+
+
+def answer(part, shape, state, counts, x, ring=None, scales=NOT_STICKING):
     """:class:`~..solution.Solution` of the states of a problem, and whether there is tension inside (B,). Its error is
     that of a, P and D under the control, and of p(0) where that is finite. ``ring(x)`` is what is added to p."""
     response, A = state.response, state.A
-    radii = np.concatenate([x, [0.0], _LOOKED_AT])
+    radii = np.concatenate([x, [0.0], LOOKED_AT])
     p = pressures(shape, response, A, radii)
     if ring is not None:
         p = p + ring(radii)
     p_x, p0, looked_at = np.split(p, [len(x), len(x) + 1], axis=1)
     p0 = p0[:, 0]
-    moved, error = _error(part.control, state)
-    of_p = np.abs(pressure_changes(response, A, _LOOKED_AT))
+    moved, error = _error(part.control, state, scales)
+    of_p = np.abs(pressure_changes(response, A, LOOKED_AT))
     along = np.where(moved > 0, np.abs(flat_pressure(response) * state.dD) * moved, 0.0)
     largest = np.max(np.where(np.isfinite(looked_at), np.abs(looked_at), 0.0), axis=1)
     over = np.where(state.a > shape.least(), state.a - shape.least(), state.a)
@@ -136,25 +147,25 @@ def answer(part, shape, state, counts, x, ring=None):
     of_waves = off * np.where(A == 0, largest, np.abs(looked_at[:, : 2 * _INNER]).max(axis=1))
     terms = np.abs(p0) + np.abs(A) * response.E / (np.pi * state.a)  # what the shape presses, and what the edge pulls
     of_p0 = np.where(shape.even, 1.0, _SLOW) * of_p[:, :_INNER].max(axis=1) + rounding * terms + along + of_waves
-    error = error + np.where(np.isfinite(p0), _over(of_p0, p0), 0.0)
+    error = error + np.where(np.isfinite(p0), _over(of_p0, p0, scales.p0), 0.0)
     numbers = {"a": state.a, "P": state.P, "D": state.D, part.control: part.value}
     between = np.maximum(_over(of_p.max(axis=1), largest) + rounding, error)
     solution = Solution.of(
         *p_x.shape, **numbers, p0=p0, p_max=p0, Ar_An=1.0, A0=0.0, dP_dD=state.stiffness, residual=0.0,
         error=error, profile_error=between, p=p_x, lam=1.0, iterations=counts, nodes=np.nan_to_num(response.size),
     )  # fmt: skip
-    return solution, (looked_at < 0).any(axis=1)
+    return solution, seen(looked_at, of_p)
 
 
-def _error(control, state):
+def _error(control, state, scales):
     """By how much the radius may be off (B,), where it is not given, and the sum of the relative errors of a, P, D."""
     if control == "a":
-        return 0 * state.a, _over(state.P_error, state.P) + _over(state.D_error, state.D)
+        return 0 * state.a, _over(state.P_error, state.P, scales.P) + _over(state.D_error, state.D, scales.D)
     off, slope = (state.P_error, state.dP) if control == "P" else (state.D_error, state.dD)
     moved = _over(off + NEAR * _size(control, state), slope)
     other, growth, error = (state.D, state.dD, state.D_error) if control == "P" else (state.P, state.dP, state.P_error)
     along = np.where(moved > 0, np.abs(growth) * moved, 0.0)
-    return moved, _over(moved, state.a) + _over(error + along, other)
+    return moved, _over(moved, state.a) + _over(error + along, other, scales.D if control == "P" else scales.P)
 
 
 def _size(control, state):
@@ -164,6 +175,6 @@ def _size(control, state):
     return np.abs(number) + np.abs(state.A) * flat
 
 
-def _over(error, value):
-    """error/|value|, 0 where there is no error."""
-    return np.where(error == 0, 0.0, error / np.abs(value))
+def _over(error, value, least=0.0):
+    """error/|value|, or over `least` where that is more; 0 where there is no error."""
+    return np.where(error == 0, 0.0, error / np.maximum(np.abs(value), least))

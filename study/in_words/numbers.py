@@ -75,5 +75,11 @@ def _with_spread(case: xr.Dataset, name: str, value: float, spread: float, error
     if not np.isfinite(spread):
         return f"{in_its_unit(case, name, value)} ± unknown"
     kinds = [kind for kind in (error, "model_error") if error and kind in case and np.isfinite(case[kind])]
-    parts = [spread, *(value * float(case[kind]) for kind in kinds)]
+    parts = [spread, *(_size(case, name, value) * float(case[kind]) for kind in kinds)]
     return in_its_unit(case, name, value, float(np.sqrt(np.sum(np.square(parts)))))
+
+
+def _size(case: xr.Dataset, name: str, value: float) -> float:
+    """What the errors of a result are relative to: of a load and a depth of what sticks, those of pull-off at least."""
+    off = case.get(f"{name}_off")
+    return abs(value) if off is None or not np.isfinite(off) else max(abs(value), abs(float(off)))

@@ -45,6 +45,12 @@ def doubts(contact: xr.Dataset) -> list[str]:
     return found + falling(contact)
 
 
+def _near_0(case: xr.Dataset) -> str:
+    """What else an error is relative to: a load or a depth of what sticks may be 0."""
+    names = [name for name in "PD" if abs(case[name]) < abs(case.get(f"{name}_off", 0.0))]
+    return f" ({' and '.join(names)}: of the size at pull-off)" * bool(names)
+
+
 def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
     """How well the case is solved, by which model, which assumptions it violates, and whether it holds.
 
@@ -54,7 +60,7 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
     if word == "converged":
         *first, last = (VOCABULARY[name].symbol for name in judged if np.isfinite(case[name]))
         within = f"{', '.join(first)} and {last} are within a relative {float(case['error']):.1g}"
-        found = [f"Solved: {within} of the model's solution."]
+        found = [f"Solved: {within} of the model's solution{_near_0(case)}."]
         found += [f"Spreads: {text}" for text in influence(case, "p_max" if "p_max" in judged else "p0")]
     else:
         known = {one.name.lower(): one.meaning for one in Status}

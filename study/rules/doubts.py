@@ -91,6 +91,8 @@ def spread_too_wide(v):
             continue
         value, spread = v[name], v[f"{name}_spread"]
         limit = 0.5 - value if name in _RATIOS else abs(value)
+        if f"{name}_off" in v:  # the load and the depth of what sticks pass through 0
+            limit = np.fmax(limit, abs(v[f"{name}_off"]))
         if name in ("R1", "R2"):  # R = 1/(1/R1 + 1/R2) of a close cup changes by more
             limit = limit * np.minimum(abs(value / v["R"]), 1)
         with np.errstate(invalid="ignore"):  # a rigid body has inf, and 0 inf is NaN

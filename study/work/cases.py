@@ -122,8 +122,7 @@ def stresses_of(problem: Problem, solution: Solution) -> dict[str, np.ndarray]:
 def derivatives_of(problem: Problem, solution: Solution, task: Parcel) -> dict[str, np.ndarray]:
     """NAME_by_input -> (B, k), and (B, k, m) of profiles, in the units of the solution."""
     solved = sensitivities(problem, solution, task.x if task.profiles else task.x[:1], task.inputs)
-    derivatives = {name: by * getattr(solution, name)[:, None] for name, by in solved.logs.items()}
-    derivatives |= {"lam0": solved.lam[..., 0]} | {name: getattr(solved, name) for name in task.profiles}
+    derivatives = solved.slopes | {"lam0": solved.lam[..., 0]} | {name: getattr(solved, name) for name in task.profiles}
     return {f"{name}{BY_INPUT}": array for name, array in derivatives.items()}
 
 

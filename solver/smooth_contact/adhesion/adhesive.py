@@ -8,7 +8,7 @@ import numpy as np
 
 from ...status import Status
 from ..radius import guess
-from ..state import State, answer, beyond_profile, pinned
+from ..state import Scales, State, answer, beyond_profile, pinned
 from . import dmt
 from .jkr import Jkr
 from .machine import Held, machine
@@ -19,6 +19,8 @@ from .pull import Curve, Turn, below, beyond, highest, last_minimum
 _SAME = 64 * np.finfo(float).eps
 #: Where load and depth of pull-off are off by this part, nothing is known of what is pulled off.
 _UNKNOWN = 0.1
+#: Errors of what may be 0 are relative to this part of what adhesion takes, at least.
+_LEAST = 0.1
 
 
 def solve(part, shape, body, x):
@@ -41,12 +43,12 @@ def solve(part, shape, body, x):
         state = curve.at(asked, every)[0]
     pulls = {"P_off": turn.state.P, "D_off": turn.state.D, "a_off": np.where(turn.at_axis, 0.0, turn.state.a)}
     pulls |= {"P_in": np.where(search.holder.load, 0.0, jumped.P), "a_in": jumped.a}
-    off = _off(turn.state)
+    off, scales = _off(turn.state), _scales(law, turn.state, state)
     outside = beyond_profile(part, shape, lambda index, a: law.take(index).at(a))
     if isinstance(law, Maugis):
         ring = partial(ring_pressure, part, state.zone)
     exact = _at_minimum(part, state, at_turn)
-    solution = _answered(part, shape, exact, pulls, off, curve.counts + counts, x, ring)
+    solution = _answered(part, shape, exact, (pulls, off, scales), curve.counts + counts, x, ring)
     steep = at_turn & (part.control == "D") & ~turn.corner
     solution = replace(solution, dP_dD=np.where(steep, np.inf, np.where(at_turn, state.stiffness, solution.dP_dD)))
     return solution.refused(outside, Status.OUTSIDE_LAW)
@@ -99,15 +101,26 @@ def _at_minimum(part, state, at_turn):
     return state._replace(**{name: np.where(at_turn, np.inf, getattr(state, name))})
 
 
-def _answered(part, shape, state, pulls, off, counts, x, ring=None):
-    """The solution of the states, with the numbers `pulls` of pull-off and pull-in, which are `off` by so much; and
-    PULLED_OFF where a state is NaN."""
-    solution, _ = answer(part, shape, state, counts, x, ring)
+def _answered(part, shape, state, ends, counts, x, ring=None):
+    """The solution of the states, with PULLED_OFF where they are NaN.
+
+    ends : the numbers of pull-off and pull-in, by how much they are off, and the :class:`~..state.Scales`
+    """
+    pulls, off, scales = ends
+    solution, _ = answer(part, shape, state, counts, x, ring, scales)
     solution = replace(solution, error=np.maximum(solution.error, off))
     solution = solution.refused(~np.isfinite(state.P), Status.PULLED_OFF)
     failed = np.isnan(pulls["P_off"]) | (solution.status == Status.PULLED_OFF) & ~(off < _UNKNOWN)
     numbers = {"stable": solution.a >= pulls["a_off"], part.control: part.value}
     return replace(solution, **pulls, **numbers).refused(failed, Status.DIVERGED)
+
+
+def _scales(law, off, state):
+    """:class:`~..state.Scales` of the states: load and depth pass through 0, so that their errors are relative to those
+    of pull-off at least, the state `off`. These may be 0 too: then to a tenth of what adhesion takes there; as for
+    p(0), of what it takes in the middle of the contact."""
+    P, D, _ = _LEAST * law.taken(off)
+    return Scales(np.fmax(np.abs(off.P), P), np.fmax(np.abs(off.D), D), _LEAST * law.taken(state)[2])
 
 
 def _off(state):
@@ -156,4 +169,5 @@ def _flat(part, law, x):
     off, state = law.at(law.shape.b), pinned(part, law.shape, law.body)
     holds = (state.A >= off.A * (1 + _SAME)) & (part.branch == "stable")
     pulls = {"P_off": off.P, "D_off": off.D, "a_off": off.a, "P_in": 0 * off.a, "a_in": off.a}
-    return _answered(part, law.shape, state.only(holds), pulls, _off(off), np.ones(len(part), dtype=np.int32), x)
+    ends = pulls, _off(off), _scales(law, off, state)
+    return _answered(part, law.shape, state.only(holds), ends, np.ones(len(part), dtype=np.int32), x)

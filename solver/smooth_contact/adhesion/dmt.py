@@ -11,7 +11,7 @@ import numpy as np
 from ...status import Status
 from ..equation import Response, respond
 from ..radius import NEAR, Radii, guess, rising_root, touching
-from ..state import State, answer
+from ..state import Scales, State, answer
 
 
 def solve(part, shape, body, k, x):
@@ -24,7 +24,7 @@ def solve(part, shape, body, k, x):
     state = State.free(response)
     state = state._replace(P=state.P - pull, P_error=state.P_error + NEAR * pull)
     jumped = _jump(shape, body, pull, k)
-    solution, tensile = answer(part, shape, state, counts, x)
+    solution, tensile = answer(part, shape, state, counts, x, scales=Scales(P=pull))
     solution = solution.refused(legal & (tensile | np.isnan(state.P)), Status.LIFT_OFF)
     solution = solution.refused(~legal, Status.PULLED_OFF)
     pulls = {

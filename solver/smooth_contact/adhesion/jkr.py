@@ -19,6 +19,9 @@ import numpy as np
 from ..equation import respond
 from ..state import State
 
+#: Numbers above this have all their digits.
+_SMALL = 1e-290
+
 
 class Jkr(NamedTuple):
     """The law of adhesion of B cases: shapes, the body, and the work of adhesion w (B,)."""
@@ -31,10 +34,17 @@ class Jkr(NamedTuple):
     def take(self, index):
         return Jkr(self.shape.take(index), self.body.take(index), self.w[index])
 
+    def taken(self, state):
+        """What adhesion takes from load, depth and p(0) of states, as of a half-space, (3, B)."""
+        pull = np.abs(state.A)
+        r = state.response
+        return np.array([pull * r.flat_P, pull * r.flat_D, pull * r.E / (np.pi * state.a)])
+
     def at(self, a):
         """The :class:`State` at the radii a (B,)."""
         r = respond(self.shape, self.body, a)
-        A = -np.sqrt(2 * np.pi * a * self.w / r.E)
+        unit = 2 * np.pi * a * self.w / r.E
+        A = -np.where(unit > _SMALL, np.sqrt(unit), np.sqrt(2 * np.pi * a / r.E) * np.sqrt(self.w))  # if it underflows
         dD = r.slope + A * (r.flat_D / (2 * a) + r.flat_slope)
         dP = r.S * dD + 2 * r.E * A / r.flat_D
         errors = (getattr(r, f"{v}_error") + np.abs(A) * getattr(r, f"flat_{v}_error") for v in "PD")

@@ -73,6 +73,11 @@ class Maugis(NamedTuple):
     def take(self, index):
         return Maugis(self.shape.take(index), self.body.take(index), self.w[index], self.sigma[index])
 
+    def taken(self, state):
+        """About what adhesion takes from load, depth and p(0) of states, (3, B)."""
+        c = state.a * state.zone
+        return np.array([np.pi * c**2 * self.sigma, 2 * c * self.sigma / self.body.E, self.sigma])
+
     def at(self, a):
         """The :class:`~..state.State` at the radii a (B,); A is 0, and `zone` is γ."""
         usable, over = np.flatnonzero((a > 0) & np.isfinite(a)), np.full(len(a), np.nan)
@@ -84,9 +89,10 @@ class Maugis(NamedTuple):
         off = (center.w_error + _NEAR * self.w) / np.abs(by_over[0])  # by how much ln(γ - 1) may be off
         errors = center.P_error + off * np.abs(by_over[1]), center.D_error + off * np.abs(by_over[2])
         N, none = center.bent.shape[1], np.zeros_like(center.bent)
+        pressed = np.pi * (a * (1 + np.exp(over))) ** 2 * self.sigma  # so much more load is borne inside of c
         nan, one = np.full_like(a, np.nan), np.ones_like(a)
         response = Response(
-            a, self.body.E * one, center.P, center.D, one, one, dD, nan, *errors, nan, nan, N * one,
+            a, self.body.E * one, center.P + pressed, center.D, one, one, dD, nan, *errors, nan, nan, N * one,
             center.bent, none, none, none,
         )  # fmt: skip
         return State(a, 0 * a, center.P, center.D, dP, dD, *errors, 1 + np.exp(over), response)

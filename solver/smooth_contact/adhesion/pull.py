@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...numerics.bracket import between
+from ...numerics.bracket import between, turns_between
 from ...shapes.shape import column
 from ..radius import LAST, MOST, Radii, rising_root
 from .jkr import State
@@ -27,6 +27,10 @@ _ABOVE, _BELOW, _THIN = 4.0, 1e-3, 0.02
 _CORNER = 1e-6
 #: Waves u = kh at which the kernel is looked at.
 _WAVES = np.geomspace(1e-9, 30.0, 72)
+#: The first step of that search is no longer than others, up to this distance.
+_FAR = 100.0
+#: Below this the square of a number is 0.
+_SMALL = 1e-150
 #: Width of a bracket, in the variable, in which a minimum or a radius is found.
 _NARROW = 1e-14
 
@@ -58,10 +62,14 @@ def highest(law, radii):
         a, da = radii.at(x, index)
         part = law.shape.take(index)
         F, slope = (f(column(a))[:, 0] for f in (part.lifted, part.lifted_slope))
-        g = np.log(F**2 / a) - np.log(4.5 * np.pi * law.w[index] * softest[index] / body.E[index])
+        size = np.where(F > _SMALL, np.log(F**2 / a), 2 * np.log(F) - np.log(a))  # if F² underflows
+        g = size - np.log(4.5 * np.pi * law.w[index] * softest[index] / body.E[index])
         return np.where(np.abs(g) < 0.01, 0.0, g), (2 * slope / F - 1 / a) * da
 
-    x, _ = rising_root(evaluate, np.where(np.isfinite(radii.most) | (radii.least > 0), -1.0, np.log(0.05)))
+    start = np.where(np.isfinite(radii.most) | (radii.least > 0), -1.0, np.log(0.05))
+    g, slope = evaluate(start, np.arange(len(start)))
+    start = np.where(np.abs(g / slope) > _FAR, start - g / slope, start)  # tiny w: more steps than there are
+    x, _ = rising_root(evaluate, start)
     return np.where(radii.ends, np.minimum(x + np.log(_ABOVE), LAST), x + np.log(_ABOVE))
 
 
@@ -178,14 +186,9 @@ def _looked_at(curve, holder, x, index):
 def _turns(curve, x, Q, dQ, index):
     """(b,) bool: between two radii at which Q rises, or falls, the cubic polynomial through both turns."""
     _, da = curve.radii.at(x.ravel(), np.repeat(index, x.shape[1]))
-    slope, width = dQ * da.reshape(x.shape), -np.diff(x, axis=1)
-    high, low, mean = slope[:, :-1], slope[:, 1:], -np.diff(Q, axis=1) / width
-    # the slope of the polynomial is low + linear t + quadratic t², 0 <= t <= 1
-    quadratic, linear = 3 * (low + high - 2 * mean), 2 * (3 * mean - 2 * low - high)
-    t = -linear / (2 * quadratic)
-    extreme = low + linear * t / 2
-    inside = (t > 0) & (t < 1) & (np.sign(high) == np.sign(low)) & (np.sign(extreme) == -np.sign(low))
-    return inside.any(axis=1)
+    slope = dQ * da.reshape(x.shape)
+    pairs = ((values[:, 1:], values[:, :-1]) for values in (Q, slope))
+    return turns_between(-np.diff(x, axis=1), *pairs).any(axis=1)
 
 
 def _with_middles(curve, holder, x, Q, dQ, index):

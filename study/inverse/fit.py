@@ -21,6 +21,7 @@ from .curves import measured
 from .fits.answer import answered
 from .fits.asked import Asked, asked
 from .fits.block import FitStatus
+from .fits.least_squares import AT_LEAST
 from .fits.model import HERTZ, Model
 from .fits.parts import Part, fit_part, forget
 from .fits.said import said
@@ -208,15 +209,15 @@ def _stiffness(X: np.ndarray, Y: np.ndarray, question: Asked) -> np.ndarray:
 
 
 def _blocks(there: np.ndarray, usable: np.ndarray, stiffness: np.ndarray, most: int) -> Iterator[tuple]:
-    """For each block its curves, the same filled up to `most` by the last one, and its number of points. Curves that
-    are alike come together: they share tiles."""
+    """For each block its curves, the same filled up to a multiple of AT_LEAST by the last one, and its number of
+    points. Curves that are alike come together: they share tiles."""
     size = -(-there.sum(axis=1) // _PART) * _PART
     for points in np.unique(size[usable]):
         same = np.flatnonzero((size == points) & usable)
         same = same[np.argsort(stiffness[same], kind="stable")]
         for begin in range(0, len(same), most):
             index = same[begin : begin + most]
-            yield index, np.concatenate([index, np.repeat(index[-1:], most - len(index))]), points
+            yield index, np.concatenate([index, np.repeat(index[-1:], -len(index) % AT_LEAST)]), points
 
 
 def _packed(A: np.ndarray, there: np.ndarray, index: np.ndarray, points: int) -> np.ndarray:

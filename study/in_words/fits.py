@@ -66,13 +66,14 @@ def _of_curve(curve: xr.Dataset, i: int, count: int, inputs: list[str], shifts: 
     widths = max(len(words) for _, words, _ in rows), max(len(name) for name, _, _ in rows)
     lines += [f"  {words:{widths[0]}}  {name:{widths[1]}} = {text}" for name, words, text in rows]
     lines += _residual(curve)
-    lines += _points(curve)
+    doubts = _doubts(curve, inputs)
+    lines += _points(curve) + doubts
     lines += [_SENTENCES[status]] if status in _SENTENCES else []
     lines += _known(curve, inputs)
     broken = str(decode(curve["validity"]).item()).split() if int(curve["validity"]) else []
     lines += [f"At the deepest point: {RULES[name].sentence}" for name in broken if name in RULES]
     lines += [f"At the deepest point {NOT_VIOLATED[0].lower()}{NOT_VIOLATED[1:]}"] * (
-        count == 1 and not broken and status == "converged"
+        count == 1 and not broken and not doubts and status == "converged"
     )
     return lines
 
@@ -85,7 +86,40 @@ def _residual(curve: xr.Dataset) -> list[str]:
     share = rms / float(curve[name].max() - curve[name].min())
     unit = curve["residual"].attrs["units"]
     off = readable(float(f"{rms:.2g}"), unit)
-    return [f"The points are {off} from the fit (rms), {100 * share:.2g} % of the range of {name}."]
+    return [f"The points are {off} from the fit (rms), {_percent(share)} of the range of {name}."]
+
+
+def _doubts(curve: xr.Dataset, inputs: list[str]) -> list[str]:
+    """Where the points do not agree with the fit as independent points would; nothing of a plan."""
+    if "effective_points" not in curve:
+        return []
+    name, lines = inputs[0], []
+    count, effective = int(np.isfinite(curve["residual"]).sum()), float(curve["effective_points"])
+    if effective < count:
+        lines.append(
+            f"The residuals hang together: {count} points say as much as {max(round(effective), 1)} independent ones, "
+            "and the intervals are as wide as that."
+        )
+    if bool(curve["misfit_larger"]):
+        lines.append(
+            f"In contact the points are {float(curve['misfit_ratio']):.2g} times as far from the fit as before it: "
+            "this is no noise, the model does not describe the contact."
+        )
+    if bool(curve["changes"]):
+        change = 100 * (np.exp(float(curve["change"])) - 1)
+        lines.append(
+            f"{name} changes with the depth that is fitted, by {change:+.0f} % from the beginning of the contact to "
+            "the deepest point: one value does not describe the curve."
+        )
+    parts = curve[f"{name}_over_depth"].values if lines else np.array([])
+    if np.isfinite(parts).any():
+        unit = curve[f"{name}_over_depth"].attrs["units"]
+        texts = (readable(float(f"{value:.3g}"), unit) if np.isfinite(value) else "-" for value in parts)
+        quarters = " | ".join(texts)
+        lines.append(
+            f"{name} by quarters of the depth, the shallowest first: {quarters}. `depth=(low, high)` fits a part."
+        )
+    return lines
 
 
 def _points(curve: xr.Dataset) -> list[str]:
@@ -103,6 +137,11 @@ def _points(curve: xr.Dataset) -> list[str]:
     words += [f"{equal} points stand at the {name} of another; each counts."] * bool(equal)
     words += [f"The points are not in the order of {name}, which does not matter."] * (len({*steps[steps != 0]}) > 1)
     return [" ".join(words)] if words else []
+
+
+def _percent(share: float) -> str:
+    """Two digits, and no power of ten for 100 %."""
+    return f"{float(f'{100 * share:.2g}'):g} %"
 
 
 def _long_name(name: str) -> str:
@@ -146,6 +185,6 @@ def _known(curve: xr.Dataset, inputs: list[str]) -> list[str]:
             at = readable(values[1], curve[second].attrs["units"])
             lines.append(
                 f"{first} and {second} cannot be told apart by this curve (correlation {correlation:.3f}). "
-                f"What is known: {first} ({second}/{at})^{power:.2f} to {100 * least:.2g} %."
+                f"What is known: {first} ({second}/{at})^{power:.2f} to {_percent(least)}."
             )
     return lines

@@ -12,6 +12,7 @@ from ...inputs.vocabulary import NOT_RUN, ROWS
 from ...solving import solve
 from .asked import Asked
 from .block import FitStatus
+from .points.parts import PARTS
 
 #: At most so many curves have all places solved at once: a call costs more than some hundred contacts.
 _FEW = 8
@@ -22,6 +23,9 @@ def answered(
     question: Asked, rows: dict, status: np.ndarray, X: np.ndarray, Y: np.ndarray, there: np.ndarray, plan: bool
 ) -> xr.Dataset:
     model, C = question.model, len(X)
+    points = {"effective_points": np.full(C, np.nan), "misfit_ratio": np.full(C, np.nan)}
+    points |= {"misfit_larger": np.zeros(C, bool), "change": np.full(C, np.nan), "changes": np.zeros(C, bool)}
+    parts = np.full((C, PARTS), np.nan)
     names = (*model.unknowns, *question.shifts)
     k, unit = len(names), ROWS[model.y].unit
     value, low, high, spread = (np.full((C, k), np.nan) for _ in range(4))
@@ -36,10 +40,15 @@ def answered(
         total = answer["covariance"][i] + more
         by = np.array([_slope(model, name, p[j], sizes) for j, name in enumerate(names)])
         for j, name in enumerate(names):
-            ends = [_end(p[j], answer[end][i, j], answer["t"][i] * np.sqrt(more[j, j])) for end in ("low", "high")]
+            ends = [_end(p[j], answer[end][i, j], answer["t"][i, j] * np.sqrt(more[j, j])) for end in ("low", "high")]
             value[curve, j], low[curve, j], high[curve, j] = (_value(model, name, v, sizes) for v in (p[j], *ends))
         covariance[curve] = total * by[:, None] * by[None, :]
         spread[curve] = np.sqrt(np.diag(covariance[curve]))
+        points["effective_points"][curve] = there[curve].sum() / answer["factors"][i][: len(model.unknowns)].max()
+        for name, key in (("misfit_ratio", "ratio"), ("misfit_larger", "larger"), ("change", "change")):
+            points[name][curve] = answer[key][i]
+        points["changes"][curve] = answer["changes"][i]
+        parts[curve] = model.of_coordinate(names[0], answer["parts"][i])
         drawn[curve, there[curve]] = answer["fit"][i][: there[curve].sum()]
     variables: dict[str, Any] = {}
     for j, name in enumerate(names):
@@ -51,12 +60,14 @@ def answered(
         variables |= {
             f"{name}_{end}": ("curve", array[:, j], {"units": si}) for end, array in (*ends_of, ("spread", spread))
         }
-    coordinates = {"cov_i": list(names), "cov_j": list(names)}
+    coordinates: dict[str, Any] = {"cov_i": list(names), "cov_j": list(names)}
     variables["covariance"] = (("curve", "cov_i", "cov_j"), covariance)
     if not plan:
         about = {"units": unit}
         variables[f"{model.y}_fit"] = (("curve", "point"), drawn, about)
         variables["residual"] = (("curve", "point"), Y - drawn, about | {"long_name": f"{model.y} - fit"})
+        variables |= _of_points(names[0], points, parts)
+        coordinates["part"] = ("part", (np.arange(PARTS) + 0.5) / PARTS, {"long_name": "share of the depth"})
     meanings = {int(s): s.name.lower() for s in FitStatus} | ({NOT_RUN: "not_run"} if NOT_RUN in status else {})
     flags = {"flag_values": np.array([*meanings], np.int8), "flag_meanings": " ".join(meanings.values())}
     variables["fit_status"] = ("curve", status, flags)
@@ -67,6 +78,23 @@ def answered(
         variables, coordinates, {"level": question.level, "x": model.x, "y": model.y, "free": " ".join(question.free)}
     )
     return fitted.merge(_validity(question, fitted, value, X, there))
+
+
+def _of_points(name: str, points: dict, parts: np.ndarray) -> dict[str, tuple]:
+    """Variables that say how far the points agree with the fit (docs/fit.md, Points that do not agree)."""
+    words = {
+        "effective_points": "number of independent points that say as much",
+        "misfit_ratio": "rms of the residuals in contact over that before it",
+        "misfit_larger": "whether the misfit in contact is surely larger than the noise before it",
+        "change": f"relative change of {name} from the beginning of the contact to the deepest point",
+        "changes": f"whether {name} surely changes with the depth",
+    }
+    variables: dict[str, tuple] = {key: ("curve", array, {"long_name": words[key]}) for key, array in points.items()}
+    about = {
+        "units": ROWS[name].unit,
+        "long_name": f"{name} by parts of the depth, the other unknowns as fitted to all",
+    }
+    return variables | {f"{name}_over_depth": (("curve", "part"), parts, about)}
 
 
 def _slope(model, name: str, p: float, sizes: dict) -> float:

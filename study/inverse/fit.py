@@ -4,6 +4,7 @@ import os
 import warnings
 from collections.abc import Iterator
 from contextlib import closing
+from dataclasses import replace
 from itertools import count
 from typing import Any
 
@@ -24,6 +25,7 @@ from .fits.block import FitStatus
 from .fits.least_squares import AT_LEAST
 from .fits.model import HERTZ, Model
 from .fits.parts import Part, fit_part, forget
+from .fits.points.region import inside, region
 from .fits.said import said
 from .fits.sticking.branch import planned
 
@@ -46,6 +48,7 @@ def fit(
     loss: str = "linear",
     intervals: str | None = "profile",
     level: float = 0.95,
+    depth: tuple | None = None,
     plan: bool = False,
     progress: bool | None = None,
     **parameters: Any,
@@ -69,6 +72,9 @@ def fit(
     intervals : "profile" of the likelihood; "fisher", from the curvature at the minimum; None: no NAME_low, NAME_high.
         Under "huber" they are from the curvature
     level : of the intervals
+    depth : (low, high) of x below the contact point, lengths with units or numbers in SI: points in contact outside are
+        left out, and with a low end below 0 points further before the contact too; None: all points count. The contact
+        point from which it counts is that of a fit of all points
     plan : whether to say only how sure a fit would be: of `curves` x is taken alone, the call has the assumed values
     progress : whether to show how far it is; None: where the terminal or a notebook can
     parameters : those of `study.solve` with units, without P, a and D
@@ -103,29 +109,49 @@ def fit(
     options |= {"intervals": intervals, "level": level, "plan": plan}
     parameters = {name: value for name, value in parameters.items() if value is not None}
     question = asked(free, parameters, x, y, options)
+    limits = region(depth, x)
     data = _columns(curves, question.model, plan)
     X, Y, S = _arrays(data, question.model, sigma)
     if plan:
         Y = _planned(question, X)
-    unknowns = len(question.model.unknowns) + len(question.shifts)
     there = np.isfinite(X) & np.isfinite(Y)
+    if limits:
+        first = replace(question, intervals=None)
+        begin = _contact_points(question, _every(first, (X, Y, S), there, None)[0]) if "D0" in question.shifts else {}
+        there &= inside(X, begin, limits)
+    rows, status = _every(question, (X, Y, S), there, screen_of(progress))
+    fitted = answered(question, rows, status, X, Y, there, plan)
+    fitted = fitted.assign_coords({name: data[name] for name in data.coords})
+    fitted = fitted.assign_attrs({"depth": list(limits)} if limits else {})
+    return fitted.assign_attrs(said(question, fitted))
+
+
+def _every(question: Asked, arrays: tuple, there: np.ndarray, screen: Any) -> tuple[dict[int, tuple], np.ndarray]:
+    """For each curve that is fitted the fits of its block and its place among them; and the status of the others, or
+    -1."""
+    X, Y, _ = arrays
+    unknowns = len(question.model.unknowns) + len(question.shifts)
     status = np.where(_usable(X, Y, there, unknowns, "D0" in question.shifts), -1, FitStatus.INVALID_INPUT)
     rows: dict[int, tuple] = {}
     most = _STICKING if question.model.sticks else _BLOCK
     blocks = list(_blocks(there, status < 0, _stiffness(X, Y, question) if X.size else np.zeros(len(X)), most))
-    with Progress("fit", int((status < 0).sum()), screen_of(progress), passing=True) as told:
+    with Progress("fit", int((status < 0).sum()), screen, passing=True) as told:
         try:
-            for index, fits in _fits(question, blocks, (X, Y, S), there):
+            for index, fits in _fits(question, blocks, arrays, there):
                 rows |= {int(curve): (fits, i) for i, curve in enumerate(index)}
                 told.update(len(index), 0)
         except KeyboardInterrupt:
             if not rows:
                 raise
-            warnings.warn(f"fit: interrupted after {len(rows)} of {len(X)} curves, which are kept", stacklevel=2)
-    status = np.where((status < 0) & ~np.isin(np.arange(len(X)), list(rows)), NOT_RUN, status)
-    fitted = answered(question, rows, status, X, Y, there, plan)
-    fitted = fitted.assign_coords({name: data[name] for name in data.coords})
-    return fitted.assign_attrs(said(question, fitted))
+            warnings.warn(f"fit: interrupted after {len(rows)} of {len(X)} curves, which are kept", stacklevel=3)
+    return rows, np.where((status < 0) & ~np.isin(np.arange(len(X)), list(rows)), NOT_RUN, status)
+
+
+def _contact_points(question: Asked, rows: dict[int, tuple]) -> dict[int, float]:
+    """The contact point in m of each curve that has one."""
+    place = len(question.model.unknowns)
+    lost = (FitStatus.INVALID_INPUT, FitStatus.NO_CONTACT)
+    return {c: fits["p"][i, place] * fits["wide"][i] for c, (fits, i) in rows.items() if fits["status"][i] not in lost}
 
 
 def _fits(question: Asked, blocks: list, arrays: tuple, there: np.ndarray) -> Iterator[tuple[np.ndarray, dict]]:

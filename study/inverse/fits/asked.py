@@ -34,7 +34,7 @@ class Asked:
 
     model : the curve, with its unknown inputs: free ones, then those with a prior
     bounds : free input -> (low, high) in SI; other free inputs have bounds that follow from each curve
-    priors : input with ± in the call -> (coordinate, its spread), as the unknowns of `Model`
+    priors : input with ± in the call, free ones too -> (coordinate, its spread), as the unknowns of `Model`
     spreads : other input -> its spread in its coordinate
     shifts : unknowns after the inputs
     call : arguments of `study.solve`: stand-ins for unknown inputs without a value, and for x
@@ -63,8 +63,8 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
             errors.append(f"free: {shown(name)} is no input that can be fitted{near}")
     errors += [f"free: {name} stands twice" for name in dict.fromkeys(names) if names.count(name) > 1]
     errors += [f"fit: leave out {name}: curves have it" for name in CONTROLS if parameters.get(name) is not None]
-    priors = tuple(name for name in parameters if _has_prior(name, parameters[name]) and name not in names)
-    unknowns = (*names, *priors)
+    priors = tuple(name for name in parameters if _has_prior(name, parameters[name], name in names))
+    unknowns = (*names, *(name for name in priors if name not in names))
     if "k_machine" in unknowns:
         errors.append(
             "free: k_machine: where a punch comes off is read from the points, so they do not say what held it"
@@ -96,7 +96,7 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     if scene is None:
         raise StudyError(["fit: curves have units, so that R and the moduli must have some too"])
     priors = tuple(name for name in priors if name in scene.spreads)  # ± 0 is exact
-    unknowns = (*names, *priors)
+    unknowns = (*names, *(name for name in priors if name not in names))
     moved = tuple(name for name in scene.spreads if name not in unknowns and name not in CONTROLS)
     model = Model.of(definition, x, y, unknowns, moved)
     if model.sticks and (x, y) != ("D", "P"):
@@ -111,14 +111,15 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     if absent:
         raise StudyError([f"free: {name} does not act in this contact" for name in absent])
     for name in names:
-        if name not in bounds and name != model.modulus:
+        if name not in bounds and name != model.modulus and name not in priors:
             value = model.value(name)
             bounds[name] = (0.0, 0.5) if is_ratio(name) else _within(name, value / 10, 10 * value)
             if name in ANGLES:
                 bounds[name] = tuple(model.of_coordinate(name, model.coordinate(name, value) + [-DECADE, DECADE]))
     spread = {name: _log_spread(model, name) for name in moved}
     spread |= {name: float(model.scene.spreads[name] / model.slope(name, model.value(name))) for name in priors}
-    prior = {name: (float(model.coordinate(name, model.value(name))), spread.pop(name)) for name in priors}
+    prior = {name: (float(model.coordinate(name, model.value(name))), spread[name]) for name in priors}
+    spread = {name: value for name, value in spread.items() if name not in priors}
     shifts = [
         name for name, wanted in (("D0", "contact_point"), ("P0", "baseline"), ("tilt", "tilt")) if options[wanted]
     ]
@@ -162,15 +163,14 @@ def _numbers() -> set[str]:
     return (rows | set(SCENE)) - {*BODIES, *CONTROLS, "rtol", "accuracy", "k", "n", "m"}
 
 
-def _has_prior(name: str, value: Any) -> bool:
-    """Whether ± stands in the call: of R, Poisson ratios and names of materials it is taken over, not fitted; that of
-    k_machine changes no curve."""
-    if name in ("R", "k_machine") or name in BODIES or is_ratio(name) or name in CONTROLS:
+def _has_prior(name: str, value: Any, free: bool) -> bool:
+    """Whether ± stands in the call: of R, Poisson ratios and names of materials it is taken over, not fitted, unless
+    they are `free`; that of k_machine changes no curve."""
+    if name == "k_machine" or name in BODIES or name in CONTROLS or (not free and (name == "R" or is_ratio(name))):
         return False
     spread = getattr(value, "std_dev", None) or getattr(getattr(value, "magnitude", None), "std_dev", None)
-    return bool(spread) or (
-        isinstance(value, str) and has_unit(value) and any(sign in value for sign in ("±", "+/-", "+-"))
-    )
+    written = isinstance(value, str) and any(sign in value for sign in ("±", "+/-", "+-"))
+    return bool(spread) or (written and (free or has_unit(value)))
 
 
 def _bounds(name: str, pair: Any, errors: list[str]) -> dict[str, tuple[float, float]]:

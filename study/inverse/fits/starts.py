@@ -43,6 +43,8 @@ def starts_of(
         elif name in asked.bounds:
             low[:, i], high[:, i] = model.coordinate(name, np.array(asked.bounds[name]))
             p[:, i] = (low[:, i] + high[:, i]) / 2
+            if name in asked.priors:
+                p[:, i] = np.clip(asked.priors[name][0], low[:, i], high[:, i])
         elif name in asked.priors:
             center, sd = asked.priors[name]
             p[:, i], low[:, i], high[:, i] = center, center - 10 * sd, center + 10 * sd

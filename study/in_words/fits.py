@@ -94,6 +94,11 @@ def _doubts(curve: xr.Dataset, inputs: list[str]) -> list[str]:
     if "effective_points" not in curve:
         return []
     name, lines = inputs[0], []
+    if "no_pull" in curve and bool(curve["no_pull"]):
+        lines.append(
+            "The load is nowhere below the baseline by more than the noise: without a pull the curve says nothing of "
+            "adhesion. The fit is that of w_adhesion = 0."
+        )
     count, effective = int(np.isfinite(curve["residual"]).sum()), float(curve["effective_points"])
     if effective < count:
         lines.append(
@@ -111,7 +116,7 @@ def _doubts(curve: xr.Dataset, inputs: list[str]) -> list[str]:
             f"{name} changes with the depth that is fitted, by {change:+.0f} % from the beginning of the contact to "
             "the deepest point: one value does not describe the curve."
         )
-    parts = curve[f"{name}_over_depth"].values if lines else np.array([])
+    parts = curve[f"{name}_over_depth"].values
     if np.isfinite(parts).any():
         unit = curve[f"{name}_over_depth"].attrs["units"]
         texts = (readable(float(f"{value:.3g}"), unit) if np.isfinite(value) else "-" for value in parts)

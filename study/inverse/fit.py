@@ -28,6 +28,7 @@ from .fits.parts import Part, fit_part, forget
 from .fits.points.region import inside, region
 from .fits.said import said
 from .fits.sticking.branch import planned
+from .no_pull import joined, without
 
 #: Curves at a time, of what sticks too, and their points are filled up to a multiple of this.
 _BLOCK, _STICKING, _PART = 64, 8, 64
@@ -123,7 +124,18 @@ def fit(
     fitted = answered(question, rows, status, X, Y, there, plan)
     fitted = fitted.assign_coords({name: data[name] for name in data.coords})
     fitted = fitted.assign_attrs({"depth": list(limits)} if limits else {})
+    if "w_adhesion" in question.bounds and "w_adhesion" not in question.priors and len(question.free) > 1 and not plan:
+        options |= {"depth": limits, "x": x, "y": y, "progress": progress}
+        fitted = _with_and_without(fitted, (X, Y, S), (free, options, parameters), question.bounds["w_adhesion"][0])
     return fitted.assign_attrs(said(question, fitted))
+
+
+def _with_and_without(fitted: xr.Dataset, arrays: tuple, call: tuple, low: float) -> xr.Dataset:
+    """The fits, and in place of those of curves without a pull the fits of the same call without adhesion."""
+    (X, Y, S), (free, options, parameters) = arrays, call
+    rest, bare = without(free, parameters)
+    plain = fit({"D": (X, "m"), "P": (Y, "N")}, free=rest, **options | {"sigma": S}, **bare)
+    return joined(fitted, plain, low)
 
 
 def _every(question: Asked, arrays: tuple, there: np.ndarray, screen: Any) -> tuple[dict[int, tuple], np.ndarray]:

@@ -23,6 +23,8 @@ from .tables import Table
 _ROUGHLY = (
     1e-4  # how sure a search from one of several starts is, some 0.03 of a spread; the best one goes on to the end
 )
+#: About the best work of adhesion of a retraction, its logarithm less that: searches begin there.
+_ABOUT = np.linspace(-0.3, 0.3, 8)
 _SURE = 0.999  # level of the F test that there is a contact
 _SAME = 1e-3  # minima whose unknowns differ by less than this part of a spread are one
 
@@ -166,9 +168,39 @@ def _searched(posed: _Posed) -> tuple[Fit, np.ndarray, np.ndarray]:
     fits = minimise(curve.take(every), data.take(every), np.concatenate(starts), sure=rough)
     costs, places = fits.cost.reshape(len(starts), -1), fits.p.reshape(len(starts), B, -1)
     best = fits.take(costs.argmin(axis=0) * B + np.arange(B))
+    if posed.asked.model.sticks and posed.curve.points.retracts.any():
+        costs, places = _to_the_ends(posed, (curve, data), best.p, (costs, places))
+        best = best._replace(p=places[costs.argmin(axis=0), np.arange(B)])
     if posed.few or len(starts) > 1:
         best = minimise(posed.curve, posed.data, best.p)
     return best, costs, places
+
+
+def _to_the_ends(posed: _Posed, few: tuple[Curve, Data], p: np.ndarray, minima: tuple) -> tuple:
+    """The costs and unknowns of searches, of retractions those without a ramp beyond the end of the branch.
+
+    Each point that passes the end makes the cost jump, and a search from one side does not see the other. So it begins
+    about the best unknowns p (B, k) of the search with a ramp: with other works of adhesion, or values of the first
+    unknown if that is known, for which the others are fitted first.
+    """
+    (curve, data), model, (costs, places) = few, posed.asked.model, minima
+    place = model.unknowns.index("w_adhesion") if "w_adhesion" in model.unknowns else 0
+    count, B = len(_ABOUT), len(p)
+    every, begin = np.tile(np.arange(B), count), np.tile(p, (count, 1))
+    held = np.zeros(begin.shape, bool)
+    held[:, place] = True
+    begin[:, place] = np.clip(
+        begin[:, place] + np.repeat(_ABOUT, B), *(end[every, place] for end in (data.low, data.high))
+    )
+    of, to = curve.take(every), data.take(every)
+    begin = minimise(of, to, begin, held, sure=_ROUGHLY).p
+    for each in (of, curve, posed.curve):
+        each.ends = True
+    fits = minimise(of, to, begin, sure=_ROUGHLY)
+    retracts = posed.curve.points.retracts
+    more = np.where(retracts, fits.cost.reshape(count, B), np.inf)
+    costs = np.concatenate([np.where(retracts, np.inf, costs), more])
+    return costs, np.concatenate([places, fits.p.reshape(count, B, -1)])
 
 
 class _Ends(NamedTuple):
@@ -214,11 +246,13 @@ def _intervals(posed: _Posed, best: Fit, minima: tuple, ends: _Ends, sd: np.ndar
 
 
 def _share(curve: Curve, fit: Fit) -> np.ndarray:
-    """The depth below the contact point of each point over that of the deepest, (B, n); 0 before the contact."""
+    """The depth below the contact point of each point over that of the deepest, (B, n); 0 before the contact, and
+    hardly above it where a contact sticks before that depth."""
     depth = curve.x
     if "D0" in curve.shifts:
         depth = depth - fit.p[:, [curve.names.index("D0")]] * curve.wide[:, None]
-    return np.maximum(depth, 0.0) / np.maximum(depth.max(axis=1, keepdims=True), 1e-300)
+    share = np.maximum(depth, 0.0) / np.maximum(depth.max(axis=1, keepdims=True), 1e-300)
+    return np.maximum(share, 1e-9 * (curve.contact(fit.p)[0] != 0)) if curve.table.model.sticks else share
 
 
 def _no_contact(curve: Curve, data: Data, best: Fit, count: np.ndarray, k: int) -> np.ndarray:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import xarray_later as xr
 from ..data.dataset import decode
+from ..inputs.scene.layers import name_of
 from ..inputs.vocabulary import ROWS
 from ..rules.rule import RULES
 from ..specimen.quantities import readable
@@ -27,6 +28,20 @@ _SENTENCES = {
     "not_run": "It was not fitted: the call was interrupted before.",
     "invalid_input": "There are fewer points than unknowns, all at one place, or no solution: nothing is fitted.",
 }
+
+
+#: Of a load that rises from the shallowest point on, as well described by a straight line.
+_THROUGHOUT = (
+    "The load rises from the shallowest point on, nearly along a straight line: either the baseline drifts, or the "
+    "curve is in contact throughout, such as an unloading is. P(D) alone does not say where such a contact begins, and "
+    "no modulus follows. An unloading gives one by its slope dP/dD at the deepest point over the contact radius there: "
+    'x="a", y="dP_dD" (docs/afm.md). Of a loading, take points before the contact too.'
+)
+_FLOWS = (
+    "This is no modulus: a body so stiff flows below a sharp tip, and its loading is no elastic contact. Take the "
+    "slope dP/dD at the beginning of the unloading over the contact radius there (Oliver and Pharr), and fit "
+    'x="a", y="dP_dD" (docs/afm.md).'
+)
 
 
 def of_fit(fitted: xr.Dataset) -> str:
@@ -60,6 +75,8 @@ def _of_curve(curve: xr.Dataset, i: int, count: int, inputs: list[str], shifts: 
     status = str(decode(curve["fit_status"]).item())
     name = curve["curve"].item() if "curve" in curve.coords else i
     lines = [f"Curve {name}: {status.replace('_', ' ')}"] if count > 1 or status != "converged" else []
+    if status == "no_contact" and _rises_throughout(curve):
+        return [*lines, _THROUGHOUT]
     if status in _WITHOUT_NUMBERS:
         return [*lines, _SENTENCES[status]]
     rows = [(name, _long_name(name), _text(curve, name)) for name in (*inputs, *shifts)]
@@ -70,12 +87,28 @@ def _of_curve(curve: xr.Dataset, i: int, count: int, inputs: list[str], shifts: 
     lines += _points(curve) + doubts
     lines += [_SENTENCES[status]] if status in _SENTENCES else []
     lines += _known(curve, inputs)
+    lines += [_FLOWS] if "flows" in curve and bool(curve["flows"]) else []
     broken = str(decode(curve["validity"]).item()).split() if int(curve["validity"]) else []
     lines += [f"At the deepest point: {RULES[name].sentence}" for name in broken if name in RULES]
     lines += [f"At the deepest point {NOT_VIOLATED[0].lower()}{NOT_VIOLATED[1:]}"] * (
         count == 1 and not broken and not doubts and status == "converged"
     )
     return lines
+
+
+def _rises_throughout(curve: xr.Dataset) -> bool:
+    """Whether y rises with x by most of its range along a line, by a good part of that in the shallowest third too."""
+    if f"{curve.attrs['y']}_fit" not in curve:
+        return False
+    x, y = (curve[curve.attrs[name]].values for name in ("x", "y"))
+    there = np.isfinite(x) & np.isfinite(y)
+    order = np.argsort(x[there], kind="stable")
+    x, y = x[there][order], y[there][order]
+    third = len(x) // 3
+    if third < 3 or np.ptp(x[:third]) == 0:
+        return False
+    slopes = [np.polyfit(part - part[0], values, 1)[0] for part, values in ((x, y), (x[:third], y[:third]))]
+    return bool(np.corrcoef(x, y)[0, 1] > 0.95 and slopes[0] > 0 and slopes[1] > 0.2 * slopes[0])
 
 
 def _residual(curve: xr.Dataset) -> list[str]:
@@ -150,6 +183,8 @@ def _percent(share: float) -> str:
 
 
 def _long_name(name: str) -> str:
+    if name.startswith("layers.1."):
+        return ROWS[name_of(1, name.removeprefix("layers.1."))].long_name.replace("the layer", "layer 1")
     return NAMES_OF_SHIFTS.get(name) or ROWS[name].long_name
 
 

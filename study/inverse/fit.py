@@ -127,7 +127,18 @@ def fit(
     if "w_adhesion" in question.bounds and "w_adhesion" not in question.priors and len(question.free) > 1 and not plan:
         options |= {"depth": limits, "x": x, "y": y, "progress": progress}
         fitted = _with_and_without(fitted, (X, Y, S), (free, options, parameters), question.bounds["w_adhesion"][0])
-    return fitted.assign_attrs(said(question, fitted))
+    return _as_called(fitted.assign_attrs(said(question, fitted)), question.called)
+
+
+def _as_called(fitted: xr.Dataset, called: dict[str, str]) -> xr.Dataset:
+    """The fits with the names that the call has: layers.1.E1 of E1."""
+    called = {name: text for name, text in called.items() if text != name and name in fitted["cov_i"].values}
+    ends = ("", "_low", "_high", "_spread", "_over_depth", "_from_prior")
+    names = {f"{name}{end}": f"{text}{end}" for name, text in called.items() for end in ends}
+    lists = {axis: [called.get(str(name), str(name)) for name in fitted[axis].values] for axis in ("cov_i", "cov_j")}
+    renamed = fitted.rename({name: text for name, text in names.items() if name in fitted})
+    words = " ".join(called.get(name, name) for name in fitted.attrs["free"].split())
+    return renamed.assign_coords(lists).assign_attrs(free=words) if called else fitted
 
 
 def _with_and_without(fitted: xr.Dataset, arrays: tuple, call: tuple, low: float) -> xr.Dataset:

@@ -9,10 +9,12 @@ import xarray as xr
 from ...in_words.fits import NAMES_OF_SHIFTS
 from ...inputs.scene.layers import moduli_of
 from ...inputs.vocabulary import NOT_RUN, ROWS
+from ...rules.rule import RULES
 from ...solving import solve
 from .asked import Asked
 from .block import FitStatus
 from .points.parts import PARTS
+from .points.sharp import flows
 
 #: At most so many curves have all places solved at once: a call costs more than some hundred contacts.
 _FEW = 8
@@ -119,9 +121,13 @@ def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndar
     D0 = fitted["D0"].values if "D0" in fitted else np.zeros(len(X))
     good = np.isfinite(value).all(axis=1) & (deepest > D0)
     flags, valid, about = np.zeros(len(X), np.int64), np.where(good, deepest, np.nan), {}
+    plastic = np.zeros(len(X), bool)
     if good.any():
         contacts = _contacts(question, value[good], (deepest - D0)[good])
         flags[good], about = contacts["validity"].values, contacts["validity"].attrs
+        touched = value[good, model.unknowns.index(model.modulus)] if model.modulus in model.unknowns else None
+        touched = np.full(good.sum(), model.value(model.modulus)) if touched is None else touched
+        plastic[good] = flows(model, touched, contacts)
         broken = np.flatnonzero(flags != 0)
         holds, fails = np.zeros(len(broken), int), np.full(len(broken), 2**_HALVINGS)  # in parts of the depth
         at_once = _all_parts(question, value[broken], (deepest - D0)[broken]) if 0 < len(broken) <= _FEW else None
@@ -135,8 +141,10 @@ def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndar
             holds, fails = np.where(good_there, part, holds), np.where(good_there, fails, part)
         x = holds / 2**_HALVINGS * (deepest - D0)[broken]
         valid[broken] = np.where(holds > 0, D0[broken] + x, -np.inf)
+    flags, valid = np.where(plastic, flags | RULES["body_yields"].mask, flags), np.where(plastic, -np.inf, valid)
     variables = {
         "validity": ("curve", flags, about),
+        "flows": ("curve", plastic, {"long_name": "whether a sharp tip makes the body flow: E is no modulus"}),
         f"{model.x}_valid": ("curve", valid, {"units": ROWS[model.x].unit}),
     }
     return xr.Dataset(variables)

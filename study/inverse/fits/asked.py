@@ -12,6 +12,7 @@ from solver.parameters import ends
 from ...inputs.definition import Definition, StudyError
 from ...inputs.punch.shapes import ANGLES
 from ...inputs.reading import from_call
+from ...inputs.scene.layers import name_of
 from ...inputs.vocabulary import BODIES, CONTROLS, PARAMETERS, ROWS, SCENE, suggest
 from ...specimen.quantities import has_unit, quantity
 from ...terminal import shown
@@ -37,6 +38,7 @@ class Asked:
     priors : input with ± in the call, free ones too -> (coordinate, its spread), as the unknowns of `Model`
     spreads : other input -> its spread in its coordinate
     shifts : unknowns after the inputs
+    called : free input -> its name in the call, "layers.1.E1" of E1
     call : arguments of `study.solve`: stand-ins for unknown inputs without a value, and for x
     """
 
@@ -49,6 +51,7 @@ class Asked:
     loss: str
     intervals: str | None
     level: float
+    called: dict[str, str]
     call: dict[str, Any]
 
 
@@ -56,14 +59,18 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     """Check a call. Raises StudyError before any curve is read."""
     errors = _choices(x, y, options)
     names, texts = _listed(free, errors), dict(free) if isinstance(free, dict) else {}
+    called = {short(name): name for name in names}  # "layers.1.E1" is E1 among the inputs of a contact
+    names, texts = tuple(map(short, names)), {short(name): pair for name, pair in texts.items()}
     numbers = _numbers()
     for name in names:
         if name not in numbers:
             near = suggest(name, numbers, ["such as E1, h or Ra"]).replace("; known: ", ", ")
-            errors.append(f"free: {shown(name)} is no input that can be fitted{near}")
+            errors.append(f"free: {shown(called[name])} is no input that can be fitted{near}")
     errors += [f"free: {name} stands twice" for name in dict.fromkeys(names) if names.count(name) > 1]
     errors += [f"fit: leave out {name}: curves have it" for name in CONTROLS if parameters.get(name) is not None]
-    priors = tuple(name for name in parameters if _has_prior(name, parameters[name], name in names))
+    values = _in_layers(parameters) | {short(name): value for name, value in parameters.items()}
+    written = {*map(short, parameters), *names} & {*values}  # ± of layers that are not free is taken over
+    priors = tuple(name for name in values if name in written and _has_prior(name, values[name], name in names))
     unknowns = (*names, *(name for name in priors if name not in names))
     if "k_machine" in unknowns:
         errors.append(
@@ -82,15 +89,15 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     if errors:
         raise StudyError(errors)
     from_material = {name for body, rows in _OF_BODIES.items() if parameters.get(body) is not None for name in rows}
-    open_ = [name for name in names if parameters.get(name) is None and name not in from_material]
+    open_ = [name for name in names if values.get(name) is None and name not in from_material]
     stand_in = {name: _stand_in(name, bounds) for name in open_}
     lacking = [name for name, value in stand_in.items() if value is None]
     if lacking or (options["plan"] and open_):
         wanted = "give the value that is assumed" if options["plan"] else "give bounds, or a value to begin with"
         way = ', free={{"{0}": (low, high)}}, or {0}=...' if not options["plan"] else ", {0}=..."
         raise StudyError([f"free: {name} has no value: {wanted}{way.format(name)}" for name in lacking or open_])
-    call = parameters | stand_in | {x: _ABSCISSA[x]}
-    _check_ends(call, {name: pair for name, pair in bounds.items() if name not in from_material})
+    call = parameters | {called.get(name, name): value for name, value in stand_in.items()} | {x: _ABSCISSA[x]}
+    _check_ends(call, {name: pair for name, pair in bounds.items() if name not in from_material}, called)
     definition = _definition(call, "fit")
     scene = definition.scene
     if scene is None:
@@ -125,7 +132,20 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     ]
     shifts = shifts if x == "D" else []
     about = (options["loss"], options["intervals"], float(options["level"]))
-    return Asked(model, names, bounds, prior, spread, tuple(shifts), *about, call)
+    return Asked(model, names, bounds, prior, spread, tuple(shifts), *about, called, call)
+
+
+def short(name: str) -> str:
+    """ "layers.1.E1" as "E1", its name among the inputs of a contact."""
+    return name_of(1, name.removeprefix("layers.1.")) if name.startswith("layers.1.") else name
+
+
+def _in_layers(parameters: dict) -> dict[str, Any]:
+    """Input -> its value in the list of layers of a call, of layers that are tables."""
+    listed = parameters.get("layers")
+    tables = enumerate(listed, 1) if isinstance(listed, (list, tuple)) else ()
+    rows = {f"layers.{i}": layer for i, layer in tables if isinstance(layer, dict)}
+    return {short(f"{layer}.{field}"): value for layer, row in rows.items() for field, value in row.items()}
 
 
 def _choices(x: str, y: str, options: dict) -> list[str]:
@@ -199,11 +219,13 @@ def _definition(parameters: dict, where: str) -> Definition:
         raise StudyError(message.replace("solve: ", f"{where}: ", 1) for message in error.messages) from None
 
 
-def _check_ends(parameters: dict, bounds: dict) -> None:
-    """Whether the contact takes the bounds. Raises StudyError if not."""
+def _check_ends(parameters: dict, bounds: dict, called: dict) -> None:
+    """Whether the contact takes the bounds. Raises StudyError if not. `called` : input -> its name in the call."""
     for name, pair in bounds.items():
         for end in pair:
-            _definition(parameters | {name: end if ROWS[name].unit == "1" else f"{end!r} {ROWS[name].unit}"}, "free")
+            _definition(
+                parameters | {called[name]: end if ROWS[name].unit == "1" else f"{end!r} {ROWS[name].unit}"}, "free"
+            )
 
 
 def _within(name: str, low: float, high: float) -> tuple[float, float]:

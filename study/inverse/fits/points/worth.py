@@ -10,6 +10,8 @@ from .noise import noise_of
 
 #: Level at which an unknown changes with the depth, and the least change that is worth a sentence.
 _SURE, _LEAST = 0.999, 0.03
+#: Residuals below this part of the range of y are those of the table of the model.
+_EXACT = 2e-5
 #: Freedom of Student's t that is left where hardly a point is independent of the others.
 _FREEDOM = 2.0
 
@@ -45,7 +47,8 @@ def worth_of(x: np.ndarray, data: Data, fit: Fit, variance: np.ndarray, prior: n
     residual = np.where(data.w > 0, data.w * (data.y - fit.model), 0.0)
     limit = huber_limit(data, fit.model)
     residual = residual if limit is None else np.clip(residual, -limit, limit)
-    for b in range(B):
+    off = np.sqrt((np.where(data.w > 0, data.y - fit.model, 0.0) ** 2).mean(axis=1))
+    for b in np.flatnonzero(off > _EXACT):
         there = data.w[b] > 0
         e, X = residual[b, there], (data.w[b, :, None] * fit.J[b])[there]
         noise = noise_of(x[b, there], e, X, share[b, there] > 0)

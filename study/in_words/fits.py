@@ -192,6 +192,8 @@ def _text(curve: xr.Dataset, name: str) -> str:
     unit, spread = curve[f"{name}_spread"].attrs["units"], float(curve[f"{name}_spread"])
     if name not in curve:  # a plan
         return f"assumed, ± {readable(float(f'{spread:.2g}'), unit)}"
+    if name == "w_adhesion" and "no_pull" in curve and bool(curve["no_pull"]):
+        return "0 (no pull)"
     text = readable(float(curve[name]), unit, spread)
     if f"{name}_low" not in curve:
         return text

@@ -32,6 +32,8 @@ from .no_pull import joined, without
 
 #: Curves at a time, of what sticks too, and their points are filled up to a multiple of this.
 _BLOCK, _STICKING, _PART = 64, 8, 64
+#: Fits that look for the contact point of a part of the depth.
+_ROUNDS = 5
 _calls = count()
 _ENDS = ((np.min, np.inf), (np.max, -np.inf))
 
@@ -74,8 +76,7 @@ def fit(
         Under "huber" they are from the curvature
     level : of the intervals
     depth : (low, high) of x below the contact point, lengths with units or numbers in SI: points in contact outside are
-        left out, and with a low end below 0 points further before the contact too; None: all points count. The contact
-        point from which it counts is that of a fit of all points
+        left out, and with a low end below 0 points further before the contact too; None: all points count
     plan : whether to say only how sure a fit would be: of `curves` x is taken alone, the call has the assumed values
     progress : whether to show how far it is; None: where the terminal or a notebook can
     parameters : those of `study.solve` with units, without P, a and D
@@ -117,9 +118,7 @@ def fit(
         Y = _planned(question, X)
     there = np.isfinite(X) & np.isfinite(Y)
     if limits:
-        first = replace(question, intervals=None)
-        begin = _contact_points(question, _every(first, (X, Y, S), there, None)[0]) if "D0" in question.shifts else {}
-        there &= inside(X, begin, limits)
+        there = _within(question, (X, Y, S), there, limits)
     rows, status = _every(question, (X, Y, S), there, screen_of(progress))
     fitted = answered(question, rows, status, X, Y, there, plan)
     fitted = fitted.assign_coords({name: data[name] for name in data.coords})
@@ -128,6 +127,18 @@ def fit(
         options |= {"depth": limits, "x": x, "y": y, "progress": progress}
         fitted = _with_and_without(fitted, (X, Y, S), (free, options, parameters), question.bounds["w_adhesion"][0])
     return _as_called(fitted.assign_attrs(said(question, fitted)), question.called)
+
+
+def _within(question: Asked, arrays: tuple, there: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
+    """The points that count where only a part of the depth does. The contact point from which it counts is that of a
+    fit of all points, then that of the points that count, until these stay."""
+    first, every = replace(question, intervals=None), there
+    for _ in range(_ROUNDS if "D0" in question.shifts else 1):
+        begin = _contact_points(question, _every(first, arrays, there, None)[0]) if "D0" in question.shifts else {}
+        before, there = there, every & inside(arrays[0], begin, limits)
+        if np.array_equal(before, there):
+            break
+    return there
 
 
 def _as_called(fitted: xr.Dataset, called: dict[str, str]) -> xr.Dataset:

@@ -193,7 +193,8 @@ def _text(curve: xr.Dataset, name: str) -> str:
     if name not in curve:  # a plan
         return f"assumed, ± {readable(float(f'{spread:.2g}'), unit)}"
     if name == "w_adhesion" and "no_pull" in curve and bool(curve["no_pull"]):
-        return "0 (no pull)"
+        most = float(curve.get("w_adhesion_high", np.nan))
+        return "0 (no pull)" + (f"  (0 to {readable(float(f'{most:.2g}'), unit)})" if np.isfinite(most) else "")
     text = readable(float(curve[name]), unit, spread)
     if f"{name}_low" not in curve:
         return text

@@ -11,9 +11,11 @@ from scipy import special
 _PULL, _AVERAGE = 2.5, 5
 #: Level at which adhesion lowers the sum of squares, by the work, the point from which on others stick, and what the
 #: best of several searches gains by chance.
-_SURE, _MORE = 0.999, 3
+_SURE, _MORE = 0.95, 3
 #: Parameters that mean nothing without adhesion.
 _OF_ADHESION = ("w_adhesion", "adhesion", "sigma0", "z0", "branch", "k_machine")
+#: End of a name -> what holds the intervals of two fits.
+_BOTH = {"low": np.fmin, "high": np.fmax, "spread": np.fmax}
 _LOST = (5, 6, 127)  # statuses without numbers
 
 
@@ -55,21 +57,25 @@ def joined(fitted: xr.Dataset, plain: xr.Dataset, low: float) -> xr.Dataset:
         sums = [float((part["residual"] ** 2).sum()) for part in (one, other)]
         freedom = max(float(one["effective_points"]) - one.sizes["cov_i"], 1.0)
         gain = (sums[1] - sums[0]) / max(sums[0], 1e-300) * freedom
-        at_bound = float(one["w_adhesion"]) <= low * (1 + 1e-6)
-        in_vain = at_bound or special.fdtr(_MORE, freedom, max(gain, 0.0) / _MORE) < _SURE
-        no_pull[i] = in_vain and _is_quiet(other)
+        better = gain > 0 and float(one["w_adhesion"]) > low * (1 + 1e-6)
+        no_pull[i] = (not better or special.fdtr(_MORE, freedom, gain / _MORE) < _SURE) and _is_quiet(other)
         if no_pull[i]:
-            _put(fitted, plain, i)
+            _put(fitted, plain, i, better)
     return fitted.assign(no_pull=("curve", no_pull, {"long_name": "whether the curve has no pull: w_adhesion is 0"}))
 
 
-def _put(fitted: xr.Dataset, plain: xr.Dataset, curve: int) -> None:
-    """The numbers of a curve of `plain` in place of those of `fitted`."""
+def _put(fitted: xr.Dataset, plain: xr.Dataset, curve: int, better: bool) -> None:
+    """The numbers of a curve of `plain` in place of those of `fitted`. Where some adhesion is `better`, by no more than
+    chance, the intervals hold those of both."""
+    before = fitted.isel(curve=curve).copy(deep=True)
     for name in plain.data_vars:
         if name in fitted and name != "covariance":
             fitted[name].values[curve] = plain[name].values[curve]
+            if better and (both := _BOTH.get(str(name).rpartition("_")[2])):
+                fitted[name].values[curve] = both(before[name].values, plain[name].values[curve])
     names = {name: fitted[name].values for name in ("cov_i", "cov_j")}
     fitted["covariance"].values[curve] = plain["covariance"].isel(curve=curve).reindex(names).values
     fitted["w_adhesion"].values[curve], fitted["w_adhesion_spread"].values[curve] = 0.0, np.nan
     if "w_adhesion_low" in fitted:
-        fitted["w_adhesion_low"].values[curve] = fitted["w_adhesion_high"].values[curve] = np.nan
+        fitted["w_adhesion_low"].values[curve] = 0.0
+        fitted["w_adhesion_high"].values[curve] = before["w_adhesion_high"] if better else np.nan

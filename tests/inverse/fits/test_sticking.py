@@ -4,9 +4,9 @@ import warnings
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from measured_curves import solved, status
 from numpy.testing import assert_allclose
-from test_correlated_noise import MEASURED
 
 import study
 from study.inverse.fits.asked import asked
@@ -185,7 +185,7 @@ CELL = {"punch": "rigid", "nu2": 0.5, "base": "half_space", "micro": "smooth", "
 )
 def test_all_points_of_a_retraction_stick(number, R, E, w, rms):
     """Where only the deepest tenth stuck, and the rest was Hertz's curve, the points were 106.8 and 145.2 pN off."""
-    path = MEASURED / f"retraction_jkr_{number}.csv"
+    path = ROOT / f"tests/inverse/misfit/measured/retraction_jkr_{number}.csv"
     fit = study.fit(path, free=["E2", "w_adhesion"], R=f"{R} um", w_adhesion="10 uJ/m^2", intervals="fisher", **CELL)
     assert_allclose([fit.E2.item(), fit.w_adhesion.item()], [E, w], rtol=5e-3)
     assert 1e12 * np.sqrt(np.mean(fit.residual.values**2)) < rms + 0.05

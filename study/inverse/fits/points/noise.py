@@ -17,7 +17,7 @@ import numpy as np
 from scipy import special
 
 #: Blocks of points. With 100 to 10,000 points and correlations of neighbours of 0.5 to 0.95, 95 % intervals hold 94 to
-#: 98 % (tests/inverse/fits/test_correlated_noise.py).
+#: 98 % (tests/inverse/misfit/test_correlated_noise.py).
 _MOST = 128
 _FEWEST = 16  # blocks, below which no correlation is looked for
 _LENGTHS = 12  # lengths l, from half a block to an eighth of all blocks

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from test_correlated_noise import MEASURED
+from conftest import ROOT
 
 import study
 
+MEASURED = ROOT / "tests/inverse/misfit/measured"
 CALL = {"punch": "diamond", "nu2": 0.3, "base": "half_space", "micro": "smooth", "progress": False}
 TIPS = [
     {"shape": "berkovich"},

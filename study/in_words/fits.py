@@ -17,6 +17,8 @@ NAMES_OF_SHIFTS = {"D0": "contact point", "P0": "baseline", "tilt": "slope of th
 MOST_CURVES = 20  # that are written out
 #: Inputs whose logarithms have a correlation beyond this are told apart by no curve; their product of powers may be.
 _ALIKE = 0.995
+#: Standard deviations from its prior beyond which an input contradicts it.
+_AGAINST = 2.5
 _WITHOUT_NUMBERS = ("no_contact", "invalid_input", "not_run")
 _SENTENCES = {
     "at_bound": "The best value is at a bound: widen the bounds, or the curve does not hold it.",
@@ -143,6 +145,13 @@ def _doubts(curve: xr.Dataset, inputs: list[str]) -> list[str]:
             f"In contact the points are {float(curve['misfit_ratio']):.2g} times as far from the fit as before it: "
             "this is no noise, the model does not describe the contact."
         )
+    for prior in (one for one in inputs if f"{one}_from_prior" in curve):
+        off = float(curve[f"{prior}_from_prior"])
+        if abs(off) > _AGAINST:
+            lines.append(
+                f"{prior} is {float(f'{abs(off):.2g}'):g} standard deviations from what the call says of it: the curve "
+                "and that ± contradict each other, or the model does not describe the curve."
+            )
     if bool(curve["changes"]):
         change = 100 * (np.exp(float(curve["change"])) - 1)
         lines.append(

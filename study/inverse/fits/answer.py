@@ -25,9 +25,6 @@ def answered(
     question: Asked, rows: dict, status: np.ndarray, X: np.ndarray, Y: np.ndarray, there: np.ndarray, plan: bool
 ) -> xr.Dataset:
     model, C = question.model, len(X)
-    points = {"effective_points": np.full(C, np.nan), "misfit_ratio": np.full(C, np.nan)}
-    points |= {"misfit_larger": np.zeros(C, bool), "change": np.full(C, np.nan), "changes": np.zeros(C, bool)}
-    parts = np.full((C, PARTS), np.nan)
     names = (*model.unknowns, *question.shifts)
     k, unit = len(names), ROWS[model.y].unit
     value, low, high, spread = (np.full((C, k), np.nan) for _ in range(4))
@@ -46,11 +43,6 @@ def answered(
             value[curve, j], low[curve, j], high[curve, j] = (_value(model, name, v, sizes) for v in (p[j], *ends))
         covariance[curve] = total * by[:, None] * by[None, :]
         spread[curve] = np.sqrt(np.diag(covariance[curve]))
-        points["effective_points"][curve] = there[curve].sum() / answer["factors"][i][: len(model.unknowns)].max()
-        for name, key in (("misfit_ratio", "ratio"), ("misfit_larger", "larger"), ("change", "change")):
-            points[name][curve] = answer[key][i]
-        points["changes"][curve] = answer["changes"][i]
-        parts[curve] = model.of_coordinate(names[0], answer["parts"][i])
         drawn[curve, there[curve]] = answer["fit"][i][: there[curve].sum()]
     variables: dict[str, Any] = {}
     for j, name in enumerate(names):
@@ -68,7 +60,7 @@ def answered(
         about = {"units": unit}
         variables[f"{model.y}_fit"] = (("curve", "point"), drawn, about)
         variables["residual"] = (("curve", "point"), Y - drawn, about | {"long_name": f"{model.y} - fit"})
-        variables |= _of_points(names[0], points, parts)
+        variables |= _of_points(question, rows, status, there.sum(axis=1)) | _from_priors(question, names, value)
         coordinates["part"] = ("part", (np.arange(PARTS) + 0.5) / PARTS, {"long_name": "share of the depth"})
     meanings = {int(s): s.name.lower() for s in FitStatus} | ({NOT_RUN: "not_run"} if NOT_RUN in status else {})
     flags = {"flag_values": np.array([*meanings], np.int8), "flag_meanings": " ".join(meanings.values())}
@@ -82,21 +74,46 @@ def answered(
     return fitted.merge(_validity(question, fitted, value, X, there))
 
 
-def _of_points(name: str, points: dict, parts: np.ndarray) -> dict[str, tuple]:
-    """Variables that say how far the points agree with the fit (docs/fit.md, Points that do not agree)."""
+def _of_points(question: Asked, rows: dict, status: np.ndarray, count: np.ndarray) -> dict[str, tuple]:
+    """Variables that say how far the points agree with the fit (docs/fit.md, Points that do not agree).
+
+    count : (curve,) of points
+    """
+    model, C, name = question.model, len(status), question.model.unknowns[0]
     words = {
         "effective_points": "number of independent points that say as much",
         "misfit_ratio": "rms of the residuals in contact over that before it",
         "misfit_larger": "whether the misfit in contact is surely larger than the noise before it",
-        "change": f"relative change of {name} from the beginning of the contact to the deepest point",
+        "change": f"change of ln {name} from the beginning of the contact to the deepest point",
         "changes": f"whether {name} surely changes with the depth",
     }
-    variables: dict[str, tuple] = {key: ("curve", array, {"long_name": words[key]}) for key, array in points.items()}
+    keys = {"misfit_ratio": "ratio", "misfit_larger": "larger", "change": "change", "changes": "changes"}
+    values = {key: np.full(C, np.nan) for key in words}
+    values |= {key: np.zeros(C, bool) for key in ("misfit_larger", "changes")}
+    parts = np.full((C, PARTS), np.nan)
+    for curve, (answer, i) in rows.items():
+        if status[curve] in (FitStatus.INVALID_INPUT, FitStatus.NO_CONTACT):
+            continue
+        values["effective_points"][curve] = count[curve] / answer["factors"][i][: len(model.unknowns)].max()
+        for key, short in keys.items():
+            values[key][curve] = answer[short][i]
+        parts[curve] = model.of_coordinate(name, answer["parts"][i])
     about = {
         "units": ROWS[name].unit,
         "long_name": f"{name} by parts of the depth, the other unknowns as fitted to all",
     }
+    variables: dict[str, tuple] = {key: ("curve", array, {"long_name": words[key]}) for key, array in values.items()}
     return variables | {f"{name}_over_depth": (("curve", "part"), parts, about)}
+
+
+def _from_priors(question: Asked, names: tuple, value: np.ndarray) -> dict[str, tuple]:
+    """Of each input with a prior, how far it is from that."""
+    variables = {}
+    for name, (center, sd) in question.priors.items():
+        about = {"long_name": f"{name} less its prior, in standard deviations of that"}
+        off = (question.model.coordinate(name, value[:, names.index(name)]) - center) / sd
+        variables[f"{name}_from_prior"] = ("curve", off, about)
+    return variables
 
 
 def _slope(model, name: str, p: float, sizes: dict) -> float:

@@ -162,3 +162,15 @@ def test_long_curves_have_the_answer_of_all_points():
         for name, sure in {"E2": 1e-6, "E2_spread": 1e-6, "E2_low": 5e-5, "E2_high": 5e-5}.items():
             assert fitted[name].item() == pytest.approx(whole[name].item(), rel=sure), name
         np.testing.assert_allclose(fitted.residual.values.std(), whole.residual.values.std(), rtol=1e-8)
+
+
+def test_a_curve_that_contradicts_a_prior_says_so():
+    """Loads of 5 kPa with hardly a noise, and 3 ± 0.1 kPa in the call."""
+    P = hertz(DEPTHS) * (1 + 1e-3 * np.random.default_rng(5).standard_normal(len(DEPTHS)))
+    data = {"D": (DEPTHS, "m"), "P": (P, "N")}
+    texts = []
+    for prior in ("3 ± 0.1 kPa", "5 ± 0.1 kPa"):
+        fitted = study.fit(data, free=["E2"], E2=prior, intervals=None, **BARE)
+        texts.append(str(study.summary(fitted)))
+    assert "standard deviations from what the call says of it" in texts[0] and "what the call says" not in texts[1]
+    assert abs(fitted.E2_from_prior.item()) < 1

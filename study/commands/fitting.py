@@ -25,7 +25,7 @@ from .point import parameters_of
 
 _RANGE = re.compile(r"\s*\.\.\s*")
 _SWITCHES = ("contact_point", "baseline", "tilt")
-_OPTIONS = (*_SWITCHES, "x", "y", "sigma", "loss", "intervals", "level", "free")
+_OPTIONS = (*_SWITCHES, "x", "y", "sigma", "loss", "intervals", "level", "depth", "free")
 _READING = ("part", "curve", "spring_constant", "sensitivity")  # of `study.curves`
 _PYTHON = ("plan", "progress")  # options of `study.fit` that a terminal does not have
 
@@ -99,6 +99,8 @@ def asked(words: list[str]) -> tuple[Any, dict, dict]:
             settings["level"] = float(settings["level"])
         except ValueError:
             errors.append(f"level={settings['level']}: must be a number, such as 0.95")
+    if "depth" in settings:
+        settings["depth"] = tuple(_RANGE.split(settings["depth"]))
     if settings.get("intervals") == "none":
         settings["intervals"] = None
     if errors:

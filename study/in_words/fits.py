@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import xarray_later as xr
 from ..data.dataset import decode
+from ..inputs.scene.layers import name_of
 from ..inputs.vocabulary import ROWS
 from ..rules.rule import RULES
 from ..specimen.quantities import readable
@@ -16,6 +17,8 @@ NAMES_OF_SHIFTS = {"D0": "contact point", "P0": "baseline", "tilt": "slope of th
 MOST_CURVES = 20  # that are written out
 #: Inputs whose logarithms have a correlation beyond this are told apart by no curve; their product of powers may be.
 _ALIKE = 0.995
+#: Standard deviations from its prior beyond which an input contradicts it.
+_AGAINST = 2.5
 _WITHOUT_NUMBERS = ("no_contact", "invalid_input", "not_run")
 _SENTENCES = {
     "at_bound": "The best value is at a bound: widen the bounds, or the curve does not hold it.",
@@ -27,6 +30,20 @@ _SENTENCES = {
     "not_run": "It was not fitted: the call was interrupted before.",
     "invalid_input": "There are fewer points than unknowns, all at one place, or no solution: nothing is fitted.",
 }
+
+
+#: Of a load that rises from the shallowest point on, as well described by a straight line.
+_THROUGHOUT = (
+    "The load rises from the shallowest point on, nearly along a straight line: either the baseline drifts, or the "
+    "curve is in contact throughout, such as an unloading is. P(D) alone does not say where such a contact begins, and "
+    "no modulus follows. An unloading gives one by its slope dP/dD at the deepest point over the contact radius there: "
+    'x="a", y="dP_dD" (docs/afm.md). Of a loading, take points before the contact too.'
+)
+_FLOWS = (
+    "This is no modulus: a body so stiff flows below a sharp tip, and its loading is no elastic contact. Take the "
+    "slope dP/dD at the beginning of the unloading over the contact radius there (Oliver and Pharr), and fit "
+    'x="a", y="dP_dD" (docs/afm.md).'
+)
 
 
 def of_fit(fitted: xr.Dataset) -> str:
@@ -60,21 +77,40 @@ def _of_curve(curve: xr.Dataset, i: int, count: int, inputs: list[str], shifts: 
     status = str(decode(curve["fit_status"]).item())
     name = curve["curve"].item() if "curve" in curve.coords else i
     lines = [f"Curve {name}: {status.replace('_', ' ')}"] if count > 1 or status != "converged" else []
+    if status == "no_contact" and _rises_throughout(curve):
+        return [*lines, _THROUGHOUT]
     if status in _WITHOUT_NUMBERS:
         return [*lines, _SENTENCES[status]]
     rows = [(name, _long_name(name), _text(curve, name)) for name in (*inputs, *shifts)]
     widths = max(len(words) for _, words, _ in rows), max(len(name) for name, _, _ in rows)
     lines += [f"  {words:{widths[0]}}  {name:{widths[1]}} = {text}" for name, words, text in rows]
     lines += _residual(curve)
-    lines += _points(curve)
+    doubts = _doubts(curve, inputs)
+    lines += _points(curve) + doubts
     lines += [_SENTENCES[status]] if status in _SENTENCES else []
     lines += _known(curve, inputs)
+    lines += [_FLOWS] if "flows" in curve and bool(curve["flows"]) else []
     broken = str(decode(curve["validity"]).item()).split() if int(curve["validity"]) else []
     lines += [f"At the deepest point: {RULES[name].sentence}" for name in broken if name in RULES]
     lines += [f"At the deepest point {NOT_VIOLATED[0].lower()}{NOT_VIOLATED[1:]}"] * (
-        count == 1 and not broken and status == "converged"
+        count == 1 and not broken and not doubts and status == "converged"
     )
     return lines
+
+
+def _rises_throughout(curve: xr.Dataset) -> bool:
+    """Whether y rises with x by most of its range along a line, by a good part of that in the shallowest third too."""
+    if f"{curve.attrs['y']}_fit" not in curve:
+        return False
+    x, y = (curve[curve.attrs[name]].values for name in ("x", "y"))
+    there = np.isfinite(x) & np.isfinite(y)
+    order = np.argsort(x[there], kind="stable")
+    x, y = x[there][order], y[there][order]
+    third = len(x) // 3
+    if third < 3 or np.ptp(x[:third]) == 0:
+        return False
+    slopes = [np.polyfit(part - part[0], values, 1)[0] for part, values in ((x, y), (x[:third], y[:third]))]
+    return bool(np.corrcoef(x, y)[0, 1] > 0.95 and slopes[0] > 0 and slopes[1] > 0.2 * slopes[0])
 
 
 def _residual(curve: xr.Dataset) -> list[str]:
@@ -85,7 +121,52 @@ def _residual(curve: xr.Dataset) -> list[str]:
     share = rms / float(curve[name].max() - curve[name].min())
     unit = curve["residual"].attrs["units"]
     off = readable(float(f"{rms:.2g}"), unit)
-    return [f"The points are {off} from the fit (rms), {100 * share:.2g} % of the range of {name}."]
+    return [f"The points are {off} from the fit (rms), {_percent(share)} of the range of {name}."]
+
+
+def _doubts(curve: xr.Dataset, inputs: list[str]) -> list[str]:
+    """Where the points do not agree with the fit as independent points would; nothing of a plan."""
+    if "effective_points" not in curve:
+        return []
+    name, lines = inputs[0], []
+    if "no_pull" in curve and bool(curve["no_pull"]):
+        lines.append(
+            "The load is nowhere below the baseline by more than the noise: without a pull the curve says nothing of "
+            "adhesion. The fit is that of w_adhesion = 0."
+        )
+    count, effective = int(np.isfinite(curve["residual"]).sum()), float(curve["effective_points"])
+    if effective < count:
+        lines.append(
+            f"The residuals hang together: {count} points say as much as {max(round(effective), 1)} independent ones, "
+            "and the intervals are as wide as that."
+        )
+    if bool(curve["misfit_larger"]):
+        lines.append(
+            f"In contact the points are {float(curve['misfit_ratio']):.2g} times as far from the fit as before it: "
+            "this is no noise, the model does not describe the contact."
+        )
+    for prior in (one for one in inputs if f"{one}_from_prior" in curve):
+        off = float(curve[f"{prior}_from_prior"])
+        if abs(off) > _AGAINST:
+            lines.append(
+                f"{prior} is {float(f'{abs(off):.2g}'):g} standard deviations from what the call says of it: the curve "
+                "and that ± contradict each other, or the model does not describe the curve."
+            )
+    if bool(curve["changes"]):
+        change = 100 * (np.exp(float(curve["change"])) - 1)
+        lines.append(
+            f"{name} changes with the depth that is fitted, by {change:+.0f} % from the beginning of the contact to "
+            "the deepest point: one value does not describe the curve."
+        )
+    parts = curve[f"{name}_over_depth"].values
+    if np.isfinite(parts).any():
+        unit = curve[f"{name}_over_depth"].attrs["units"]
+        texts = (readable(float(f"{value:.3g}"), unit) if np.isfinite(value) else "-" for value in parts)
+        quarters = " | ".join(texts)
+        lines.append(
+            f"{name} by quarters of the depth, the shallowest first: {quarters}. `depth=(low, high)` fits a part."
+        )
+    return lines
 
 
 def _points(curve: xr.Dataset) -> list[str]:
@@ -105,7 +186,14 @@ def _points(curve: xr.Dataset) -> list[str]:
     return [" ".join(words)] if words else []
 
 
+def _percent(share: float) -> str:
+    """Two digits, and no power of ten for 100 %."""
+    return f"{float(f'{100 * share:.2g}'):g} %"
+
+
 def _long_name(name: str) -> str:
+    if name.startswith("layers.1."):
+        return ROWS[name_of(1, name.removeprefix("layers.1."))].long_name.replace("the layer", "layer 1")
     return NAMES_OF_SHIFTS.get(name) or ROWS[name].long_name
 
 
@@ -113,6 +201,9 @@ def _text(curve: xr.Dataset, name: str) -> str:
     unit, spread = curve[f"{name}_spread"].attrs["units"], float(curve[f"{name}_spread"])
     if name not in curve:  # a plan
         return f"assumed, ± {readable(float(f'{spread:.2g}'), unit)}"
+    if name == "w_adhesion" and "no_pull" in curve and bool(curve["no_pull"]):
+        most = float(curve.get("w_adhesion_high", np.nan))
+        return "0 (no pull)" + (f"  (0 to {readable(float(f'{most:.2g}'), unit)})" if np.isfinite(most) else "")
     text = readable(float(curve[name]), unit, spread)
     if f"{name}_low" not in curve:
         return text
@@ -146,6 +237,6 @@ def _known(curve: xr.Dataset, inputs: list[str]) -> list[str]:
             at = readable(values[1], curve[second].attrs["units"])
             lines.append(
                 f"{first} and {second} cannot be told apart by this curve (correlation {correlation:.3f}). "
-                f"What is known: {first} ({second}/{at})^{power:.2f} to {100 * least:.2g} %."
+                f"What is known: {first} ({second}/{at})^{power:.2f} to {_percent(least)}."
             )
     return lines

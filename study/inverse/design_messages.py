@@ -112,6 +112,6 @@ def _helps(want: Wanted, answer: Answer) -> dict[int, str]:
         if slope:
             smaller = answer.status[row] == 2
             way = "less" if (slope > 0) == smaller else "more"
-            change = f"{abs(slope):.2g} % {'smaller' if smaller else 'larger'}"
+            change = f"{float(f'{abs(slope):.2g}'):g} % {'smaller' if smaller else 'larger'}"
             texts[row] = f". {names[best]} would move it most: 1 % {way} makes it {change}"
     return texts

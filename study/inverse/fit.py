@@ -4,6 +4,7 @@ import os
 import warnings
 from collections.abc import Iterator
 from contextlib import closing
+from dataclasses import replace
 from itertools import count
 from typing import Any
 
@@ -21,13 +22,18 @@ from .curves import measured
 from .fits.answer import answered
 from .fits.asked import Asked, asked
 from .fits.block import FitStatus
+from .fits.least_squares import AT_LEAST
 from .fits.model import HERTZ, Model
 from .fits.parts import Part, fit_part, forget
+from .fits.points.region import inside, region
 from .fits.said import said
 from .fits.sticking.branch import planned
+from .no_pull import joined, without
 
 #: Curves at a time, of what sticks too, and their points are filled up to a multiple of this.
 _BLOCK, _STICKING, _PART = 64, 8, 64
+#: Fits that look for the contact point of a part of the depth.
+_ROUNDS = 5
 _calls = count()
 _ENDS = ((np.min, np.inf), (np.max, -np.inf))
 
@@ -45,6 +51,7 @@ def fit(
     loss: str = "linear",
     intervals: str | None = "profile",
     level: float = 0.95,
+    depth: tuple | None = None,
     plan: bool = False,
     progress: bool | None = None,
     **parameters: Any,
@@ -68,6 +75,8 @@ def fit(
     intervals : "profile" of the likelihood; "fisher", from the curvature at the minimum; None: no NAME_low, NAME_high.
         Under "huber" they are from the curvature
     level : of the intervals
+    depth : (low, high) of x below the contact point, lengths with units or numbers in SI: points in contact outside are
+        left out, and with a low end below 0 points further before the contact too; None: all points count
     plan : whether to say only how sure a fit would be: of `curves` x is taken alone, the call has the assumed values
     progress : whether to show how far it is; None: where the terminal or a notebook can
     parameters : those of `study.solve` with units, without P, a and D
@@ -102,29 +111,81 @@ def fit(
     options |= {"intervals": intervals, "level": level, "plan": plan}
     parameters = {name: value for name, value in parameters.items() if value is not None}
     question = asked(free, parameters, x, y, options)
+    limits = region(depth, x)
     data = _columns(curves, question.model, plan)
     X, Y, S = _arrays(data, question.model, sigma)
     if plan:
         Y = _planned(question, X)
-    unknowns = len(question.model.unknowns) + len(question.shifts)
     there = np.isfinite(X) & np.isfinite(Y)
+    if limits:
+        there = _within(question, (X, Y, S), there, limits)
+    rows, status = _every(question, (X, Y, S), there, screen_of(progress))
+    fitted = answered(question, rows, status, X, Y, there, plan)
+    fitted = fitted.assign_coords({name: data[name] for name in data.coords})
+    fitted = fitted.assign_attrs({"depth": list(limits)} if limits else {})
+    if "w_adhesion" in question.bounds and "w_adhesion" not in question.priors and len(question.free) > 1 and not plan:
+        options |= {"depth": limits, "x": x, "y": y, "progress": progress}
+        fitted = _with_and_without(fitted, (X, Y, S), (free, options, parameters), question.bounds["w_adhesion"][0])
+    return _as_called(fitted.assign_attrs(said(question, fitted)), question.called)
+
+
+def _within(question: Asked, arrays: tuple, there: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
+    """The points that count where only a part of the depth does. The contact point from which it counts is that of a
+    fit of all points, then that of the points that count, until these stay."""
+    first, every = replace(question, intervals=None), there
+    for _ in range(_ROUNDS if "D0" in question.shifts else 1):
+        begin = _contact_points(question, _every(first, arrays, there, None)[0]) if "D0" in question.shifts else {}
+        before, there = there, every & inside(arrays[0], begin, limits)
+        if np.array_equal(before, there):
+            break
+    return there
+
+
+def _as_called(fitted: xr.Dataset, called: dict[str, str]) -> xr.Dataset:
+    """The fits with the names that the call has: layers.1.E1 of E1."""
+    called = {name: text for name, text in called.items() if text != name and name in fitted["cov_i"].values}
+    ends = ("", "_low", "_high", "_spread", "_over_depth", "_from_prior")
+    names = {f"{name}{end}": f"{text}{end}" for name, text in called.items() for end in ends}
+    lists = {axis: [called.get(str(name), str(name)) for name in fitted[axis].values] for axis in ("cov_i", "cov_j")}
+    renamed = fitted.rename({name: text for name, text in names.items() if name in fitted})
+    words = " ".join(called.get(name, name) for name in fitted.attrs["free"].split())
+    return renamed.assign_coords(lists).assign_attrs(free=words) if called else fitted
+
+
+def _with_and_without(fitted: xr.Dataset, arrays: tuple, call: tuple, low: float) -> xr.Dataset:
+    """The fits, and in place of those of curves without a pull the fits of the same call without adhesion."""
+    (X, Y, S), (free, options, parameters) = arrays, call
+    rest, bare = without(free, parameters)
+    plain = fit({"D": (X, "m"), "P": (Y, "N")}, free=rest, **options | {"sigma": S}, **bare)
+    return joined(fitted, plain, low)
+
+
+def _every(question: Asked, arrays: tuple, there: np.ndarray, screen: Any) -> tuple[dict[int, tuple], np.ndarray]:
+    """For each curve that is fitted the fits of its block and its place among them; and the status of the others, or
+    -1."""
+    X, Y, _ = arrays
+    unknowns = len(question.model.unknowns) + len(question.shifts)
     status = np.where(_usable(X, Y, there, unknowns, "D0" in question.shifts), -1, FitStatus.INVALID_INPUT)
     rows: dict[int, tuple] = {}
     most = _STICKING if question.model.sticks else _BLOCK
     blocks = list(_blocks(there, status < 0, _stiffness(X, Y, question) if X.size else np.zeros(len(X)), most))
-    with Progress("fit", int((status < 0).sum()), screen_of(progress), passing=True) as told:
+    with Progress("fit", int((status < 0).sum()), screen, passing=True) as told:
         try:
-            for index, fits in _fits(question, blocks, (X, Y, S), there):
+            for index, fits in _fits(question, blocks, arrays, there):
                 rows |= {int(curve): (fits, i) for i, curve in enumerate(index)}
                 told.update(len(index), 0)
         except KeyboardInterrupt:
             if not rows:
                 raise
-            warnings.warn(f"fit: interrupted after {len(rows)} of {len(X)} curves, which are kept", stacklevel=2)
-    status = np.where((status < 0) & ~np.isin(np.arange(len(X)), list(rows)), NOT_RUN, status)
-    fitted = answered(question, rows, status, X, Y, there, plan)
-    fitted = fitted.assign_coords({name: data[name] for name in data.coords})
-    return fitted.assign_attrs(said(question, fitted))
+            warnings.warn(f"fit: interrupted after {len(rows)} of {len(X)} curves, which are kept", stacklevel=3)
+    return rows, np.where((status < 0) & ~np.isin(np.arange(len(X)), list(rows)), NOT_RUN, status)
+
+
+def _contact_points(question: Asked, rows: dict[int, tuple]) -> dict[int, float]:
+    """The contact point in m of each curve that has one."""
+    place = len(question.model.unknowns)
+    lost = (FitStatus.INVALID_INPUT, FitStatus.NO_CONTACT)
+    return {c: fits["p"][i, place] * fits["wide"][i] for c, (fits, i) in rows.items() if fits["status"][i] not in lost}
 
 
 def _fits(question: Asked, blocks: list, arrays: tuple, there: np.ndarray) -> Iterator[tuple[np.ndarray, dict]]:
@@ -208,15 +269,15 @@ def _stiffness(X: np.ndarray, Y: np.ndarray, question: Asked) -> np.ndarray:
 
 
 def _blocks(there: np.ndarray, usable: np.ndarray, stiffness: np.ndarray, most: int) -> Iterator[tuple]:
-    """For each block its curves, the same filled up to `most` by the last one, and its number of points. Curves that
-    are alike come together: they share tiles."""
+    """For each block its curves, the same filled up to a multiple of AT_LEAST by the last one, and its number of
+    points. Curves that are alike come together: they share tiles."""
     size = -(-there.sum(axis=1) // _PART) * _PART
     for points in np.unique(size[usable]):
         same = np.flatnonzero((size == points) & usable)
         same = same[np.argsort(stiffness[same], kind="stable")]
         for begin in range(0, len(same), most):
             index = same[begin : begin + most]
-            yield index, np.concatenate([index, np.repeat(index[-1:], most - len(index))]), points
+            yield index, np.concatenate([index, np.repeat(index[-1:], -len(index) % AT_LEAST)]), points
 
 
 def _packed(A: np.ndarray, there: np.ndarray, index: np.ndarray, points: int) -> np.ndarray:

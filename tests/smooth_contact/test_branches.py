@@ -106,7 +106,7 @@ def test_round_trips_on_stacks_and_graded_layers():
 
 
 def test_rough_contacts_on_the_inner_branch():
-    """With asperities too the radius by D is the one that is given; the search from the first guess ends far outside."""
+    """With asperities too the radius by D is the given one; the search from the first guess ends far outside."""
     case = {"shape": "cone", "half_angle": 88.25767917606053, "h": 0.017134126430877878, "n": 3646.680492302806,
             "nu1": 0.02071309522254039, "nu2": -0.34850173431473086, "bonding": "frictionless"}  # fmt: skip
     case |= {"micro": "power_law", "B": 0.1, "beta": 0.5, "Nbar": 250000.0, "Ra": 0.004}

@@ -9,9 +9,12 @@ import xarray as xr
 from ...in_words.fits import NAMES_OF_SHIFTS
 from ...inputs.scene.layers import moduli_of
 from ...inputs.vocabulary import NOT_RUN, ROWS
+from ...rules.rule import RULES
 from ...solving import solve
 from .asked import Asked
 from .block import FitStatus
+from .points.parts import PARTS
+from .points.sharp import flows
 
 #: At most so many curves have all places solved at once: a call costs more than some hundred contacts.
 _FEW = 8
@@ -36,7 +39,7 @@ def answered(
         total = answer["covariance"][i] + more
         by = np.array([_slope(model, name, p[j], sizes) for j, name in enumerate(names)])
         for j, name in enumerate(names):
-            ends = [_end(p[j], answer[end][i, j], answer["t"][i] * np.sqrt(more[j, j])) for end in ("low", "high")]
+            ends = [_end(p[j], answer[end][i, j], answer["t"][i, j] * np.sqrt(more[j, j])) for end in ("low", "high")]
             value[curve, j], low[curve, j], high[curve, j] = (_value(model, name, v, sizes) for v in (p[j], *ends))
         covariance[curve] = total * by[:, None] * by[None, :]
         spread[curve] = np.sqrt(np.diag(covariance[curve]))
@@ -51,12 +54,14 @@ def answered(
         variables |= {
             f"{name}_{end}": ("curve", array[:, j], {"units": si}) for end, array in (*ends_of, ("spread", spread))
         }
-    coordinates = {"cov_i": list(names), "cov_j": list(names)}
+    coordinates: dict[str, Any] = {"cov_i": list(names), "cov_j": list(names)}
     variables["covariance"] = (("curve", "cov_i", "cov_j"), covariance)
     if not plan:
         about = {"units": unit}
         variables[f"{model.y}_fit"] = (("curve", "point"), drawn, about)
         variables["residual"] = (("curve", "point"), Y - drawn, about | {"long_name": f"{model.y} - fit"})
+        variables |= _of_points(question, rows, status, there.sum(axis=1)) | _from_priors(question, names, value)
+        coordinates["part"] = ("part", (np.arange(PARTS) + 0.5) / PARTS, {"long_name": "share of the depth"})
     meanings = {int(s): s.name.lower() for s in FitStatus} | ({NOT_RUN: "not_run"} if NOT_RUN in status else {})
     flags = {"flag_values": np.array([*meanings], np.int8), "flag_meanings": " ".join(meanings.values())}
     variables["fit_status"] = ("curve", status, flags)
@@ -67,6 +72,48 @@ def answered(
         variables, coordinates, {"level": question.level, "x": model.x, "y": model.y, "free": " ".join(question.free)}
     )
     return fitted.merge(_validity(question, fitted, value, X, there))
+
+
+def _of_points(question: Asked, rows: dict, status: np.ndarray, count: np.ndarray) -> dict[str, tuple]:
+    """Variables that say how far the points agree with the fit (docs/fit.md, Points that do not agree).
+
+    count : (curve,) of points
+    """
+    model, C, name = question.model, len(status), question.model.unknowns[0]
+    words = {
+        "effective_points": "number of independent points that say as much",
+        "misfit_ratio": "rms of the residuals in contact over that before it",
+        "misfit_larger": "whether the misfit in contact is surely larger than the noise before it",
+        "change": f"change of ln {name} from the beginning of the contact to the deepest point",
+        "changes": f"whether {name} surely changes with the depth",
+    }
+    keys = {"misfit_ratio": "ratio", "misfit_larger": "larger", "change": "change", "changes": "changes"}
+    values = {key: np.full(C, np.nan) for key in words}
+    values |= {key: np.zeros(C, bool) for key in ("misfit_larger", "changes")}
+    parts = np.full((C, PARTS), np.nan)
+    for curve, (answer, i) in rows.items():
+        if status[curve] in (FitStatus.INVALID_INPUT, FitStatus.NO_CONTACT):
+            continue
+        values["effective_points"][curve] = count[curve] / answer["factors"][i][: len(model.unknowns)].max()
+        for key, short in keys.items():
+            values[key][curve] = answer[short][i]
+        parts[curve] = model.of_coordinate(name, answer["parts"][i])
+    about = {
+        "units": ROWS[name].unit,
+        "long_name": f"{name} by parts of the depth, the other unknowns as fitted to all",
+    }
+    variables: dict[str, tuple] = {key: ("curve", array, {"long_name": words[key]}) for key, array in values.items()}
+    return variables | {f"{name}_over_depth": (("curve", "part"), parts, about)}
+
+
+def _from_priors(question: Asked, names: tuple, value: np.ndarray) -> dict[str, tuple]:
+    """Of each input with a prior, how far it is from that."""
+    variables = {}
+    for name, (center, sd) in question.priors.items():
+        about = {"long_name": f"{name} less its prior, in standard deviations of that"}
+        off = (question.model.coordinate(name, value[:, names.index(name)]) - center) / sd
+        variables[f"{name}_from_prior"] = ("curve", off, about)
+    return variables
 
 
 def _slope(model, name: str, p: float, sizes: dict) -> float:
@@ -91,9 +138,13 @@ def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndar
     D0 = fitted["D0"].values if "D0" in fitted else np.zeros(len(X))
     good = np.isfinite(value).all(axis=1) & (deepest > D0)
     flags, valid, about = np.zeros(len(X), np.int64), np.where(good, deepest, np.nan), {}
+    plastic = np.zeros(len(X), bool)
     if good.any():
         contacts = _contacts(question, value[good], (deepest - D0)[good])
         flags[good], about = contacts["validity"].values, contacts["validity"].attrs
+        touched = value[good, model.unknowns.index(model.modulus)] if model.modulus in model.unknowns else None
+        touched = np.full(good.sum(), model.value(model.modulus)) if touched is None else touched
+        plastic[good] = flows(model, touched, contacts)
         broken = np.flatnonzero(flags != 0)
         holds, fails = np.zeros(len(broken), int), np.full(len(broken), 2**_HALVINGS)  # in parts of the depth
         at_once = _all_parts(question, value[broken], (deepest - D0)[broken]) if 0 < len(broken) <= _FEW else None
@@ -107,8 +158,10 @@ def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndar
             holds, fails = np.where(good_there, part, holds), np.where(good_there, fails, part)
         x = holds / 2**_HALVINGS * (deepest - D0)[broken]
         valid[broken] = np.where(holds > 0, D0[broken] + x, -np.inf)
+    flags, valid = np.where(plastic, flags | RULES["body_yields"].mask, flags), np.where(plastic, -np.inf, valid)
     variables = {
         "validity": ("curve", flags, about),
+        "flows": ("curve", plastic, {"long_name": "whether a sharp tip makes the body flow: E is no modulus"}),
         f"{model.x}_valid": ("curve", valid, {"units": ROWS[model.x].unit}),
     }
     return xr.Dataset(variables)

@@ -13,6 +13,7 @@ from solver.parameters import ends
 from ...inputs.definition import Definition, StudyError
 from ...inputs.punch.shapes import ANGLES
 from ...inputs.reading import from_call
+from ...inputs.scene.layers import short
 from ...inputs.vocabulary import BODIES, CONTROLS, ROWS, parameters_of, scene_of, suggest
 from ...specimen.quantities import has_unit, quantity
 from ...terminal import shown
@@ -35,9 +36,10 @@ class Asked:
 
     model : the curve, with its unknown inputs: free ones, then those with a prior
     bounds : free input -> (low, high) in SI; other free inputs have bounds that follow from each curve
-    priors : input with ± in the call -> (coordinate, its spread), as the unknowns of `Model`
+    priors : input with ± in the call, free ones too -> (coordinate, its spread), as the unknowns of `Model`
     spreads : other input -> its spread in its coordinate
     shifts : unknowns after the inputs
+    called : free input -> its name in the call, "layers.1.E1" of E1
     call : arguments of `study.solve`: stand-ins for unknown inputs without a value, and for x
     """
 
@@ -50,6 +52,7 @@ class Asked:
     loss: str
     intervals: str | None
     level: float
+    called: dict[str, str]
     call: dict[str, Any]
 
 
@@ -57,15 +60,19 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     """Check a call. Raises StudyError before any curve is read."""
     errors = _choices(x, y, options)
     names, texts = _listed(free, errors), dict(free) if isinstance(free, dict) else {}
+    called = {short(name): name for name in names}  # "layers.1.E1" is E1 among the inputs of a contact
+    names, texts = tuple(map(short, names)), {short(name): pair for name, pair in texts.items()}
     numbers = _numbers((*names, *parameters))
     for name in names:
         if name not in numbers:
             near = suggest(name, numbers, ["such as E1, h or Ra"]).replace("; known: ", ", ")
-            errors.append(f"free: {shown(name)} is no input that can be fitted{near}")
+            errors.append(f"free: {shown(called[name])} is no input that can be fitted{near}")
     errors += [f"free: {name} stands twice" for name in dict.fromkeys(names) if names.count(name) > 1]
     errors += [f"fit: leave out {name}: curves have it" for name in CONTROLS if parameters.get(name) is not None]
-    priors = tuple(name for name in parameters if _has_prior(name, parameters[name]) and name not in names)
-    unknowns = (*names, *priors)
+    values = _in_layers(parameters) | {short(name): value for name, value in parameters.items()}
+    written = {*map(short, parameters), *names} & {*values}  # ± of layers that are not free is taken over
+    priors = tuple(name for name in values if name in written and _has_prior(name, values[name], name in names))
+    unknowns = (*names, *(name for name in priors if name not in names))
     if "k_machine" in unknowns:
         errors.append(
             "free: k_machine: where a punch comes off is read from the points, so they do not say what held it"
@@ -83,21 +90,21 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     if errors:
         raise StudyError(errors)
     from_material = {name for body, rows in _OF_BODIES.items() if parameters.get(body) is not None for name in rows}
-    open_ = [name for name in names if parameters.get(name) is None and name not in from_material]
+    open_ = [name for name in names if values.get(name) is None and name not in from_material]
     stand_in = {name: _stand_in(name, bounds) for name in open_}
     lacking = [name for name, value in stand_in.items() if value is None]
     if lacking or (options["plan"] and open_):
         wanted = "give the value that is assumed" if options["plan"] else "give bounds, or a value to begin with"
         way = ', free={{"{0}": (low, high)}}, or {0}=...' if not options["plan"] else ", {0}=..."
         raise StudyError([f"free: {name} has no value: {wanted}{way.format(name)}" for name in lacking or open_])
-    call = parameters | stand_in | {x: _ABSCISSA[x]}
-    _check_ends(call, {name: pair for name, pair in bounds.items() if name not in from_material})
+    call = parameters | {called.get(name, name): value for name, value in stand_in.items()} | {x: _ABSCISSA[x]}
+    _check_ends(call, {name: pair for name, pair in bounds.items() if name not in from_material}, called)
     definition = _definition(call, "fit")
     scene = definition.scene
     if scene is None:
         raise StudyError(["fit: curves have units, so that R and the moduli must have some too"])
     priors = tuple(name for name in priors if name in scene.spreads)  # ± 0 is exact
-    unknowns = (*names, *priors)
+    unknowns = (*names, *(name for name in priors if name not in names))
     moved = tuple(name for name in scene.spreads if name not in unknowns and name not in CONTROLS)
     model = Model.of(definition, x, y, unknowns, moved)
     if model.sticks and (x, y) != ("D", "P"):
@@ -112,20 +119,29 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     if absent:
         raise StudyError([f"free: {name} does not act in this contact" for name in absent])
     for name in names:
-        if name not in bounds and name != model.modulus:
+        if name not in bounds and name != model.modulus and name not in priors:
             value = model.value(name)
             bounds[name] = (0.0, 0.5) if is_ratio(name) else _within(name, value / 10, 10 * value)
             if name in ANGLES:
                 bounds[name] = tuple(model.of_coordinate(name, model.coordinate(name, value) + [-DECADE, DECADE]))
     spread = {name: _log_spread(model, name) for name in moved}
     spread |= {name: float(model.scene.spreads[name] / model.slope(name, model.value(name))) for name in priors}
-    prior = {name: (float(model.coordinate(name, model.value(name))), spread.pop(name)) for name in priors}
+    prior = {name: (float(model.coordinate(name, model.value(name))), spread[name]) for name in priors}
+    spread = {name: value for name, value in spread.items() if name not in priors}
     shifts = [
         name for name, wanted in (("D0", "contact_point"), ("P0", "baseline"), ("tilt", "tilt")) if options[wanted]
     ]
     shifts = shifts if x == "D" else []
     about = (options["loss"], options["intervals"], float(options["level"]))
-    return Asked(model, names, bounds, prior, spread, tuple(shifts), *about, call)
+    return Asked(model, names, bounds, prior, spread, tuple(shifts), *about, called, call)
+
+
+def _in_layers(parameters: dict) -> dict[str, Any]:
+    """Input -> its value in the list of layers of a call, of layers that are tables."""
+    listed = parameters.get("layers")
+    tables = enumerate(listed, 1) if isinstance(listed, (list, tuple)) else ()
+    rows = {f"layers.{i}": layer for i, layer in tables if isinstance(layer, dict)}
+    return {short(f"{layer}.{field}"): value for layer, row in rows.items() for field, value in row.items()}
 
 
 def _choices(x: str, y: str, options: dict) -> list[str]:
@@ -167,15 +183,14 @@ def _numbers(names: Iterable[str]) -> set[str]:
     return (rows | set(scene_of(names))) - {*BODIES, *CONTROLS, "rtol", "accuracy", "k", "n", "m"}
 
 
-def _has_prior(name: str, value: Any) -> bool:
-    """Whether ± stands in the call: of R, Poisson ratios and names of materials it is taken over, not fitted; that of
-    k_machine changes no curve."""
-    if name in ("R", "k_machine") or name in BODIES or is_ratio(name) or name in CONTROLS:
+def _has_prior(name: str, value: Any, free: bool) -> bool:
+    """Whether ± stands in the call: of R, Poisson ratios and names of materials it is taken over, not fitted, unless
+    they are `free`; that of k_machine changes no curve."""
+    if name == "k_machine" or name in BODIES or name in CONTROLS or (not free and (name == "R" or is_ratio(name))):
         return False
     spread = getattr(value, "std_dev", None) or getattr(getattr(value, "magnitude", None), "std_dev", None)
-    return bool(spread) or (
-        isinstance(value, str) and has_unit(value) and any(sign in value for sign in ("±", "+/-", "+-"))
-    )
+    written = isinstance(value, str) and any(sign in value for sign in ("±", "+/-", "+-"))
+    return bool(spread) or (written and (free or has_unit(value)))
 
 
 def _bounds(name: str, pair: Any, errors: list[str]) -> dict[str, tuple[float, float]]:
@@ -204,11 +219,13 @@ def _definition(parameters: dict, where: str) -> Definition:
         raise StudyError(message.replace("solve: ", f"{where}: ", 1) for message in error.messages) from None
 
 
-def _check_ends(parameters: dict, bounds: dict) -> None:
-    """Whether the contact takes the bounds. Raises StudyError if not."""
+def _check_ends(parameters: dict, bounds: dict, called: dict) -> None:
+    """Whether the contact takes the bounds. Raises StudyError if not. `called` : input -> its name in the call."""
     for name, pair in bounds.items():
         for end in pair:
-            _definition(parameters | {name: end if ROWS[name].unit == "1" else f"{end!r} {ROWS[name].unit}"}, "free")
+            _definition(
+                parameters | {called[name]: end if ROWS[name].unit == "1" else f"{end!r} {ROWS[name].unit}"}, "free"
+            )
 
 
 def _within(name: str, low: float, high: float) -> tuple[float, float]:

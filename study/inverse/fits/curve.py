@@ -6,7 +6,7 @@ import numpy as np
 
 from ...inputs.punch.shapes import ANGLES
 from .model import HERTZ
-from .sticking.branch import branch
+from .sticking.branch import Loads, branch
 from .sticking.labels import Points
 from .sticking.ladder import Ladder
 from .tables import STEP, WIDE, Places, Table
@@ -24,6 +24,7 @@ class Curve:
     wide, high : (B,) the units of x and y of each curve
     shifts : which of "D0", "P0", "tilt" are unknown
     points : of a curve that sticks, what says which points are in contact; None: all depths are
+    ends : whether retractions have no load beyond the end of the branch; if not, a ramp tells a search where to go
     """
 
     table: Table | Ladder
@@ -32,6 +33,7 @@ class Curve:
     high: np.ndarray
     shifts: tuple[str, ...]
     points: Points | None = None
+    ends: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -110,7 +112,12 @@ class Curve:
         base = shift.get("P0", 0.0) + shift.get("tilt", 0.0) * self.x / self.wide[:, None]
         high, contact = self.high[:, None], np.ones(depth.shape, bool)
         if self.points is not None:
-            contact = self.points.in_contact(made.sticks.P / high, made.free.P / high, base)
+            deep = depth > np.maximum(made.D_least, 0.0)[:, None]
+            contact = self.points.in_contact(made.sticks.P / high, made.free.P / high, base, deep)
+            contact |= self.points.retracts[:, None]
+            if self.ends:
+                off = self.points.retracts[:, None] & (depth < made.D_off[:, None])
+                made = made._replace(sticks=Loads(*(np.where(off, 0.0, array) for array in made.sticks)))
         P, slope, by_rows, by_parts = (
             np.where(contact, *pair) / high for pair in zip(made.sticks, made.free, strict=True)
         )

@@ -42,7 +42,8 @@ def profiles(
     """The low and high ends (B, unknowns, 2) of the intervals of the first unknowns, and whether an end is a bound.
 
     The profile of an unknown is the least cost for each of its values. Its interval ends where the profile reaches
-    `limit`. The walk goes outward from the minima, all ends at once: a row is a curve, an unknown and a side.
+    `limit` (B, unknowns). The walk goes outward from the minima, all ends at once: a row is a curve, an unknown and a
+    side.
 
     ends : where each walk begins, the low and the high end of the first unknown, then of the next: unknowns (B, k) and
         costs (B,) of that minimum within the limit which lies farthest on this side
@@ -53,7 +54,7 @@ def profiles(
     which, side = walk // 2, np.where(walk % 2, 1.0, -1.0)
     begin = np.concatenate([p for p, _ in ends]), np.concatenate([cost for _, cost in ends])
     place, at_bound = _walk(
-        (curve.take(rows), data.take(rows)), best.take(rows), begin, limit[rows], first[rows, which], which, side
+        (curve.take(rows), data.take(rows)), best.take(rows), begin, limit[rows, which], first[rows, which], which, side
     )
     shape = (walks // 2, 2, B)
     return np.moveaxis(place.reshape(shape), 2, 0), np.moveaxis(at_bound.reshape(shape), 2, 0)

@@ -11,7 +11,7 @@ STEPS = 100  # at most
 _CLOSE = 1e-9  # steps of all unknowns below this end the search; all unknowns are of order 1
 #: Unknowns are then within 1e-4 of their spreads.
 SURE = 1e-8
-_AT_LEAST = 8  # a batch is filled up to a multiple of so many curves
+AT_LEAST = 8  # a batch is filled up to a multiple of so many curves
 #: So many steps with hardly a gain end the search: where a point lies at the beginning of the contact, the cost has a
 #: crease, along which steps are short. Unknowns are then within some 1e-3 of their spreads.
 _IDLE = 30
@@ -78,9 +78,9 @@ def minimise(
     for _ in range(steps):
         if not len(left):
             break
-        # Curves that are done leave the batch, which stays a multiple of _AT_LEAST: the order of a sum, and with it
+        # Curves that are done leave the batch, which stays a multiple of AT_LEAST: the order of a sum, and with it
         # the last digit, may depend on the size of the batch
-        rows = left if len(left) % _AT_LEAST == 0 else np.resize(left, -(-len(left) // _AT_LEAST) * _AT_LEAST)
+        rows = left if len(left) % AT_LEAST == 0 else np.resize(left, -(-len(left) // AT_LEAST) * AT_LEAST)
         new, decrease = _step(data.take(rows), fit.take(rows), held[rows], damping[rows])
         part = curve.take(rows)
         new_model, new_J = part(new)

@@ -15,7 +15,7 @@ _STARTS = 6  # across the bounds of a second unknown input
 #: point at half the load to the first one, at which the contact may begin. From the _BEST ones searches begin, from
 #: twice as many where more than two inputs are unknown: with three 3 of 36 paraboloids whose thickness was free
 #: converged far from the truth, with six none (`python tools/fit/sticking.py 210 h`).
-_WORKS, _OTHERS, _WAYS, _BEST = 6, 5, (0.02, 0.06, 0.15, 0.3, 0.6, 1.0), 3
+_WORKS, _OTHERS, _WAYS, _BEST = 6, 5, (0.02, 0.06, 0.15, 0.3, 0.6, 1.0), 6
 #: y = _HERTZ x^q E^e R^r of a rigid ball on a half-space.
 _HERTZ = {("D", "P"): 4 / 3, ("P", "a"): 0.75 ** (1 / 3), ("a", "dP_dD"): 2.0}
 
@@ -43,6 +43,8 @@ def starts_of(
         elif name in asked.bounds:
             low[:, i], high[:, i] = model.coordinate(name, np.array(asked.bounds[name]))
             p[:, i] = (low[:, i] + high[:, i]) / 2
+            if name in asked.priors:
+                p[:, i] = np.clip(asked.priors[name][0], low[:, i], high[:, i])
         elif name in asked.priors:
             center, sd = asked.priors[name]
             p[:, i], low[:, i], high[:, i] = center, center - 10 * sd, center + 10 * sd

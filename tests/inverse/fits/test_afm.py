@@ -1,5 +1,6 @@
 """The model file in nanite itself, and force curves in files of instruments, where nanite is installed (extra afm)."""
 
+import copy
 import sys
 import warnings
 
@@ -62,6 +63,40 @@ def test_nanite_finds_the_gel_that_hertz_takes_for_a_stiff_one(model, curve):
     assert fitted(curve, "roughcoat_layer", **GEL) == pytest.approx(5e3, rel=1e-4)
     hertz = fitted(curve, "hertz_para", R=GEL["R"], nu=GEL["nu"])
     assert hertz > 4 * 5e3, "the base under the gel makes Hertz's modulus several times too large"
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_nanite_fits_again_only_with_parameters_of_their_own(model, curve):
+    """What docs/afm.md says: one object that is edited gets the old modulus, as nanite compares it with itself."""
+    indentation = nanite.load_group(curve)[0]
+    indentation.apply_preprocessing(["compute_tip_position"])
+
+    def modulus(parameters):
+        indentation.fit_model(model_key="roughcoat_layer", params_initial=parameters, range_x=(0, 0), weight_cp=False)
+        return indentation.fit_properties["params_fitted"]["E"].value
+
+    def parameters(h):
+        made = model.module.get_parameter_defaults()
+        for name, value in (GEL | {"h": h}).items():
+            made[name].value = value
+        return made
+
+    kept = parameters(1.5e-6)
+    assert modulus(kept) == pytest.approx(5e3, rel=1e-4)
+    assert modulus(parameters(2e-6)) == pytest.approx(8.1e3, rel=0.02)
+    first = modulus(kept)
+    kept["h"].value = 3e-6
+    assert modulus(kept) == first, "with h = 3 um: nanite fits edited parameters again, docs/afm.md says it does not"
+    assert modulus(copy.deepcopy(kept)) == first, "nor their copy, since the object it has kept is edited too"
+
+
+def test_nanite_s_own_layer_wants_the_reduced_modulus():
+    """What docs/afm.md says: with the layer endlessly thick it is Hertz with E_L in place of E/(1 - nu²)."""
+    tip = np.linspace(0, -5e-7, 20)
+    layer = nanite.model.models_available["power_layer_clifford_2009"].module.power_layer_clifford_2009
+    hertz = nanite.model.models_available["hertz_para"].module.hertz_paraboloidal
+    forces = layer(tip, 1e3, 5e3 / (1 - 0.49**2), 5e-6, 0.49, 0.49, 1.0), hertz(tip, 5e3, 5e-6, 0.49)
+    np.testing.assert_allclose(*forces, rtol=1e-3)
 
 
 def test_on_a_thick_layer_it_is_hertz(model):

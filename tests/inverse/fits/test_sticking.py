@@ -4,6 +4,7 @@ import warnings
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from measured_curves import solved, status
 from numpy.testing import assert_allclose
 
@@ -174,3 +175,30 @@ def test_what_no_curve_can_say_is_refused(inputs, message):
     free = ["E1", "k_machine"] if "k_machine" in inputs else ["E1", "w_adhesion"]
     with pytest.raises(study.StudyError, match=message):
         fitted(DEPTHS, 0 * DEPTHS, free, **inputs | TRUE)
+
+
+CELL = {"punch": "rigid", "nu2": 0.5, "base": "half_space", "micro": "smooth", "progress": False}
+
+
+@pytest.mark.parametrize(
+    ("number", "R", "E", "w", "rms"), [(1, 2.5, 1614.2, 3.080e-5, 98.1), (2, 5.0, 267.7, 4.327e-5, 134.04)]
+)
+def test_all_points_of_a_retraction_stick(number, R, E, w, rms):
+    """Where only the deepest tenth stuck, and the rest was Hertz's curve, the points were 106.8 and 145.2 pN off."""
+    path = ROOT / f"tests/inverse/misfit/measured/retraction_jkr_{number}.csv"
+    fit = study.fit(path, free=["E2", "w_adhesion"], R=f"{R} um", w_adhesion="10 uJ/m^2", intervals="fisher", **CELL)
+    assert_allclose([fit.E2.item(), fit.w_adhesion.item()], [E, w], rtol=5e-3)
+    assert 1e12 * np.sqrt(np.mean(fit.residual.values**2)) < rms + 0.05
+    assert not fit.no_pull
+
+
+@pytest.mark.parametrize("begin", ["0.1 mJ/m^2", "10 mJ/m^2"])
+def test_a_curve_without_a_pull_is_fitted_without_adhesion(begin):
+    """Hertz's curve with noise: w = 0, E as without adhesion, whatever w the search begins with; 36 % off before."""
+    P = solved("D", "P", DEPTHS, **BARE, E2="5 kPa")
+    P = P + 0.01 * P.max() * np.random.default_rng(0).standard_normal(len(P))
+    fit = fitted(DEPTHS, P, ["E2", "w_adhesion"], **BARE, w_adhesion=begin, intervals="fisher")
+    plain = fitted(DEPTHS, P, ["E2"], **BARE, intervals="fisher")
+    assert fit.no_pull and fit.w_adhesion.item() == 0 and fit.E2.item() == plain.E2.item()
+    assert "w_adhesion = 0 (no pull)" in str(study.summary(fit))
+    assert fit.E2_low < 5e3 < fit.E2_high

@@ -29,12 +29,13 @@ class Loads(NamedTuple):
 
 
 class Branch(NamedTuple):
-    """Loads of the contacts that stick, and of those that do not, 0 above the surface; and the end of the branch,
-    (B,)."""
+    """Loads of the contacts that stick, and of those that do not, 0 above the surface; the end of the branch, and the
+    depth of its least load, (B,)."""
 
     sticks: Loads
     free: Loads
     D_off: np.ndarray
+    D_least: np.ndarray
 
 
 class _Cells:
@@ -81,7 +82,19 @@ def branch(rows: np.ndarray, depth: np.ndarray) -> Branch:
         rising = np.where(np.isnan(D), np.inf, D)
         rising[np.arange(LENGTH) <= turn[:, None]] = -np.inf
         cell = np.clip((rising[:, None, :] <= depth[:, :, None]).sum(axis=2) - 1, turn[:, None], LENGTH - 2)
-        return Branch(_loads(rows, depth, cell, (turn, t_off, D_off, P_off, pull)), _free(rows, depth), D_off)
+        loads = _loads(rows, depth, cell, (turn, t_off, D_off, P_off, pull))
+        return Branch(loads, _free(rows, depth), D_off, np.maximum(D_off, _least(parts, f)))
+
+
+def _least(parts: np.ndarray, f: np.ndarray) -> np.ndarray:
+    """The depth (B,) of the least load, to some percent of what adhesion takes of the depth; -inf where there is none:
+    the load falls to the end."""
+    slope = f[:, 0] * parts[:, 4] - f[:, 2] * parts[:, 6]
+    turns = (slope[:, :-1] < 0) & (slope[:, 1:] >= 0)
+    cell, rows = LENGTH - 2 - turns[:, ::-1].argmax(axis=1), np.arange(len(f))
+    low, high = slope[rows, cell], slope[rows, cell + 1]
+    cells, t = _Cells(cell[:, None]), (low / (low - high))[:, None]
+    return np.where(turns.any(axis=1), _pair([cells.of(parts, 1), cells.of(parts, 3)], t)[0][:, 0], -np.inf)
 
 
 def _turn(c: list) -> np.ndarray:

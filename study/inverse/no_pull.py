@@ -1,0 +1,81 @@
+"""Curves without a pull: their work of adhesion is 0, and the other unknowns are those of a fit without adhesion."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy import special
+
+#: A pull is a load below the baseline by so many standard deviations of a point, on an average of so many neighbours:
+#: with 10,000 points of white noise some 1e-4 of curves have one.
+_PULL, _AVERAGE = 2.5, 5
+#: Level at which adhesion lowers the sum of squares, by the work, the point from which on others stick, and what the
+#: best of several searches gains by chance.
+_SURE, _MORE = 0.95, 3
+#: Parameters that mean nothing without adhesion.
+_OF_ADHESION = ("w_adhesion", "adhesion", "sigma0", "z0", "branch", "k_machine")
+#: End of a name -> what holds the intervals of two fits.
+_BOTH = {"low": np.fmin, "high": np.fmax, "spread": np.fmax}
+_LOST = (5, 6, 127)  # statuses without numbers
+
+
+def without(free: Any, parameters: dict) -> tuple[Any, dict]:
+    """`free` and the parameters of the same fit without adhesion."""
+    names = {name: bounds for name, bounds in free.items() if name != "w_adhesion"} if isinstance(free, dict) else None
+    rest = [name for name in free if name != "w_adhesion"] if names is None else names
+    return rest, {name: value for name, value in parameters.items() if name not in _OF_ADHESION}
+
+
+def _is_quiet(plain: xr.Dataset) -> bool:
+    """Whether the load of a curve is nowhere below the baseline by more than its noise.
+
+    plain : its fit without adhesion. The noise is that of the shallower half of the points before its contact point
+    """
+    x, y, residual = (plain[name].values for name in ("D", "P", "residual"))
+    there = np.flatnonzero(np.isfinite(residual))
+    there = there[np.argsort(x[there], kind="stable")]
+    base = float(plain["P0"]) if "P0" in plain else 0.0
+    base = base + (float(plain["tilt"]) * x[there] if "tilt" in plain else 0.0)
+    loads, before = y[there] - base, x[there] < (float(plain["D0"]) if "D0" in plain else 0.0)
+    shallow = np.flatnonzero(before)[: before.sum() // 2]
+    noise = np.sqrt(np.mean(residual[there] ** 2))
+    if len(shallow) >= 2 * _AVERAGE:
+        loads, noise = loads - np.median(loads[shallow]), np.std(loads[shallow])
+    means = np.convolve(loads, np.full(_AVERAGE, 1 / _AVERAGE), "valid")
+    return bool(means.min(initial=0.0) > -_PULL * noise)
+
+
+def joined(fitted: xr.Dataset, plain: xr.Dataset, low: float) -> xr.Dataset:
+    """Fits with adhesion, and in place of those of curves without a pull those without it, `plain`, if adhesion is at
+    its low bound or lowers the sum of squares by no more than chance would. `no_pull` says where.
+
+    low : the low bound of w_adhesion
+    """
+    fitted, no_pull = fitted.copy(deep=True), np.zeros(fitted.sizes["curve"], bool)
+    for i in np.flatnonzero(~plain["fit_status"].isin(_LOST).values & ~fitted["fit_status"].isin(_LOST).values):
+        one, other = fitted.isel(curve=i), plain.isel(curve=i)
+        sums = [float((part["residual"] ** 2).sum()) for part in (one, other)]
+        freedom = max(float(one["effective_points"]) - one.sizes["cov_i"], 1.0)
+        gain = (sums[1] - sums[0]) / max(sums[0], 1e-300) * freedom
+        better = gain > 0 and float(one["w_adhesion"]) > low * (1 + 1e-6)
+        no_pull[i] = (not better or special.fdtr(_MORE, freedom, gain / _MORE) < _SURE) and _is_quiet(other)
+        if no_pull[i]:
+            _put(fitted, plain, i, better)
+    return fitted.assign(no_pull=("curve", no_pull, {"long_name": "whether the curve has no pull: w_adhesion is 0"}))
+
+
+def _put(fitted: xr.Dataset, plain: xr.Dataset, curve: int, better: bool) -> None:
+    """The numbers of a curve of `plain` in place of those of `fitted`. Where some adhesion is `better`, by no more than
+    chance, the intervals hold those of both."""
+    before = fitted.isel(curve=curve).copy(deep=True)
+    for name in plain.data_vars:
+        if name in fitted and name != "covariance":
+            fitted[name].values[curve] = plain[name].values[curve]
+            if better and (both := _BOTH.get(str(name).rpartition("_")[2])):
+                fitted[name].values[curve] = both(before[name].values, plain[name].values[curve])
+    names = {name: fitted[name].values for name in ("cov_i", "cov_j")}
+    fitted["covariance"].values[curve] = plain["covariance"].isel(curve=curve).reindex(names).values
+    fitted["w_adhesion"].values[curve], fitted["w_adhesion_spread"].values[curve] = 0.0, np.nan
+    if "w_adhesion_low" in fitted:
+        fitted["w_adhesion_low"].values[curve] = 0.0
+        fitted["w_adhesion_high"].values[curve] = before["w_adhesion_high"] if better else np.nan

@@ -32,6 +32,12 @@ def _written_out(match: re.Match) -> str:
     return match[0].encode("unicode_escape").decode()
 
 
+def rounded(number: float, digits: int = 2) -> str:
+    """A number with few digits as a reader writes it: 100 for 99.7, which "%.2g" makes 1e+02; from a million on, and
+    below 1e-4, with a power of ten."""
+    return f"{float(f'{number:.{digits}g}'):g}"
+
+
 def counted(number: int, what: str) -> str:
     """ "1 case", "3 cases"."""
     return f"{number} {what}{'s' * (number != 1)}"

@@ -6,10 +6,10 @@ import numpy as np
 
 from ..arrays import xarray_later as xr
 from ..data.dataset import decode
-from ..inputs.scene.layers import name_of
-from ..inputs.vocabulary import ROWS
+from ..inputs.vocabulary import ROWS, name_in_stack
 from ..rules.rule import RULES
 from ..specimen.quantities import readable
+from ..terminal import rounded
 from .sentences import NOT_VIOLATED
 
 NAMES_OF_SHIFTS = {"D0": "contact point", "P0": "baseline", "tilt": "slope of the baseline"}
@@ -141,8 +141,9 @@ def _doubts(curve: xr.Dataset, inputs: list[str]) -> list[str]:
             "and the intervals are as wide as that."
         )
     if bool(curve["misfit_larger"]):
+        ratio = rounded(float(curve["misfit_ratio"]))
         lines.append(
-            f"In contact the points are {float(curve['misfit_ratio']):.2g} times as far from the fit as before it: "
+            f"In contact the points are {ratio} times as far from the fit as before it: "
             "this is no noise, the model does not describe the contact."
         )
     for prior in (one for one in inputs if f"{one}_from_prior" in curve):
@@ -193,7 +194,7 @@ def _percent(share: float) -> str:
 
 def _long_name(name: str) -> str:
     if name.startswith("layers.1."):
-        return ROWS[name_of(1, name.removeprefix("layers.1."))].long_name.replace("the layer", "layer 1")
+        return ROWS[name_in_stack(1, name.removeprefix("layers.1."))].long_name.replace("the layer", "layer 1")
     return NAMES_OF_SHIFTS.get(name) or ROWS[name].long_name
 
 

@@ -8,6 +8,7 @@ from ..arrays import xarray_later as xr
 from ..derivatives import correlated, relative_spreads, sensitivities
 from ..inputs.definition import StudyError
 from ..inputs.vocabulary import VOCABULARY
+from ..terminal import rounded
 
 #: An input that makes more of the variance makes "nearly all" of it.
 _NEARLY = 0.99
@@ -36,7 +37,8 @@ def influence(case: xr.Dataset, name: str) -> list[str]:
         found = [f"{largest} makes {most} of the variance of {symbol}"]
     by_h = by_input.get("h", 0.0)
     if abs(by_h) * _FAR > 0.01:
-        found.append(f"{symbol} is 1 % larger where h is {1 / abs(by_h):.2g} % {'larger' if by_h > 0 else 'smaller'}")
+        change = f"{rounded(1 / abs(by_h))} % {'larger' if by_h > 0 else 'smaller'}"
+        found.append(f"{symbol} is 1 % larger where h is {change}")
     elif by_h:
         found.append(f"h hardly changes {symbol}")
     return ["; ".join(found) + "."] if found and np.isfinite([*by_input.values()]).all() else []

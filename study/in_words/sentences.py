@@ -11,6 +11,7 @@ from ..data.dataset import flag_words
 from ..data.si import ASSUMED
 from ..inputs.vocabulary import VOCABULARY, bodies_of
 from ..rules import rule
+from ..terminal import rounded
 from .influence import influence
 from .notes.punch import of_adhesion, of_shape, sticks, unit_of_length
 from .notes.unloading import falling
@@ -71,7 +72,7 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
         error = float(case["model_error"])
         exact = used in ("half_space", "layered", "stack")  # then `model_error` is that of the micro law
         against = "the micro law itself errs" if exact else "against the exact layered contact it errs"
-        errs = f"; {against} by about {100 * error:.2g} %" if error > 0 else ""
+        errs = f"; {against} by about {rounded(100 * error)} %" if error > 0 else ""
         found.append(f"Model: {model}{errs}.{WHOSE * (not used.startswith('smooth'))}")
     found += of_shape(case) + of_adhesion(case)
     beyond = doubts(case)

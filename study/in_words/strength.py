@@ -25,6 +25,7 @@ from ..rules.assumptions import FEW_SPOTS
 from ..rules.yield_bounds import stress_below_one
 from ..specimen import materials
 from ..specimen.quantities import readable
+from ..terminal import rounded
 from .inputs import is_rigid
 
 #: Below this modulus in Pa a material is a rubber or a gel, which tears and does not yield. Nearly all have a Poisson
@@ -134,7 +135,7 @@ def closest(case: xr.Dataset) -> str:
     if isinstance(looked, str) or not looked.compared:
         return "-"
     limit = looked.compared[0].limit
-    return f"{limit.who.removeprefix('the ')} {looked.compared[0].share:.2g}"
+    return f"{limit.who.removeprefix('the ')} {rounded(looked.compared[0].share)}"
 
 
 def _looked_at(case: xr.Dataset) -> _Looked | str:
@@ -208,7 +209,7 @@ def _flowing(case: xr.Dataset) -> list[str]:
     if "plastic_share" not in case or not np.isfinite(case["plastic_share"]):
         return []
     share = 100 * float(case["plastic_share"])
-    yielded = f"The asperities have yielded on {share:.2g} % of the nominal contact area."
+    yielded = f"The asperities have yielded on {rounded(share)} % of the nominal contact area."
     return [yielded if share else "No asperity yields."]
 
 
@@ -273,7 +274,7 @@ def _material(case: xr.Dataset, body: str) -> Any:
 
 
 def _part(share: float) -> str:
-    return f"{share:.2g} {'times' if share > 1 else 'of'}"
+    return f"{rounded(share)} {'times' if share > 1 else 'of'}"
 
 
 def _closest(looked: _Looked, case: xr.Dataset) -> list[str]:
@@ -311,7 +312,7 @@ def _at_which_load(looked: _Looked, first: _Compared, case: xr.Dataset) -> list[
     if abs(P / alone - 1) < 3 * _SAME:
         return [f"One asperity alone {'begins to yield' if share > 1 else 'would yield'} at about {text}."]
     one = _with_unit(again, alone, 2, 3 * alone * limit.spread / limit.strength)
-    where = f"{text}, where {touching:.2g} of them touch; one asperity alone yields at about P = {one}"
+    where = f"{text}, where {rounded(touching)} of them touch; one asperity alone yields at about P = {one}"
     return [f"They begin to yield at about {where}." if share > 1 else f"They would yield at about {where}."]
 
 

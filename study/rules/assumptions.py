@@ -5,6 +5,7 @@ import numpy as np
 from solver.shapes import PARABOLOID
 
 from ..inputs.vocabulary import ROWS
+from ..terminal import rounded
 from .rule import have, rule
 
 FEW_SPOTS = 100.0
@@ -43,12 +44,12 @@ def by_pitch(v, where: np.ndarray) -> str:
     if any(name not in v or v[name].attrs.get("units", ROWS[name].unit) != ROWS[name].unit for name in ("Nbar", "h")):
         return ""  # of study.readable, or a mean
     pitch = (0.0 * v["validity"] + 1 / (np.sqrt(v["Nbar"]) * v["h"])).values[where].max()
-    worst = f" {'The largest' if where.sum() > 1 else 'Here the'} pitch 1/sqrt(Nbar) is {pitch:.2g} h"
+    worst = f" {'The largest' if where.sum() > 1 else 'Here the'} pitch 1/sqrt(Nbar) is {rounded(pitch)} h"
     if not pitch > min(SEEN):
         return f"{worst}: up to h nothing of it was seen in the test cases of docs/validate.md."
     of_A, of_p_max = zip(*SEEN.values(), strict=True)
     errors = (np.exp(np.interp(np.log(pitch), np.log([*SEEN]), np.log(column))) for column in (of_A, of_p_max))
-    about = "A[p] by about {:.2g} % and pmax by {:.2g} %".format(*errors)
+    about = "A[p] by about {} % and pmax by {} %".format(*map(rounded, errors))
     harder = "; a harder layer errs more" * bool("n" in v and (v["n"] > HARDEST).any())
     cases = f"test cases of docs/validate.md (n from 0.1 to {HARDEST})"
     if pitch > max(SEEN):

@@ -11,6 +11,7 @@ from ..arrays.labelled import as_xarray
 from ..inputs.laws import smooth_laws
 from ..inputs.vocabulary import BODIES, ROWS
 from ..specimen.quantities import readable
+from ..terminal import rounded
 from .rule import in_si, of_cases, rule
 
 #: What bodies have, in SI units: beyond it a unit was mistaken, mPa for MPa or Mm for mm. The softest gels have some
@@ -70,7 +71,7 @@ def metals_yield(v):
     shares = {body: (pressures[body] / moduli.get(body, xr.Variable((), np.nan))).fillna(0) for body in _PRESSED}
     body = max(shares, key=lambda body: shares[body].max())
     beyond = sum(share > YIELD for share in shares.values()) > 0
-    share = f"The pressure on the {body} comes to {float(shares[body].max()):.2g} of its Young's modulus"
+    share = f"The pressure on the {body} comes to {rounded(float(shares[body].max()))} of its Young's modulus"
     said = f"{of_cases(beyond.values)}{share}: metals yield before that, which the model leaves out."
     return [said] * bool(beyond.any())
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..terminal import rounded
 from .heights.asperities import Roughness
 from .measured import measure
 from .quantities import readable
@@ -182,9 +183,10 @@ def looks_like_iso_ra(Ra: Any, Nbar: Any, *, si: bool = False) -> str | None:
     i = np.unravel_index(np.nanargmin(sharpness), sharpness.shape)
     Ra, Nbar = (float(np.broadcast_to(value, sharpness.shape)[i]) for value in (Ra, Nbar))
     radius, density = (readable(Ra, "m"), readable(Nbar, "1/m^2")) if si else (f"{Ra:.4g}", f"{Nbar:.4g}")
+    covered = rounded(100 * math.pi * Ra**2 * Nbar)
     return (
         f"Ra = {radius} is small for Nbar = {density}: the asperities are {1 / math.sqrt(Nbar) / Ra:.3g} radii apart, "
-        f"and even as half-spheres they cover {100 * math.pi * Ra**2 * Nbar:.2g} % of the area. Ra is the radius of an "
+        f"and even as half-spheres they cover {covered} % of the area. Ra is the radius of an "
         "asperity here, often 1 to 1000 µm; the roughness Ra of ISO 21920 (ISO 4287) is a mean height, often 0.01 to "
         "10 µm. study.roughness.cap_radius gives the radius from height and width, study.roughness.measure from a scan."
     )

@@ -11,6 +11,7 @@ from ..data.dataset import not_run
 from ..inputs.definition import Definition, StudyError
 from ..store.parts import PART, is_large
 from ..store.writer import AT_ONCE
+from ..terminal import rounded
 from .cases import compute, parcel
 from .engine import AHEAD, MANY, available_workers, core_takes, others_beside
 from .progress import duration
@@ -89,5 +90,5 @@ def seconds_per_case(definition: Definition) -> float:
 
 def describe(cost: Estimate) -> str:
     """ "about 2 min 5 s, at most 0.5 GB of memory and 1.4 GB of disk; the results are 0.7 GB"."""
-    memory, disk, size = (f"{number / 1e9:.2g} GB" for number in (cost.memory, cost.disk, cost.size))
+    memory, disk, size = (f"{rounded(number / 1e9)} GB" for number in (cost.memory, cost.disk, cost.size))
     return f"about {duration(cost.seconds)}, at most {memory} of memory and {disk} of disk; the results are {size}"

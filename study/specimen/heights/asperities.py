@@ -11,6 +11,7 @@ from scipy.special import ndtri
 from solver.laws.heights import CUT
 from solver.parameters import ends
 
+from ...terminal import rounded
 from ..pictures import with_picture
 from ..quantities import readable
 
@@ -125,7 +126,7 @@ class Roughness:
             f'{self.cut:.3g}: with micro = "{LAWS["normal"]}" these are parameters().',
             f'Equal heights, parameters(heights="equal") with micro = "{LAWS["equal"]}", are for designed surfaces. '
             f"{_neglected(self)} They can be pressed by {length(relief)} at most, 1/(3π N̄ Ra): "
-            f"the spread is {self.sigma_summits / relief:.2g} times that.",
+            f"the spread is {rounded(self.sigma_summits / relief)} times that.",
         ]
 
     def _table(self) -> list[str]:

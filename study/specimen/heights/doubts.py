@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ...terminal import rounded
 from .. import summits
 from .asperities import length
 from .form import taken_by_polynomial
@@ -80,7 +81,7 @@ def doubts(
     yield from _of_spikes(z, steps, asperities)
     slopes = [m.m2 for m in along]
     if max(slopes) > ISOTROPIC * min(slopes) and not any(JUMP in note for note in before):
-        ratio = f"{math.sqrt(max(slopes) / min(slopes)):.2g}" if min(slopes) > 0 else "infinitely many"
+        ratio = rounded(math.sqrt(max(slopes) / min(slopes))) if min(slopes) > 0 else "infinitely many"
         yield f"slopes along one axis are {ratio} times those along the other: asperities are long, not round"
     skewness, alpha = (
         float(np.nanmean((z - np.nanmean(z)) ** 3) / np.nanstd(z) ** 3),
@@ -97,7 +98,7 @@ def _of_the_step(asperities: summits.Asperities, steps: tuple) -> Iterator[str]:
     apart = asperities.density**-0.5 / max(steps)
     if apart < RESOLVED:
         yield (
-            f"asperities are {apart:.2g} points apart, {RESOLVED} are needed to see them: N̄ and Ra are "
+            f"asperities are {rounded(apart)} points apart, {RESOLVED} are needed to see them: N̄ and Ra are "
             "those of the step or of noise; give a cutoff, or measure with a smaller step"
         )
     if asperities.curvature * max(steps) > 1:
@@ -115,7 +116,7 @@ def _of_the_step(asperities: summits.Asperities, steps: tuple) -> Iterator[str]:
 def _of_spikes(z: np.ndarray, steps: tuple, asperities: summits.Asperities) -> Iterator[str]:
     usual = summits.usual_curvature(z, steps) if asperities.counted is None else asperities.usual
     if asperities.curvature > SPIKED * usual:
-        ratio = f"{asperities.curvature / usual:.2g} times" if usual > 0 else "far"
+        ratio = f"{rounded(asperities.curvature / usual)} times" if usual > 0 else "far"
         yield (
             f"a few sharp points make Ra {ratio} smaller than the others do: spikes, dust, or heights in coarse steps; "
             "take them out, or give a cutoff"

@@ -6,6 +6,8 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags, vstack
 from scipy.sparse.linalg import cg
 
+from ...terminal import rounded
+
 #: Largest share of missing points that is filled in unasked. Interpolated points are too smooth: of random surfaces of
 #: which 1 % were taken out, N̄ and Ra change by less than 1 % (tests/specimen/heights/test_missing_points.py).
 FILLED = 0.01
@@ -89,4 +91,4 @@ def _place(where: np.ndarray) -> str:
 
 
 def _percent(share: float) -> str:
-    return f"{100 * share:.2g} %"
+    return f"{rounded(100 * share)} %"

@@ -79,7 +79,7 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
     if shaped(problem).any():
         beyond = ~invalid & beyond_table(scaled, solution)
         solution = solution.refused(beyond, Status.OUTSIDE_LAW)
-    solution = replace(solution, model_error=np.maximum(solution.model_error, cell_error(problem, solution)))
+    solution = replace(solution, model_error=solution.model_error + cell_error(problem, solution))
     if yields:
         solution = replace(solution, plastic_share=plastic_share(problem, solution.lam[:, len(x) :]))
     profiles = {name: getattr(solution, name)[:, : len(x)] for name in ("p", "lam")}

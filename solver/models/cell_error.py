@@ -1,4 +1,5 @@
-"""What asperities err on a layer that is thin against their pitch: docs/validate.md, A layer that is thin.
+"""What asperities err on a layer that is thin against their pitch: docs/validate.md, A layer that is thin against the
+pitch.
 
 The laws of asperities take the layer for a half-space of its own material: L = 1 for waves as long as a cell and
 shorter. On a lattice of asperities with the reciprocal vectors k the spots, of radius b and under the nominal pressure

@@ -182,6 +182,10 @@ def model_attributes() -> dict:
     return {"flag_values": values, "flag_meanings": " ".join(model.name.lower() for model in Model)}
 
 
+#: Flags that a dataset may have, and what makes their attributes.
+_FLAGS = {"status": status_attributes, "model_used": model_attributes, "validity": validity_attributes}
+
+
 def decode(flags: xr.DataArray) -> xr.DataArray:
     """The names of `status`, `model_used` or `validity`.
 
@@ -209,23 +213,22 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
     >>> study.decode(found.model_used).values.tolist()
     ['smooth_half_space', 'smooth_half_space']
     """
+    if not hasattr(flags, "attrs") or not hasattr(flags, "dims") or hasattr(flags, "data_vars"):
+        flagged = getattr(flags, "data_vars", {})
+        there = [name for name in flagged if name in _FLAGS or "flag_meanings" in flagged[name].attrs]
+        which = f"take one of its arrays {', '.join(map(str, there))}" if there else "take an array, contacts.status"
+        raise ValueError(f"a {type(flags).__name__} is none of {', '.join(_FLAGS)}: {which}")
     return xr.DataArray(flag_words(flags), flags.coords, flags.dims, flags.name)
 
 
 def flag_words(flags: xr.DataArray | Labelled) -> np.ndarray:
     """The names of flags, as of :func:`decode`, of their shape."""
-    flags_of = {"status": status_attributes, "model_used": model_attributes, "validity": validity_attributes}
-    if not hasattr(flags, "attrs") or not hasattr(flags, "dims") or hasattr(flags, "data_vars"):
-        flagged = getattr(flags, "data_vars", {})
-        there = [name for name in flagged if name in flags_of or "flag_meanings" in flagged[name].attrs]
-        which = f"take one of its arrays {', '.join(map(str, there))}" if there else "take an array, contacts.status"
-        raise ValueError(f"a {type(flags).__name__} is none of {', '.join(flags_of)}: {which}")
     attributes = flags.attrs
     if "flag_meanings" not in attributes:  # arithmetic of xarray loses attributes
         name = getattr(flags, "name", f"a {type(flags).__name__}")
-        if name not in flags_of:
-            raise ValueError(f"{name or 'the array'} is none of {', '.join(flags_of)}")
-        attributes = flags_of[name]()
+        if name not in _FLAGS:
+            raise ValueError(f"{name or 'the array'} is none of {', '.join(_FLAGS)}")
+        attributes = _FLAGS[name]()
     words, values = attributes["flag_meanings"].split(), whole(flags.values, attributes)
     if "flag_masks" in attributes:
         masks = np.atleast_1d(attributes["flag_masks"]).tolist()

@@ -15,6 +15,7 @@ STALE = 3600  # seconds after which nobody is writing a temporary file any more:
 """A younger one may be that of another program that draws the same figure."""
 #: How a text begins that spreadsheets compute when they open a CSV, some after blanks; the last four are wide letters.
 _FORMULA = re.compile("\\s*[=+\\-@\uff1d\uff0b\uff0d\uff20]|[\\t\\r\\n]")
+_NONE = "-"  # what tables write where there is no number: alone it is a text everywhere
 
 
 def as_text(table: Table, rows: list[tuple]) -> str:
@@ -73,7 +74,7 @@ def csv_text(headings, rows) -> str:
 
 def guarded(cell: Any) -> Any:
     """A text that a spreadsheet takes for a formula, such as "=1+1", behind an apostrophe; numbers as they are."""
-    if not isinstance(cell, str):
+    if not isinstance(cell, str) or cell == _NONE:
         return cell
     text = re.sub("\r\n?", "\n", cell)  # csv quotes no \r, at which a row would end
     return f"'{text}" if _FORMULA.match(cell) else text

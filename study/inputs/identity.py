@@ -36,7 +36,7 @@ RATIOS = ("nu1", "nu2")
 _OF_STRESSES = "2"
 #: In the keys of cases that have another shape than the paraboloid, or that stick, beside NUMERICS_VERSION: raised when
 #: numbers of these alone change.
-_OF_SHAPES = "3"
+_OF_SHAPES = "4"
 
 
 def acts(grid: Grid, name: str) -> np.ndarray:

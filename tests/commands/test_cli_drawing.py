@@ -94,7 +94,7 @@ def test_a_table_that_fails_says_what_it_must_return(results, tmp_path, monkeypa
     short, nothing, none = printed.err.splitlines()
     assert short == "short: the function must return a list of tuples of 2 cells, one a row"
     assert nothing == short.replace("short", "nothing")
-    assert none.startswith("none: its function fails: TypeError: unsupported format string")
+    assert none.startswith('none: column "b" has the format ".3f", which does not fit None')
 
 
 def test_a_figure_does_not_take_the_name_of_another(monkeypatch):

@@ -51,6 +51,7 @@ OWN = {
     "study/files/": "results: whoever reads them looks for pipes and folders (tests/files/test_unusable.py)",
     "study/work/processes.py": "the pipe to a process of its own",
     "study/store/": "blocks of results: likewise",
+    "study/inverse/fits/block.py": "a field of a tuple",
     "study/inverse/afm/reading.py": "by afmformats, what the door has checked",
     "study/specimen/scan_files.py": "by SurfaceTopography, what the door has checked",
     "study/specimen/scan_grids.py": "numpy, from a file that the door has opened",

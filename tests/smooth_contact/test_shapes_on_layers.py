@@ -26,7 +26,9 @@ def test_another_code(row):
         for name in ("a", "P", "D", "dP_dD"):
             assert_allclose(getattr(contact, name), row[name], rtol=1e-10, atol=0)
         p = np.array([row[name] for name in PRESSURES])
-        assert_allclose(contact.p[0], p, rtol=1e-10, atol=0)
+        # rounding at the edge of a plate, where it presses most, moves p in its middle: by 1.1e-10 with AVX-512
+        largest = np.abs(p[np.isfinite(p)]).max() if float(row["n"]) >= 50 else 0.0
+        assert_allclose(contact.p[0], p, rtol=1e-10, atol=1e-10 * largest)
         assert contact.p0 == contact.p_max == contact.p[0, 0]
         off = max(np.abs(contact.P / row["P"] - 1), np.abs(contact.D / row["D"] - 1), np.abs(contact.a / row["a"] - 1))
         assert off <= contact.error

@@ -11,7 +11,10 @@ from study.commands.design import asked
 from study.commands.point import parameters_of
 
 # Of steel and DLC, whose asperities would yield in some of these contacts.
-pytestmark = pytest.mark.filterwarnings("ignore:a contact found is beyond")
+pytestmark = [
+    pytest.mark.filterwarnings("ignore:a contact found is beyond"),
+    pytest.mark.filterwarnings("ignore:this contact is beyond"),
+]
 
 LINING = {"R": "5 mm", "punch": "steel 52100", "layer": "PTFE", "body": "steel 52100", "bonding": "bonded",
           "Nbar": "1e5 1/mm^2", "Ra": "2 um"}  # fmt: skip

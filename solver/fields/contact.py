@@ -66,7 +66,7 @@ def of_contacts(problem, solution, r, z, mu=0.0):
         part, ended = problem.take(index), solution.take(index)
         scaled, a = dimensionless(part), ended.a / part.R
         film = (scaled.base != "half_space") & (scaled.h / a < THINNEST)
-        for rows, pressure, missed in pressures(scaled, ended, a):
+        for rows, pressure, missed in pressures_of(scaled, ended, a):
             here = index[rows]
             in_film = np.where(are_infinite(scaled.take(rows)), 1.0, MISSED)  # next to an infinite edge, unknown
             error[here] = np.maximum(missed, np.where(film[rows], in_film, 0.0))
@@ -96,7 +96,7 @@ def are_infinite(problem):
     return (problem.shape == "flat") | (problem.w_adhesion > 0)
 
 
-def pressures(scaled, solution, a):
+def pressures_of(scaled, solution, a):
     """Yield indices of cases, their :class:`~.pressure.Pressure` in units of E2*, and its error (b,)."""
     of_basis = shaped(scaled) | (scaled.w_adhesion > 0)
     with_shape = np.flatnonzero(of_basis)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .transfer import Kind
+from ..kernels.transfer import Kind
 from .waves import Row
 from .waves import integrals as of_waves
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from ..kernels.transfer import Kind, radial_sum
 from .half_space import integrals
-from .transfer import Kind, radial_sum
 from .waves import Load
 
 

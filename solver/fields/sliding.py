@@ -5,8 +5,8 @@ Its fields have factors cos and sin of the polar angle, so that amplitudes in (r
 
 import numpy as np
 
+from ..kernels.transfer import Kind, antiplane, radial_sum
 from .half_space import integrals, on_surface
-from .transfer import Kind, antiplane, radial_sum
 from .waves import Load
 
 

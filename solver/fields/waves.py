@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..kernels.transfer import THIN, Bodies, Kind, wave_state
 from ..numerics import special
 from ..numerics.quadrature import gauss_legendre
-from .transfer import THIN, Bodies, Kind, wave_state
 
 #: A panel of _POINTS Gauss points holds at most so many radians of p^ J_m, and is no longer than its distance from 0,
 #: over which the state is smooth however stiff the layer is. Half of the radians change no stress by more than 1e-15 of

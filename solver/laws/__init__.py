@@ -8,6 +8,9 @@ import numpy as np
 
 from ..parameters import CONTROL, COUPLED, LAYERED, PARAMETERS, Register
 from . import disc_cell, elastic_plastic, heights, lattice, own_table, power_law, trial
+from .cell.axis import cell_axis
+from .cell.periodic import periodic_rows
+from .cell.rows import cell_rows
 from .law import Bound, Curve, Law, Spots
 
 __all__ = [
@@ -16,10 +19,13 @@ __all__ = [
     "Curve",
     "Law",
     "Spots",
+    "cell_axis",
+    "cell_rows",
     "identity",
     "load",
     "name_in",
     "named",
+    "periodic_rows",
     "register",
     "try_out",
     "untried",

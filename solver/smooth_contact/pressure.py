@@ -16,7 +16,7 @@ from .products import in_blocks
 from .rises import on_half_space
 
 
-def pressures(shape, response, A, x):
+def pressures_of(shape, response, A, x):
     """p (B, m) at x (m,) with the edge value A (B,); at x = 1 it is 0 or infinite, by the sign of A."""
     inside = x < 1
     s = np.sqrt((1 - x[inside]) * (1 + x[inside]))

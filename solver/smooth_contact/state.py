@@ -6,7 +6,7 @@ import numpy as np
 
 from ..solution import Solution
 from .equation import Response, respond
-from .pressure import flat_pressure, pressure_changes, pressures
+from .pressure import flat_pressure, pressure_changes, pressures_of
 from .radius import NEAR
 from .tension import LOOKED_AT, seen
 
@@ -129,7 +129,7 @@ def answer(part, shape, state, counts, x, ring=None, scales=NOT_STICKING):
     that of a, P and D under the control, and of p(0) where that is finite. ``ring(x)`` is what is added to p."""
     response, A = state.response, state.A
     radii = np.concatenate([x, [0.0], LOOKED_AT])
-    p = pressures(shape, response, A, radii)
+    p = pressures_of(shape, response, A, radii)
     if ring is not None:
         p = p + ring(radii)
     p_x, p0, looked_at = np.split(p, [len(x), len(x) + 1], axis=1)

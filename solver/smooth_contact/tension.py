@@ -8,7 +8,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from ..status import Status
-from .pressure import pressure_changes, pressures
+from .pressure import pressure_changes, pressures_of
 
 #: Radii at which the pressure is looked at, for tension and for its error; denser towards the edge.
 LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
@@ -21,7 +21,7 @@ _ROUNDING = 64 * np.finfo(float).eps
 def is_tensile(shape, body, response):
     """(B,) bool: there is tension in contacts of shapes on a body, at the radius of their `response`."""
     none, steep = np.zeros(len(response.a)), response.slope <= 0
-    out = steep | seen(pressures(shape, response, none, LOOKED_AT), pressure_changes(response, none, LOOKED_AT))
+    out = steep | seen(pressures_of(shape, response, none, LOOKED_AT), pressure_changes(response, none, LOOKED_AT))
     return out | in_a_ring(shape, body, response, ~out)[0]
 
 
@@ -43,7 +43,7 @@ def in_a_ring(shape, body, response, wanted):
         x = np.sin(np.pi / 2 * (np.arange(_DENSER * size) + 0.5) / (_DENSER * size))
         for i in np.flatnonzero(thin & (response.size == size)):
             case, none = response.take([i]), np.zeros(1)
-            p, changes = pressures(shape.take([i]), case, none, x)[0], np.abs(pressure_changes(case, none, x)[0])
+            p, changes = pressures_of(shape.take([i]), case, none, x)[0], np.abs(pressure_changes(case, none, x)[0])
             nearby = sliding_window_view(np.pad(changes, 2 * _DENSER, mode="edge"), 4 * _DENSER + 1).max(axis=1)
             there[i], doubtful[i] = (p < -nearby).any(), (p < 0).any()
     return there, doubtful

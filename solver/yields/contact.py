@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..fields.contact import are_infinite, bodies_of, have_fields, pressures
+from ..fields.contact import are_infinite, bodies_of, have_fields, pressures_of
 from ..fields.shaped import corners
 from ..scaling import dimensionless
 from ..shapes import shaped
@@ -40,7 +40,7 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
         part, ended = problem.take(index), solution.take(index)
         scaled, a = dimensionless(part), ended.a / part.R
         sharp = corners(scaled, a)
-        for rows, pressure, _ in pressures(scaled, ended, a):
+        for rows, pressure, _ in pressures_of(scaled, ended, a):
             nu = None if punch is None else punch[index[rows]]
             for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]], nu):
                 tips = np.isfinite(sharp[rows[some]]) & (_touched(loaded) < 0.5)

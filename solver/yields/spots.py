@@ -3,7 +3,7 @@ as tensors on the axis of each spot (docs/stresses.md, Asperities)."""
 
 import numpy as np
 
-from ..fields.contact import pressures
+from ..fields.contact import pressures_of
 from ..fields.invariants import mises
 from ..kernels.two_layers import layer_modulus
 from ..numerics.quadrature import gauss_legendre
@@ -49,7 +49,7 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0):
         part, ended = problem.take(index), solution.take(index)
         scaled, a = dimensionless(part), ended.a / part.R
         c, p0s = _of_spots(scaled, a)
-        for rows, pressure, _ in pressures(scaled, ended, a):
+        for rows, pressure, _ in pressures_of(scaled, ended, a):
             for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]]):
                 here = rows[some]
                 b = c[here] / np.sqrt(np.pi * scaled.Nbar[here, None]) / a[here, None]

@@ -5,8 +5,8 @@ import pytest
 from field_rows import table
 from numpy.testing import assert_allclose
 
-from solver.fields.transfer import Bodies, Kind, antiplane, decaying, radial_sum, wave_state
 from solver.kernels.closed_form import layered_kernel
+from solver.kernels.transfer import Bodies, Kind, antiplane, decaying, radial_sum, wave_state
 from solver.kernels.two_layers import TwoLayers
 
 NORMAL, TANGENTIAL = (-1.0, 0.0), (0.0, 1.0)

@@ -9,7 +9,7 @@ from conftest import ROOT
 
 from solver import Model, Status
 from solver.contact.answer import Verdict
-from solver.fields.transfer import Kind
+from solver.kernels.transfer import Kind
 from study.inverse.fits.block import FitStatus
 
 

@@ -25,8 +25,8 @@ OURS = {"roughcoat", "solver", "study", "studies"}
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
     "solver": (
-        *("threads", "closed_forms", "numerics", "status", "parameters", "layers", "shapes", "punches", "laws"),
-        *("kernels", "body", "edges", "problem", "solution", "contact", "compiled", "scaling", "estimate"),
+        *("threads", "closed_forms", "numerics", "status", "parameters", "layers", "shapes", "punches", "kernels"),
+        *("laws", "body", "edges", "problem", "solution", "contact", "compiled", "scaling", "estimate"),
         *("flat", "schemes", "smooth_contact", "models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (

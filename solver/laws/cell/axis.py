@@ -1,0 +1,169 @@
+"""Stresses on the axis of a spot of a periodic cell: docs/stresses.md, Below a spot.
+
+Of the waves G != 0 of the lattice alone, with the transfer S, M of the coated body per unit pressure (S(0) = -1),
+
+    sz = 2 pi Nbar sum q^(G) S(Gz),   sr = st = pi Nbar sum q^(G) M(Gz).
+
+In the layer S and M are those of a half-space of its material, S = -(1 + x) e^-x, M = (x - 1 - 2 nu) e^-x, x = kz, and
+a difference that falls as waves from the interface do. Of the half-space the sum over G is the integral over all k, in
+closed form over k, and the sum less the integral of the long waves, weighted by w(k) = erfc((k - k0)/D)/2: so it needs
+few waves however near the surface.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...kernels.transfer import Bodies, Kind, radial_sum, wave_state
+from ...kernels.two_layers import TwoLayers
+from ...numerics import special
+from ...numerics.quadrature import gauss_legendre, lagrange
+from .rows import MOST, of_kernel
+from .spot import POINTS, Cell, Spots, spots
+from .sums import LATTICES, lattice_waves
+
+__all__ = ["axis_stresses", "cell_axis"]
+
+#: Waves above u = kh = _CUT reach the interface with less than 1e-15 of their pressure.
+_CUT = 38.0
+#: Below this X = kh the state is carried from the surface down (:mod:`~solver.kernels.transfer`).
+_THIN = 1.0
+#: Points on each panel of t. The panels are halved so often towards t = 0, where those of a small depth are needed.
+_POINTS, _HALVINGS = 20, 48
+
+
+def cell_axis(
+    lattice: str,
+    lam: float,
+    l_over_h: float,
+    z: ArrayLike,
+    n: float,
+    nu1: float,
+    nu2: float,
+    bonding: str,
+    m: float = 0.0,
+    side: int = 0,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Stresses on the axis of a spot of the periodic cell, without those of the nominal pressure: docs/stresses.md.
+
+    Parameters
+    ----------
+    lattice, lam, l_over_h, n, nu1, nu2, bonding, m : as in :func:`.cell_rows`, one number each
+    z : depths (Z,) in units of the pitch l, >= 0; in the layer up to h, in the body from h on
+    side : 0, in the layer; 1, in the body
+
+    Returns
+    -------
+    sr, sz : (Z,), radial (and hoop) stress and normal stress, in E1* l/Ra; tension is positive
+
+    Raises
+    ------
+    ValueError : an argument is out of its bounds
+
+    Examples
+    --------
+    >>> sr, sz = cell_axis("square", 0.05, 8.0, [0.0], 10.0, 0.25, 0.3, "bonded")
+    >>> print(f"{sr[0]:.4e} {sz[0]:.4e}")
+    -6.1852e-02 -4.2927e-02
+    """
+    if lattice not in MOST:
+        raise ValueError(f'lattice = "{lattice}": must be one of {", ".join(MOST)}')
+    z = np.atleast_1d(np.asarray(z, dtype=float))
+    if side not in (0, 1):
+        raise ValueError(f"side = {side}: must be 0, in the layer, or 1, in the body")
+    if not np.all((z >= 0) & np.isfinite(z)):
+        raise ValueError(f"z = {z[~((z >= 0) & np.isfinite(z))][0]}: must be finite and at least 0")
+    layers = TwoLayers(*(np.array([v]) for v in (n, nu1, nu2, bonding == "bonded")))
+    cell = Cell(lattice, float(l_over_h), of_kernel(layers, m))
+    spot = spots(cell, [np.sqrt(lam / np.pi)])
+    sr, sz = axis_stresses(cell, spot, layers, z, side)
+    return sr / (1 + m), sz / (1 + m)
+
+
+def axis_stresses(cell: Cell, spot: Spots, layers: TwoLayers, z: np.ndarray, side: int) -> tuple:
+    """sr and sz (Z,) below one spot at depths z (Z,), in units E = Ra = l = 1; arguments as in :func:`cell_axis`."""
+    b, h, lattice = spot.b[0], 1 / cell.pitch, "hex" if cell.lattice == "disc" else cell.lattice
+    bodies, load, x = Bodies.of(layers), (-1.0, 0.0), np.asarray(z, dtype=float)[:, None]
+    k, c = lattice_waves(lattice, _CUT * cell.pitch, b)
+    amplitudes, X = c * transform(spot, k), k * h
+    nu = float(layers.nu1[0] if side == 0 else layers.nu2[0])
+    kind = Kind.DIFFERENCE if side == 0 else Kind.BODY
+    sz, sr = np.zeros(len(z)), np.zeros(len(z))
+    for thin in (True, False):
+        some = np.flatnonzero((X < _THIN) == thin)
+        if len(some):
+            state = wave_state(kind, bodies, X[some], k[some] * x, load, thin)
+            sz += state[2] @ amplitudes[some]
+            sr += radial_sum(state, nu) @ amplitudes[some] / 2
+    if side == 0:
+        near_sr, near_sz = _half_space(spot, lattice, np.asarray(z, dtype=float), nu)
+        sr, sz = sr + near_sr, sz + near_sz
+    return sr, sz
+
+
+def _half_space(spot, lattice, z, nu):
+    """sr and sz (Z,) of the waves G != 0 in a half-space of the layer's material."""
+    b = spot.b[0]
+    low, weights, between, lows = _long_waves(lattice, b)
+    of_low, of_between = weights * transform(spot, low), lows * transform(spot, between)
+
+    def less(shape):
+        """Sum less integral of the long waves, of a function of kz, (Z,)."""
+        return shape(np.outer(z, low)) @ of_low - shape(np.outer(z, between)) @ of_between
+
+    E, F = _whole(spot, z)
+    sz = less(lambda x: -(1 + x) * np.exp(-x)) - (E + F)
+    sr = less(lambda x: (x - 1 - 2 * nu) * np.exp(-x)) + F - (1 + 2 * nu) * E
+    return sr / 2, sz
+
+
+def _long_waves(lattice, b):
+    """Waves of the lattice (W,) with their weights c w, and points k (K,) with the weights of ∫ w k dk."""
+    D = 12 / (LATTICES[lattice] - b)
+    k, c = lattice_waves(lattice, 0.0, b)
+    nodes, weights = gauss_legendre(16)
+    panels = max(12, int(np.ceil(12 * D * b / 4)))
+    between = ((np.arange(panels)[:, None] + nodes) / panels * 12 * D).ravel()
+    lows = np.tile(weights / panels * 12 * D, panels) * between * special.erfc((between - 6 * D) / D) / 2
+    return k, c, between, lows
+
+
+def _whole(spot, z):
+    """E = ∫ q^ k e^(-kz) dk and F = ∫ q^ k (kz) e^(-kz) dk (Z,) of one spot, by -phi'(t)/t at points that are halved
+    towards t = 0."""
+    edges = np.append(0.0, spot.b[0] * 0.5 ** np.arange(_HALVINGS, -1, -1.0))
+    nodes, weights = gauss_legendre(_POINTS)
+    t = (edges[:-1, None] + np.diff(edges)[:, None] * nodes).ravel()
+    near = _between(spot, spot.fall[0], t) * t * t * (np.diff(edges)[:, None] * weights).ravel()
+    below = t * t + z[:, None] ** 2
+    return (near / below).sum(axis=1), (2 * near * (z[:, None] / below) ** 2).sum(axis=1)
+
+
+def _between(spot, values, t):
+    """A function with `values` at the points of a spot, at t (T,): the polynomial through the points of its panel."""
+    b, size = spot.b[0], POINTS
+    panels = len(values) // size
+    index = np.clip((t / b * panels).astype(int), 0, panels - 1)
+    out = np.empty_like(t)
+    for j in range(panels):
+        here = index == j
+        out[here] = lagrange(gauss_legendre(size)[0], t[here] / b * panels - j) @ values[j * size : (j + 1) * size]
+    return out
+
+
+def transform(spot, k):
+    """q^(k) = ∫ phi cos kt dt (K,) of one spot, exact for the polynomial of each panel whatever k: by Legendre
+    polynomials and spherical Bessel functions."""
+    b, size = spot.b[0], POINTS
+    panels = len(spot.phi[0]) // size
+    half, x, w = b / panels / 2, *gauss_legendre(size)
+    P = np.polynomial.legendre.legvander(2 * x - 1, size - 1)
+    series = (2 * np.arange(size) + 1)[:, None] * (P * w[:, None]).T @ spot.phi[0].reshape(panels, size).T
+    order = np.arange(size)
+    waves = special.spherical_jn(order[:, None], k * half)  # (size, K)
+    out = np.zeros_like(k)
+    for j in range(panels):
+        even = (series[:, j] * np.where(order % 4 == 0, 1.0, np.where(order % 4 == 2, -1.0, 0.0))) @ waves
+        odd = (series[:, j] * np.where(order % 4 == 1, -1.0, np.where(order % 4 == 3, 1.0, 0.0))) @ waves
+        middle = (2 * j + 1) * half * k
+        out += 2 * half * (np.cos(middle) * even + np.sin(middle) * odd)
+    return out

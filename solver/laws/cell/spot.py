@@ -1,0 +1,152 @@
+"""The spot of a periodic cell on a coated body: its radius given, its load, approach and pressure.
+
+In units l = Ra = E = 1, with the Abel transform phi of the pressure, q^(k) = int_0^b phi cos kt dt and phi(b) = 0,
+
+    pi phi(t) + 2 int_0^b phi(s) N(t, s) ds = A - t²   (+ 2 p sqrt(Bbar² - t²) in the disc cell),
+    N(t, s) = [N(t + s) + N(t - s)]/2,   N = M + K of :mod:`.sums`   (K alone in the disc cell),
+    p = 2 pi int phi dt,   p_max = -int phi'(t)/t dt.
+
+M is what the neighbours add on a half-space, K what the layer adds. The equation is linear in A, in the shape t² and in
+p: each has its own right-hand side, and phi(b) = 0 gives A. phi' comes from the equation differentiated by t.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...numerics.quadrature import gauss_legendre
+from .sums import LATTICES, neighbours, waves
+
+__all__ = ["Cell", "Spots", "spots"]
+
+#: Points on a panel of the radius, least number of points, and the widest panel in h (tests/laws/cell/test_rows.py).
+POINTS, _LEAST, _WIDEST = 24, 48, 5.0
+#: N is a polynomial of this degree on each piece of x. A piece is at most half of h, whose waves have their singularity
+#: at 2 h i, and a fifth of the distance to that of the neighbours at d: the next term is then below rounding.
+_DEGREE, _OF_H, _OF_D = 11, 0.5, 0.2
+#: Waves are summed at so many x times waves at a time.
+_AT_ONCE = 2**21
+
+
+class Cell(NamedTuple):
+    """Cells of one lattice on one body.
+
+    lattice : "square", "hex", or "disc", whose layer has the waves of "hex"
+    pitch : l/h
+    L1 : function of u = kh (W,) : L(u) - 1 (W,) of the body, over 1 + m under an elastic punch; None without a layer
+    coarsest : l over the thickness of what the spots are to resolve, if that is less than the pitch: in a graded layer
+        the sublayers at the surface are thinner than any spot, and hardly differ
+    """
+
+    lattice: str
+    pitch: float
+    L1: object = None
+    coarsest: float = np.inf
+
+    @property
+    def scale(self):
+        """l over the thickness that is resolved."""
+        return min(self.pitch, self.coarsest)
+
+
+class Spots(NamedTuple):
+    """Spots of the radii b (S,): nominal pressure p, approach A, pressure p_max in the middle; (S,) each. And phi and
+    -phi'(t)/t at the points t of each, with their weights w; (S, T) each. Units E = Ra = l = 1."""
+
+    b: np.ndarray
+    p: np.ndarray
+    A: np.ndarray
+    p_max: np.ndarray
+    t: np.ndarray
+    w: np.ndarray
+    phi: np.ndarray
+    fall: np.ndarray
+
+
+class _Pieces(NamedTuple):
+    """N and dN/dx as polynomials on pieces of x: `edges` (n + 1,) and coefficients (degree + 1, n), in the distance
+    from the middle of a piece over half of its width."""
+
+    edges: np.ndarray
+    coefficients: np.ndarray
+
+    def at(self, x):
+        """N and dN/dx at x of any shape."""
+        index = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.edges) - 2)
+        half = np.diff(self.edges) / 2
+        xi = (x - self.edges[index]) / half[index] - 1
+        value, slope = self.coefficients[-1][index], np.zeros_like(x)
+        for row in self.coefficients[-2::-1]:
+            slope = slope * xi + value
+            value = value * xi + row[index]
+        return value, slope / half[index]
+
+
+def _edges(cell, most):
+    """Edges of the pieces of x from 0 to `most`."""
+    edges, d = [0.0], LATTICES.get(cell.lattice, np.inf)
+    widest = most if cell.L1 is None else _OF_H / cell.scale
+    while edges[-1] < most:
+        edges.append(min(edges[-1] + min(widest, _OF_D * (d - edges[-1])), most))
+        if edges[-1] > most * (1 - 1e-9):
+            edges[-1] = most
+    return np.array(edges)
+
+
+def pieces(cell, reach):
+    """:class:`_Pieces` of N for x from 0 to twice the largest radius."""
+    edges = _edges(cell, 2 * reach)
+    nodes = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
+    x = (edges[:-1] + np.diff(edges) / 2 * (nodes[:, None] + 1)).ravel()
+    N = np.zeros_like(x) if cell.lattice == "disc" else neighbours(cell.lattice, x)[0]
+    if cell.L1 is not None:
+        k, c = waves("hex" if cell.lattice == "disc" else cell.lattice, cell.scale, reach)
+        if len(k):
+            amplitudes, step = c * cell.L1(k / cell.pitch), max(1, _AT_ONCE // len(k))
+            N = N + np.concatenate([np.cos(np.outer(x[i : i + step], k)) @ amplitudes for i in range(0, len(x), step)])
+    return _Pieces(edges, np.linalg.solve(np.vander(nodes, increasing=True), N.reshape(_DEGREE + 1, -1)))
+
+
+def points(cell, reach):
+    """Points and weights (T,) on [0, 1] for radii up to `reach`."""
+    n = -(-_LEAST // POINTS)
+    if cell.L1 is not None:
+        n = max(n, int(np.ceil(reach * cell.scale / _WIDEST)))
+    x, w = gauss_legendre(POINTS)
+    return ((np.arange(n)[:, None] + x) / n).ravel(), np.tile(w / n, n)
+
+
+def spots(cell, b):
+    """:class:`Spots` of a :class:`Cell` of the radii b (S,), in l, 0 < b < d/2."""
+    b = np.asarray(b, dtype=float)
+    N, (x, weights) = pieces(cell, b.max()), points(cell, b.max())
+    t, w = b[:, None] * x, b[:, None] * weights
+    ends = np.concatenate([t, b[:, None]], axis=1)
+    far, near = ends[:, :, None] + t[:, None, :], ends[:, :, None] - t[:, None, :]
+    (sum_, d_sum), (difference, d_difference) = N.at(far), N.at(np.abs(near))
+    kernel = (sum_ + difference) * w[:, None, :]  # 2 N(t, s) with the weight of s
+    d_kernel = (d_sum + np.sign(near) * d_difference) * w[:, None, :]
+    right = np.stack([np.ones_like(ends), ends**2], axis=2)
+    slopes = np.stack([np.zeros_like(t), 2 * t], axis=2)
+    if disc := cell.lattice == "disc":
+        root = np.sqrt(1 / np.pi - ends**2)[..., None]
+        right = np.concatenate([right, 2 * root], axis=2)
+        slopes = np.concatenate([slopes, -2 * t[..., None] / root[:, :-1]], axis=2)
+    matrix = np.pi * np.eye(len(x)) + kernel[:, :-1]
+    phi = np.linalg.solve(matrix, right[:, :-1])
+    at_b = (right[:, -1] - np.einsum("st,stk->sk", kernel[:, -1], phi)) / np.pi
+    load = 2 * np.pi * np.einsum("st,stk->sk", w, phi)
+    if disc:
+        # phi(b) = 0 and p = its load, for A and p
+        rest = at_b[:, 0] * (1 - load[:, 2]) + at_b[:, 2] * load[:, 0]
+        A = (at_b[:, 1] * (1 - load[:, 2]) + at_b[:, 2] * load[:, 1]) / rest
+        p = (A * load[:, 0] - load[:, 1]) / (1 - load[:, 2])
+        parts = np.stack([A, -np.ones_like(A), p], axis=1)
+    else:
+        A = at_b[:, 1] / at_b[:, 0]
+        parts = np.stack([A, -np.ones_like(A)], axis=1)
+        p = np.einsum("sk,sk->s", load, parts)
+    phi = np.einsum("stk,sk->st", phi, parts)
+    slope = np.einsum("stk,sk->st", slopes, parts) - np.einsum("stu,su->st", d_kernel[:, :-1], phi)
+    fall = -slope / (np.pi * t)
+    return Spots(b, p, A, (w * fall).sum(axis=1), t, w, phi, fall)

@@ -17,7 +17,7 @@ from ...kernels.transfer import Bodies, Kind, radial_sum, wave_state
 from ...kernels.two_layers import TwoLayers
 from ...numerics import special
 from ...numerics.quadrature import gauss_legendre, lagrange
-from .rows import MOST, of_kernel
+from .rows import of_kernel, refuse_cells, refuse_layers
 from .spot import POINTS, Cell, Spots, spots
 from .sums import LATTICES, lattice_waves
 
@@ -25,6 +25,8 @@ __all__ = ["axis_stresses", "cell_axis"]
 
 #: Waves above u = kh = _CUT reach the interface with less than 1e-15 of their pressure.
 _CUT = 38.0
+#: At this relative distance from h and less a point is at the interface.
+_AT = 1e-9
 #: Below this X = kh the state is carried from the surface down (:mod:`~solver.kernels.transfer`).
 _THIN = 1.0
 #: Points on each panel of t. The panels are halved so often towards t = 0, where those of a small depth are needed.
@@ -65,13 +67,15 @@ def cell_axis(
     >>> print(f"{sr[0]:.4e} {sz[0]:.4e}")
     -6.1852e-02 -4.2927e-02
     """
-    if lattice not in MOST:
-        raise ValueError(f'lattice = "{lattice}": must be one of {", ".join(MOST)}')
-    z = np.atleast_1d(np.asarray(z, dtype=float))
+    refuse_cells(lattice, *(np.asarray(v, float) for v in (lam, l_over_h, m)))
+    refuse_layers(*(np.asarray(v, float) for v in (n, nu1, nu2)), np.asarray(bonding))
     if side not in (0, 1):
         raise ValueError(f"side = {side}: must be 0, in the layer, or 1, in the body")
-    if not np.all((z >= 0) & np.isfinite(z)):
-        raise ValueError(f"z = {z[~((z >= 0) & np.isfinite(z))][0]}: must be finite and at least 0")
+    z, h = np.atleast_1d(np.asarray(z, dtype=float)), 1 / l_over_h
+    there = (z >= 0) & (z <= h * (1 + _AT)) if side == 0 else (z >= h * (1 - _AT)) & np.isfinite(z)
+    if not np.all(there):
+        where = f"at most h = {h:g}, in the layer" if side == 0 else f"at least h = {h:g}, in the body"
+        raise ValueError(f"z = {z[~there][0]}: must be finite, at least 0 and {where}")
     layers = TwoLayers(*(np.array([v]) for v in (n, nu1, nu2, bonding == "bonded")))
     cell = Cell(lattice, float(l_over_h), of_kernel(layers, m))
     spot = spots(cell, [np.sqrt(lam / np.pi)])

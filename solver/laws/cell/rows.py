@@ -57,26 +57,36 @@ def cell_rows(
     >>> print(f"{p:.4e} {A:.4e} {p_max:.4e}")
     1.6169e-03 1.9879e-02 4.4544e-02
     """
-    if lattice not in MOST:
-        raise ValueError(f'lattice = "{lattice}": must be one of {", ".join(MOST)}')
     if layers is None:
         values = lam, l_over_h, m, *(np.nan if v is None else v for v in (n, nu1, nu2))
         words = np.asarray("" if bonding is None else bonding)
         lam, pitch, m, n, nu1, nu2, words = np.broadcast_arrays(*(np.asarray(v, float) for v in values), words)
-        _refuse(n=(n, n >= 0), nu1=(nu1, _is_nu(nu1)), nu2=(nu2, _is_nu(nu2)))
-        _refuse(bonding=(words, np.isin(words, BONDINGS)))
+        refuse_layers(n, nu1, nu2, words)
         kernel = TwoLayers(*(np.ravel(v) for v in (n, nu1, nu2, words == "bonded")))
     else:
         lam, pitch, m = np.broadcast_arrays(*(np.asarray(v, float) for v in (lam, l_over_h, m)))
         kernel = _stack(layers, interfaces, nu2, rigid_base)
-    _refuse(lam=(lam, (lam > 0) & (lam <= MOST[lattice])), l_over_h=(pitch, (pitch > 0) & (pitch <= 1e4)))
-    _refuse(m=(m, (m >= 0) & (m < np.inf)))
+    refuse_cells(lattice, lam, pitch, m)
     out = np.empty((3, lam.size))
     for i, (fraction, l_h, of_punch) in enumerate(zip(lam.ravel(), pitch.ravel(), m.ravel(), strict=True)):
         cell = Cell(lattice, float(l_h), of_kernel(kernel.take([0 if layers is not None else i]), of_punch))
         spot = spots(cell, [np.sqrt(fraction / np.pi)])
         out[:, i] = spot.p[0] / (1 + of_punch), spot.A[0], spot.p_max[0] / (1 + of_punch)
     return tuple(v.reshape(lam.shape)[()] for v in out)
+
+
+def refuse_cells(lattice, lam, pitch, m) -> None:
+    """Raise ValueError for a lattice, contact fraction, pitch over h or m out of its bounds."""
+    if lattice not in MOST:
+        raise ValueError(f'lattice = "{lattice}": must be one of {", ".join(MOST)}')
+    _refuse(lam=(lam, (lam > 0) & (lam <= MOST[lattice])), l_over_h=(pitch, (pitch > 0) & (pitch <= 1e4)))
+    _refuse(m=(m, (m >= 0) & (m < np.inf)))
+
+
+def refuse_layers(n, nu1, nu2, bonding) -> None:
+    """Raise ValueError for numbers of one layer and its body out of their bounds."""
+    _refuse(n=(n, n >= 0), nu1=(nu1, _is_nu(nu1)), nu2=(nu2, _is_nu(nu2)))
+    _refuse(bonding=(bonding, np.isin(bonding, BONDINGS)))
 
 
 def of_kernel(kernel: Kernel, m: float):

@@ -34,19 +34,11 @@ class Cell(NamedTuple):
     lattice : "square", "hex", or "disc", whose layer has the waves of "hex"
     pitch : l/h
     L1 : function of u = kh (W,) : L(u) - 1 (W,) of the body, over 1 + m under an elastic punch; None without a layer
-    coarsest : l over the thickness of what the spots are to resolve, if that is less than the pitch: in a graded layer
-        the sublayers at the surface are thinner than any spot, and hardly differ
     """
 
     lattice: str
     pitch: float
     L1: object = None
-    coarsest: float = np.inf
-
-    @property
-    def scale(self):
-        """l over the thickness that is resolved."""
-        return min(self.pitch, self.coarsest)
 
 
 class Spots(NamedTuple):
@@ -85,7 +77,7 @@ class _Pieces(NamedTuple):
 def _edges(cell, most):
     """Edges of the pieces of x from 0 to `most`."""
     edges, d = [0.0], LATTICES.get(cell.lattice, np.inf)
-    widest = most if cell.L1 is None else _OF_H / cell.scale
+    widest = most if cell.L1 is None else _OF_H / cell.pitch
     while edges[-1] < most:
         edges.append(min(edges[-1] + min(widest, _OF_D * (d - edges[-1])), most))
         if edges[-1] > most * (1 - 1e-9):
@@ -100,7 +92,7 @@ def pieces(cell, reach):
     x = (edges[:-1] + np.diff(edges) / 2 * (nodes[:, None] + 1)).ravel()
     N = np.zeros_like(x) if cell.lattice == "disc" else neighbours(cell.lattice, x)[0]
     if cell.L1 is not None:
-        k, c = waves("hex" if cell.lattice == "disc" else cell.lattice, cell.scale, reach)
+        k, c = waves("hex" if cell.lattice == "disc" else cell.lattice, cell.pitch, reach)
         if len(k):
             amplitudes, step = c * cell.L1(k / cell.pitch), max(1, _AT_ONCE // len(k))
             N = N + np.concatenate([np.cos(np.outer(x[i : i + step], k)) @ amplitudes for i in range(0, len(x), step)])
@@ -111,7 +103,7 @@ def points(cell, reach):
     """Points and weights (T,) on [0, 1] for radii up to `reach`."""
     n = -(-_LEAST // POINTS)
     if cell.L1 is not None:
-        n = max(n, int(np.ceil(reach * cell.scale / _WIDEST)))
+        n = max(n, int(np.ceil(reach * cell.pitch / _WIDEST)))
     x, w = gauss_legendre(POINTS)
     return ((np.arange(n)[:, None] + x) / n).ravel(), np.tile(w / n, n)
 

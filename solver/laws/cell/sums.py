@@ -41,7 +41,7 @@ class Waves(NamedTuple):
     c: np.ndarray
 
 
-@cache
+@lru_cache(maxsize=64)  # each pitch over h has its own
 def _shells(lattice, most):
     """Squares of the distances up to `most` times the least, in its unit, and how many points have each."""
     i = np.arange(-int(1.16 * most) - 2, int(1.16 * most) + 3)

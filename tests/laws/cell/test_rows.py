@@ -154,3 +154,26 @@ def test_bad_arguments_are_named(change, words):
     case = {"lattice": "square", "lam": 0.1, "l_over_h": 2.0, "n": 3.0, "nu1": 0.3, "nu2": 0.3, "bonding": "bonded"}
     with pytest.raises(ValueError, match=words):
         cell_rows(**case | change)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"bonding": "glued"}, "bonding = glued"),
+        ({"lam": 0.9}, "lam = 0.9"),
+        ({"lattice": "triangle"}, "lattice"),
+        ({"n": np.nan}, "n = nan"),
+        ({"nu2": 0.6}, "nu2 = 0.6"),
+        ({"m": -1.0}, "m = -1.0"),
+        ({"side": 2}, "side = 2"),
+        ({"z": [0.6]}, "z = 0.6: must be finite, at least 0 and at most h = 0.5"),
+        ({"z": [0.4], "side": 1}, "z = 0.4: must be finite, at least 0 and at least h = 0.5"),
+        ({"z": [-0.1]}, "z = -0.1"),
+        ({"z": [np.nan]}, "z = nan"),
+    ],
+)
+def test_bad_arguments_of_the_axis_are_named(change, words):
+    """A misspelt interface was taken for a frictionless one."""
+    case = {"lattice": "square", "lam": 0.1, "l_over_h": 2.0, "z": [0.1], "n": 3.0, "nu1": 0.3, "nu2": 0.3}
+    with pytest.raises(ValueError, match=words):
+        cell_axis(**case | {"bonding": "bonded"} | change)

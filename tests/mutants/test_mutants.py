@@ -105,13 +105,16 @@ def test_only_tests_that_may_notice_are_tried_the_likeliest_first():
             "tests/b.py::other": {"functions": [2], "processes": False, "seconds": 0.1},
             "tests/b.py::child": {"functions": [], "processes": True, "seconds": 0.2},
             "tests/a.py::fails": {"functions": [0], "processes": False, "seconds": 0.1},
+            "tests/explorer/page.py::drawn": {"functions": [], "processes": False, "seconds": 0.3},
+            "tests/explorer/page.py::fails": {"functions": [], "processes": False, "seconds": 0.2},
         },
-        "failed": ["tests/a.py::fails"],
+        "failed": ["tests/a.py::fails", "tests/explorer/page.py::fails"],
         "computing": [],
     }  # fmt: skip
     assert list(order("one.py", 5, text, known)) == ["tests/a.py::square", "tests/a.py::cube", "tests/b.py::child"]
     assert list(order("one.py", 1, text, known)) == ["tests/a.py::cube", "tests/a.py::square", "tests/b.py::child"]
     assert list(order("core.h", 1, "", known)) == []
+    assert list(order("page.js", 1, "", known)) == ["tests/explorer/page.py::drawn"]
     assert first({"a": 1.0, "b": 2.0, "c": 3.0}, 3.5) == {"a": 1.0, "b": 2.0} and first({"a": 9.0}, 1.0) == {"a": 9.0}
 
 

@@ -18,7 +18,7 @@ from types import ModuleType
 # Not the repository either: in a worktree it is a pointer, and a test that ends in the middle would lock the real one.
 NOT_COPIED = {"results", "figures", "tables", "build", "dist", ".git", ".venv", ".hypothesis", ".pytest_cache"}
 NIGHT = 40_000.0  # seconds for what has no measure
-MEMORY = 8_000_000_000  # bytes: a mutant may ask for all there are
+MEMORY = 8_000_000_000  # bytes that a mutant may write to; of addresses alone a browser takes more
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def _begun(task: Task, folder: Path) -> int:
         return child
     try:
         os.setsid()
-        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
         os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
         log = os.open(folder.with_suffix(".log"), os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         os.dup2(log, 1), os.dup2(log, 2)

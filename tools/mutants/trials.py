@@ -173,7 +173,8 @@ def order(file: str, line: int, text: str, known: dict) -> dict[str, float]:
     """
     if Path(file).suffix != ".py":
         tops = tuple(f"{top}/" for top in UNSEEN.get(Path(file).suffix, []))
-        within = {node: test["seconds"] for node, test in known["tests"].items() if node.startswith(tops)}
+        passing = {node: test["seconds"] for node, test in known["tests"].items() if node not in known["failed"]}
+        within = {node: seconds for node, seconds in passing.items() if node.startswith(tops)}
         return dict(sorted(within.items(), key=lambda item: (left_out(item[0]), item[1])))
     lines = _function(text, line)
     of_file = {i for i, (at, _) in enumerate(known["functions"]) if at == file}

@@ -207,8 +207,7 @@ class Problem:
         -------
         numpy.ndarray : (B,) bool: the base is an exact layer or stack, or "auto", and the micro law takes its kernel
         """
-        with_body = [name for name, law in laws.LAWS.items() if law.on_body]
-        return one_of(self.base, FELT) & one_of(self.micro, with_body)
+        return can_feel(self.base, self.micro)
 
     def feels_layer(self) -> np.ndarray:
         """Which cases have asperities that feel what lies below the surface.
@@ -217,8 +216,7 @@ class Problem:
         -------
         numpy.ndarray : (B,) bool: they can, and `asperities_on` is "layer", or it is "auto" and their pitch is above h
         """
-        felt = (self.asperities_on == "layer") | (self.asperities_on == "auto") & far_apart(self.Nbar, self.h)
-        return felt & self.can_feel()
+        return feels(self.base, self.micro, self.asperities_on, self.Nbar, self.h)
 
     def may_pull(self) -> np.ndarray:
         """Which cases may have a control that is 0 or negative.
@@ -278,6 +276,36 @@ def far_apart(Nbar: ArrayLike, h: ArrayLike) -> np.ndarray:
     """
     with np.errstate(invalid="ignore", over="ignore"):
         return np.asarray(Nbar) * np.asarray(h) ** 2 < _ABOVE
+
+
+def can_feel(base: ArrayLike, micro: ArrayLike) -> np.ndarray:
+    """Whether asperities can feel what lies below the surface.
+
+    Parameters
+    ----------
+    base, micro : words; they broadcast
+
+    Returns
+    -------
+    numpy.ndarray of bool : the base is an exact layer or stack, or "auto", and the micro law takes its kernel
+    """
+    return one_of(base, FELT) & one_of(micro, [name for name, law in laws.LAWS.items() if law.on_body])
+
+
+def feels(base: ArrayLike, micro: ArrayLike, asperities_on: ArrayLike, Nbar: ArrayLike, h: ArrayLike) -> np.ndarray:
+    """Whether asperities feel what lies below the surface.
+
+    Parameters
+    ----------
+    base, micro, asperities_on : words
+    Nbar, h : of any one unit of length; all broadcast
+
+    Returns
+    -------
+    numpy.ndarray of bool : they can, and `asperities_on` is "layer", or it is "auto" and their pitch is above h
+    """
+    words = np.asarray(asperities_on)
+    return can_feel(base, micro) & ((words == "layer") | (words == "auto") & far_apart(Nbar, h))
 
 
 def _array(name, value):

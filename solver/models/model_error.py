@@ -28,7 +28,7 @@ def judged(problem, x):
     problem : all of base "thin_layer" or "thin_stack"; x : (m,) radii
     """
     pieces, scaled = [], dimensionless(problem)
-    exact = scaled.but(base=np.where(scaled.base == "thin_stack", "stack", "layered"), asperities_on="auto")
+    exact = scaled.but(base=np.where(scaled.base == "thin_stack", "stack", "layered"))
     kinds = problem.micro, problem.base, exact.feels_layer()
     for kind in dict.fromkeys(zip(*(words.tolist() for words in kinds), strict=True)):
         index = np.flatnonzero(np.all([words == word for words, word in zip(kinds, kind, strict=True)], axis=0))

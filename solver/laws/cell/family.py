@@ -62,7 +62,8 @@ NUMBERS = ("scale", "width", "end", "width_r", "end_r", "slope_P", "slope_G", "s
 
 class Family(NamedTuple):
     """Series of P, G and Q, Chebyshev coefficients (N,) each, and of the inverse (GUESS,); pitch over h, and the
-    largest radius (unit l). `known` is False of a family that no law has, of a pitch above MOST; `disc`: of disc cells."""
+    largest radius (unit l). `known` is False of a family that no law has, of a pitch above MOST. `disc` : whether it is
+    of disc cells."""
 
     pitch: float
     reach: float

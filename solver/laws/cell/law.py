@@ -16,8 +16,10 @@ import numpy as np
 from ..law import Bound, Curve, Law, log_step, where_positive
 from .family import GUESS, NUMBERS, families
 
-__all__ = ["EDGE", "end", "exponent", "number", "of_spots", "rows_of", "spot_area", "spot_curve"]
-__all__ += ["spot_from_pressure", "spot_guess", "spot_peak"]
+__all__ = [
+    *("EDGE", "end", "exponent", "number", "of_spots", "rows_of"),
+    *("spot_area", "spot_curve", "spot_from_pressure", "spot_guess", "spot_peak"),
+]
 
 _AT = {name: i for i, name in enumerate(NUMBERS)}
 #: Newton steps from the guess, which is right to 1e-2 or better: the third is below rounding.

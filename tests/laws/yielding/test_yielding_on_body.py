@@ -90,7 +90,7 @@ def test_what_has_flowed_stays_so_where_a_hard_film_bends():
     the load that is lost stays."""
     one, pitch = np.ones(1), 16.0
     kernel = TwoLayers(30 * one, 0.25 * one, 0.3 * one, one > 0)
-    values = {"Nbar": one, "Ra": one, "hardness": one, "yield_strength": one / 2.84, "nu": 0.25 * one}
+    values = {"Nbar": one, "Ra": one, "hardness": one / 2, "yield_strength": one / 2 / 2.84, "nu": 0.25 * one}
     law = LAW.on_body(kernel, 0 * one, one / pitch, 30 * one, **values)
     y = np.linspace(0.02, 0.6, 400)[None]
     elastic = LAWS["disc_cell"].on_body(kernel, 0 * one, one / pitch, 30 * one, Nbar=one, Ra=one).evaluate(y)

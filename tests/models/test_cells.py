@@ -74,7 +74,7 @@ def test_what_cannot_feel_the_layer_refuses_it(wrong):
 
 def test_where_the_law_ends_there_are_no_numbers():
     """Spots that merge, a pitch of more than 300 h, a disc cell on a soft film; a curve may be drawn through them."""
-    given = SPHERE | {"n": [5.0, 5.0, 0.02], "h": [0.001, 1.7e-5, 0.001], "P": [1.0, 6e-5, 9e-6]}
+    given = SPHERE | {"n": [1.2, 5.0, 0.02], "h": [0.001, 1.7e-5, 0.001], "P": [0.05, 6e-5, 9e-6]}
     problem = Problem.of(**given, micro="disc_cell")
     found, beyond = solve(problem), solve(problem, extrapolate=True)
     assert (found.status == Status.OUTSIDE_LAW).all() and np.isnan(found.D).all()

@@ -104,6 +104,7 @@ def _of_disc(part, lam, solution):
 @np.errstate(all="ignore")
 def _of_half_space(part, solution):
     """The error (B,) of asperities on a half-space though their pitch is above h, in units R = E2* = 1."""
+    part = part.but(asperities_on="half_space")
     if LAWS[str(part.micro[0])].on_body is None:
         part = part.but(micro=_DISC)
     on_body = law_of(part.but(asperities_on="layer"))

@@ -12,7 +12,6 @@ On the coated body itself the spots are those of :mod:`.cell.summits`, and there
 too. It ends where λ is that at which the disc cell ends.
 """
 
-import hashlib
 from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
@@ -220,7 +219,7 @@ def _scales(density, field, E, Nbar, Ra, sigma=1.0, cut=None):
 
 class _Body(NamedTuple):
     """The functions of the law of a density of heights on the coated body. The law's own numbers are sigma/A* and cut,
-    (B, 1); a number that stands for the family of each case, (B, 1); the rows of the disc cell, and of summits."""
+    (B, 1), the rows of the disc cell, and of summits."""
 
     density: object
 
@@ -231,16 +230,12 @@ class _Body(NamedTuple):
             keys, index = different("disc", 1 / (h * np.sqrt(Nbar)), kernel, m)
         cells = [family(key, kernel, m, i) for key, i in keys]
         summits = [summit(key, disc, kernel, m, i) for (key, i), disc in zip(keys, cells, strict=True)]
-        digests = [
-            float(int.from_bytes(hashlib.blake2b(repr(key).encode(), digest_size=6).digest())) for key, _ in keys
-        ]
         numbers = [(v * np.ones(np.shape(E)))[:, None] for v in (sigma, cut)]
-        rows = (np.array(digests)[:, None], cell.stacked(cells), cell.stacked(summits))
-        return Bound(law, p_star, A_star, (*numbers, *(values[index] for values in rows)))
+        return Bound(law, p_star, A_star, (*numbers, cell.stacked(cells)[index], cell.stacked(summits)[index]))
 
-    def tables(self, sigma, cut, digest, rows, summits):
-        """As :func:`_tables`, one for each different row of sigma, cut and digest."""
-        numbers = np.concatenate([np.where(sigma > 0, sigma, 1.0), cut, digest], axis=1)
+    def tables(self, sigma, cut, rows, summits):
+        """As :func:`_tables`, one for each family with each sigma and cut."""
+        numbers = np.concatenate([np.where(sigma > 0, sigma, 1.0), cut, cell.number(rows, "digest")], axis=1)
         triples, first, group = np.unique(numbers, axis=0, return_index=True, return_inverse=True)
         keys = [(self.density, "body", *triple) for triple in triples.tolist()]
         found = [_TABLES.get(key) for key in keys]
@@ -265,7 +260,7 @@ class _Body(NamedTuple):
         return np.exp(value), slope
 
     def curve(self, y, *own):
-        sigma, cut, _, rows, _ = own
+        sigma, cut, rows, _ = own
         q, slope = self.looked_up(0, np.minimum(y, spread.LAST), *own)
         relief = _relief(self.density, sigma, cut)
         if (y > spread.LAST).any():
@@ -281,7 +276,7 @@ class _Body(NamedTuple):
 
     def guess(self, q, *own):
         """As :func:`_guess`, and then Newton's steps on the table."""
-        sigma, cut, _, rows, _ = own
+        sigma, cut, rows, _ = own
         level = cell.spot_guess(q, rows)
         alike = cell.spot_curve(np.maximum(level, 1e-300), rows).g
         few = (1.25 * np.pi * sigma / self.density.top(cut) * np.maximum(q, 0.0)) ** 0.4
@@ -294,11 +289,11 @@ class _Body(NamedTuple):
 
     def area(self, y, q, *own):
         area = np.minimum(self.looked_up(1, y, *own)[0], 1.0)
-        return np.where(own[0] > 0, area, cell.spot_area(y, q, own[3]))
+        return np.where(own[0] > 0, area, cell.spot_area(y, q, own[2]))
 
     def peak(self, y, q, *own):
         """p_max/p* under the highest summit."""
-        sigma, cut, _, rows, summits = own
+        sigma, cut, rows, summits = own
         delta = spread.depth(y, q, _relief(self.density, sigma, cut))[0]
         return np.where(sigma > 0, on_body.peak(summits, q, delta), cell.spot_peak(y, q, rows))
 
@@ -310,7 +305,7 @@ class _Body(NamedTuple):
         table, group = self.tables(*own)
         last = np.argmax(np.diff(table[:, 1], axis=1) == 0, axis=1) - on_body.PAST
         most = np.exp(table[np.arange(len(table)), 0, last])[group, None]
-        of_level = cell.number(own[3], "most")
+        of_level = cell.number(own[2], "most")
         return np.where(of_level > 0, np.where(own[0] > 0, most, of_level), 0.0)
 
 

@@ -15,6 +15,7 @@ The inverse is a series too: with r = (3 p/4)^(1/3), the radius of a lone spot w
 asinh(r/h). It is used for first guesses alone, and has few terms.
 """
 
+import hashlib
 from typing import NamedTuple
 
 import numpy as np
@@ -56,14 +57,27 @@ _kept = Kept(2e7)
 #: The numbers of a family before its series, in their order: b/h over b/Bbar, 1/asinh and the largest b/Bbar of P, G
 #: and Q; 1/asinh and the largest r/Bbar of the inverse; the slopes by ln b at the end of P, G and Q; the largest p/p*
 #: that the law knows; of the disc cell, b/Bbar from which the mean pressure of a spot falls, and this mean over that of
-#: a lone spot of the radius Bbar (the end, and 0, where it does not).
-NUMBERS = ("scale", "width", "end", "width_r", "end_r", "slope_P", "slope_G", "slope_Q", "most", "turn", "top")
+#: a lone spot of the radius Bbar (the end, and 0, where it does not); and what tells the family from others.
+NUMBERS = (
+    "scale",
+    "width",
+    "end",
+    "width_r",
+    "end_r",
+    "slope_P",
+    "slope_G",
+    "slope_Q",
+    "most",
+    "turn",
+    "top",
+    "digest",
+)
 
 
 class Family(NamedTuple):
     """Series of P, G and Q, Chebyshev coefficients (N,) each, and of the inverse (GUESS,); pitch over h, and the
     largest radius (unit l). `known` is False of a family that no law has, of a pitch above MOST. `disc` : whether it is
-    of disc cells."""
+    of disc cells; digest : a whole number that other families do not have."""
 
     pitch: float
     reach: float
@@ -73,6 +87,7 @@ class Family(NamedTuple):
     inverse: np.ndarray
     known: bool = True
     disc: bool = False
+    digest: float = 0.0
 
     @property
     def terms(self):
@@ -96,7 +111,9 @@ class Family(NamedTuple):
         most = 2 / np.pi * end_r**3 if self.known else 0.0
         turn = _turn(scale, end, self.P) if self.disc else (end, 0.0)
         series = [np.append(one, np.zeros(terms - len(one))) for one in (self.P, self.G, self.Q)]
-        return np.concatenate([[scale, widths[0], end, widths[1], end_r, *slopes, most, *turn], *series, self.inverse])
+        return np.concatenate(
+            [[scale, widths[0], end, widths[1], end_r, *slopes, most, *turn, self.digest], *series, self.inverse]
+        )
 
 
 def half_space(t):
@@ -149,7 +166,8 @@ def different(lattice, pitch, kernel, m):
 
 def family(key, kernel, m, i):
     """The :class:`Family` of case i with this key, kept for the next time. It is a function of the case alone."""
-    return _kept.get(key, lambda: Family(*_made(key[0], key[1], kernel.take([i]), float(m[i]))))
+    digest = float(int.from_bytes(hashlib.blake2b(repr(key).encode(), digest_size=6).digest()))
+    return _kept.get(key, lambda: Family(*_made(key[0], key[1], kernel.take([i]), float(m[i])))._replace(digest=digest))
 
 
 def rounded(pitch):

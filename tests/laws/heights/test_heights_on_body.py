@@ -98,7 +98,8 @@ def test_summits_of_equal_heights_are_the_disc_cell(n, pitch):
 
 
 def test_means_have_the_slopes_they_say():
-    """By central differences: of q less the mean load by q, and of the mean load by the approach."""
+    """By central differences: of q less the mean load by q, and of the mean load by the approach. Some of the spots are
+    where the straight lines begin, whose second derivative the points see to 1e-5."""
     *_, row = lookup_of(5.0, 4.0)
     look, cut, sigma = summits.Lookup(row), np.array([[4.0]]), np.array([[0.4]])
     at, q, delta = partial(heights.NORMAL.at, cut=cut), np.array([[1e-4, 3e-3, 0.05]]), np.array([[0.2, 0.5, 0.8]])
@@ -110,8 +111,8 @@ def test_means_have_the_slopes_they_say():
     step = 1e-5
     by_q = (more(q * (1 + step), delta)[0] - more(q * (1 - step), delta)[0]) / (2 * step * q)
     by_delta = (more(q, delta * (1 + step))[0] - more(q, delta * (1 - step))[0]) / (2 * step * delta)
-    assert_allclose(more(q, delta)[1].fall, -by_q, rtol=1e-6)
-    assert_allclose(3 / np.pi * more(q, delta)[1].c, by_delta, rtol=1e-6)
+    assert_allclose(more(q, delta)[1].fall, -by_q, rtol=2e-5)
+    assert_allclose(3 / np.pi * more(q, delta)[1].c, by_delta, rtol=2e-5)
 
 
 @pytest.mark.parametrize(("n", "pitch"), [(5.0, 8.0), (0.1, 8.0)])

@@ -15,9 +15,10 @@ import numpy as np
 
 from ..law import Bound, Curve, Law, log_step, where_positive
 from .family import GUESS, NUMBERS, families
+from .summits import clenshaw
 
 __all__ = [
-    *("EDGE", "end", "exponent", "number", "of_spots", "rows_of"),
+    *("EDGE", "end", "exponent", "number", "of_spots", "rows_of", "stacked"),
     *("spot_area", "spot_curve", "spot_from_pressure", "spot_guess", "spot_peak"),
 ]
 
@@ -34,9 +35,14 @@ def rows_of(lattice, kernel, m, h, Nbar):
     lattice : "square", "hex" or "disc"; kernel, m, h : of the body, as in `on_body` of :class:`~solver.laws.law.Law`
     """
     with np.errstate(all="ignore"):
-        different, index = families(lattice, 1 / (h * np.sqrt(Nbar)), kernel, m)
-    terms = max(len(family.P) for family in different)
-    return np.array([family.row(terms) for family in different])[index]
+        members, index = families(lattice, 1 / (h * np.sqrt(Nbar)), kernel, m)
+    return stacked(members)[index]
+
+
+def stacked(members):
+    """The rows of families or summits, (G, K), as long as the longest."""
+    terms = max(member.terms for member in members)
+    return np.array([member.row(terms) for member in members])
 
 
 def of_spots(name, lattice, scales, **rest):
@@ -75,16 +81,7 @@ def _series(rows, which, x):
     """The series P, G or Q (`which`: 0, 1, 2) at x (B, m), and its derivative by x: Clenshaw's recurrence."""
     terms = (rows.shape[1] - len(NUMBERS) - GUESS) // 3
     first = len(NUMBERS) + which * terms
-    return _clenshaw(rows[:, first : first + terms], x)
-
-
-def _clenshaw(coefficients, x):
-    value, before, slope, slope_before = np.zeros((4, *x.shape))
-    twice = 2 * x
-    for c in coefficients.T[:0:-1]:
-        slope, slope_before = twice * slope - slope_before + 2 * value, slope
-        value, before = twice * value - before + c[:, None], value
-    return x * value - before + coefficients[:, :1], value + x * slope - slope_before
+    return clenshaw(rows[:, first : first + terms], x)
 
 
 def exponent(rows, which, y):
@@ -114,7 +111,7 @@ def spot_guess(q, rows):
     """y with q(y) = q, roughly: by the inverse of the family, a series in asinh(r/h), r the radius of a lone spot."""
     r, last = np.cbrt(np.pi / 2 * np.maximum(q, 0.0)), number(rows, "end_r")
     x = 2 * number(rows, "width_r") * np.arcsinh(number(rows, "scale") * np.minimum(r, last)) - 1
-    inside, _ = _clenshaw(rows[:, -GUESS:], x)
+    inside, _ = clenshaw(rows[:, -GUESS:], x)
     beyond = np.log(np.maximum(r / last, 1.0))
     return np.minimum(r, last) * np.exp(inside + beyond * 3 / (3 + number(rows, "slope_P")))
 

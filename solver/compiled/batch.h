@@ -2,12 +2,13 @@
    columns are in blocks of 8 rows: `_blocks` of tables.py. LAYOUT changes with all that is here: library.py takes no
    core of another one. */
 #include <stdint.h>
-#define LAYOUT 2
+#define LAYOUT 3
 enum { LOAD, RADIUS, DEPTH };               /* the control of a batch */
 enum { DISC_CELL, POWER_LAW, SMOOTH, CELL };        /* its micro law */
 /* A family of cells on the coated body (cells.py): these numbers, PIECES pieces an octave of 1 + kappa y with the
    polynomials of exp P and exp G, those of exp Q, and of 1 + kappa_r r with those of y/r. */
-enum { kappa_, end_, top_, kappa_r_, end_r_, top_r_, slope_P_, slope_G_, slope_Q_, slope_r_, at_Q_, at_r_, NUMBERS };
+enum { kappa_, end_, top_, kappa_r_, end_r_, top_r_, slope_P_, bend_P_ = 9, settles_ = 12, slope_r_, at_Q_, at_r_,
+       NUMBERS };
 #define PIECES 32
 #define ROW 8                               /* coefficients of a polynomial of P, G or Q; half as many of y/r */
 enum { a_, P_, D_, p0_, p_max_, Ar_An_, A0_, dP_dD_, residual_, error_, profile_error_, SCALARS };

@@ -7,7 +7,7 @@ of the family do. Near y = 0 all pieces are equally wide, far from it they widen
 import numpy as np
 
 from ..laws.cell.family import NUMBERS
-from ..laws.cell.law import exponent, number, spot_guess
+from ..laws.cell.law import exponent, number, settled_slope, spot_guess
 from ..numerics.kept import Kept
 
 #: As in batch.h: pieces an octave, and coefficients of a polynomial of exp(P), exp(G) and exp(Q); half as many of the
@@ -47,10 +47,10 @@ def _family(row):
     kappa_r, octaves_r = _octaves(scale, end_r)
     P, G, Q = (_polynomials(of(which), kappa, octaves, ROW) for which in range(3))
     inverse = _polynomials(ratio, kappa_r, octaves_r, ROW // 2)
-    slopes = [numbers[f"slope_{name}"] for name in "PGQ"]
-    slope_r = 3 / (3 + slopes[0]) - 1
+    slopes = [numbers[f"{name}_{of}"] for name in ("slope", "bend") for of in "PGQ"]
+    slope_r = 3 / (3 + settled_slope(row)[0, 0]) - 1
     tops = [np.nextafter(2.0**count, 0.0) for count in (octaves, octaves_r)]
-    header = [kappa, end, tops[0], kappa_r, end_r, tops[1], *slopes, slope_r, 0.0, 0.0]
+    header = [kappa, end, tops[0], kappa_r, end_r, tops[1], *slopes, numbers["settles"], slope_r, 0.0, 0.0]
     header[-2] = len(header) + P.size + G.size
     header[-1] = header[-2] + Q.size
     return np.concatenate([header, np.concatenate([P, G], axis=1).ravel(), Q.ravel(), inverse.ravel()])

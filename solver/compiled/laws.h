@@ -55,9 +55,12 @@ static inline V of_cell(const Law *law, const double *const *at, int which, V y,
     I far = y > end;
     *by_log = slope * dt * y;
     if (any(far)) {
-        V s = law->of_cell[slope_P_ + which];
-        value = pick(far, value * power(most(y / end, all(1.0)), s), value);
-        *by_log = pick(far, s * value, *by_log);
+        V s = law->of_cell[slope_P_ + which], c = law->of_cell[settles_], bend = law->of_cell[bend_P_ + which] / c;
+        V beyond = vlog(most(y / end, all(1.0))), less, turned;
+        exponential(-c * beyond, &less);
+        turned = -less * bend;
+        value = pick(far, value * vexp((s + bend) * beyond - turned / c), value);
+        *by_log = pick(far, (s + turned) * value, *by_log);
     }
     return value;
 }

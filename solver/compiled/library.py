@@ -18,7 +18,7 @@ import numpy as np
 NAME, VARIANTS, VARIABLE = "_core", ("avx512", "avx2", "sse2"), "ROUGHCOAT_CORE"
 
 #: LAYOUT of batch.h: a core that was built of another one would read elsewhere what this one writes.
-LAYOUT = 2
+LAYOUT = 3
 
 _LAYERED = ("h", "m", "n", "bonded", "c1", "c2", "one_c1", "one_c2", "plus_c1", "one_c1c2")
 

@@ -101,7 +101,7 @@ def test_the_polynomials_are_the_series(n, pitch):
     """exp(P) and exp(G) to 3e-13, exp(Q) to 1e-11, and the guess to 1e-5, at all pieces, and where one ends."""
     row = rows_of(n, pitch)
     table = cells._family(row)
-    kappa, end, top, kappa_r, end_r, top_r, *_, at_Q, at_r = table[:12]
+    kappa, end, top, kappa_r, end_r, top_r, *_, at_Q, at_r = table[:16]
     assert_allclose([1 + kappa * end, 1 + kappa_r * end_r], [top, top_r], rtol=1e-14)
     y = np.concatenate([np.linspace(0, end, 500), end * 2.0 ** -np.arange(1, 40)])
 
@@ -117,8 +117,8 @@ def test_the_polynomials_are_the_series(n, pitch):
     z = np.minimum(1 + kappa * y, top)
     row_size = cells.ROW
     wanted = [np.exp(law.exponent(row, which, y[None])[0][0]) for which in range(3)]
-    assert_allclose(at(z, 12, 2 * row_size, row_size), wanted[0], rtol=3e-13)
-    assert_allclose(at(z, 12 + row_size, 2 * row_size, row_size), wanted[1], rtol=3e-13)
+    assert_allclose(at(z, 16, 2 * row_size, row_size), wanted[0], rtol=3e-13)
+    assert_allclose(at(z, 16 + row_size, 2 * row_size, row_size), wanted[1], rtol=3e-13)
     assert_allclose(at(z, at_Q, row_size, row_size), wanted[2], rtol=1e-11)
     r = np.geomspace(1e-9, 1, 300) * end_r
     guess = law.spot_guess(2 / np.pi * r[None] ** 3, row)[0] / r

@@ -49,28 +49,23 @@ _DIGITS = 44
 _SOFT, _SCANNED = 0.1, 24
 #: The largest mean pressure of a spot is looked for at so many radii.
 _LOOKED = 200
+#: Beyond the end P, G and Q have the second derivative that they have there, less and less: with a corner of the slope,
+#: contacts that go beyond would need finer meshes. It falls at this rate in ln b at least, and the slopes change by at
+#: most _TURNED, so that p and A rise.
+_SETTLES, _TURNED = 4.0, 0.25
 #: Radii are solved so many numbers of their matrices at a time.
 _AT_ONCE = 2**20
 #: Bytes of the families that are kept: some 10,000 of them.
 _kept = Kept(2e7)
 
 #: The numbers of a family before its series, in their order: b/h over b/Bbar, 1/asinh and the largest b/Bbar of P, G
-#: and Q; 1/asinh and the largest r/Bbar of the inverse; the slopes by ln b at the end of P, G and Q; the largest p/p*
-#: that the law knows; of the disc cell, b/Bbar from which the mean pressure of a spot falls, and this mean over that of
-#: a lone spot of the radius Bbar (the end, and 0, where it does not); and what tells the family from others.
+#: and Q; 1/asinh and the largest r/Bbar of the inverse; at the end the slopes by ln b of P, G and Q, their second
+#: derivatives, and how fast these fall beyond; the largest p/p* that the law knows; of the disc cell, b/Bbar from which
+#: the mean pressure of a spot falls, and this mean over that of a lone spot of the radius Bbar (the end, and 0, if it
+#: does not); and what tells the family from others.
 NUMBERS = (
-    "scale",
-    "width",
-    "end",
-    "width_r",
-    "end_r",
-    "slope_P",
-    "slope_G",
-    "slope_Q",
-    "most",
-    "turn",
-    "top",
-    "digest",
+    *("scale", "width", "end", "width_r", "end_r", "slope_P", "slope_G", "slope_Q", "bend_P", "bend_G", "bend_Q"),
+    *("settles", "most", "turn", "top", "digest"),
 )
 
 
@@ -105,14 +100,22 @@ class Family(NamedTuple):
         Bbar = 1 / np.sqrt(np.pi)
         scale, end = self.pitch * Bbar, self.reach / Bbar
         end_r = end * np.exp(self.P.sum() / 3)
-        along = 2 * scale * end / np.hypot(1, scale * end) / np.arcsinh(scale * end)  # dx/d ln b at the end
-        slopes = [along * chebyshev.chebval(1.0, chebyshev.chebder(series)) for series in (self.P, self.G, self.Q)]
+        beta = scale * end
+        along = 2 * beta / np.hypot(1, beta) / np.arcsinh(beta)  # dx/d ln b at the end
+        orders = [[chebyshev.chebval(1.0, chebyshev.chebder(v, i)) for v in (self.P, self.G, self.Q)] for i in (1, 2)]
+        slopes = along * np.array(orders[0])
+        bends = along**2 * np.array(orders[1]) + slopes / (1 + beta**2)
+        settles = max(_SETTLES, np.abs(bends).max() / _TURNED)
         widths = 1 / np.arcsinh(scale * end), 1 / np.arcsinh(scale * end_r)
         most = 2 / np.pi * end_r**3 if self.known else 0.0
         turn = _turn(scale, end, self.P) if self.disc else (end, 0.0)
         series = [np.append(one, np.zeros(terms - len(one))) for one in (self.P, self.G, self.Q)]
         return np.concatenate(
-            [[scale, widths[0], end, widths[1], end_r, *slopes, most, *turn, self.digest], *series, self.inverse]
+            [
+                [scale, widths[0], end, widths[1], end_r, *slopes, *bends, settles, most, *turn, self.digest],
+                *series,
+                self.inverse,
+            ]
         )
 
 

@@ -5,8 +5,8 @@ Q of the family of a case (:mod:`.family`) and p* = 2 E Bbar/(3 Ra), A* = Bbar²
 
     q = (2/pi) y³ e^P,   g = y² e^G,   λ = y²,   p_max/p* = (3/pi) y e^Q.
 
-P, G and Q end where the spots are no circles any more. Beyond, they are straight lines in ln y, so that Newton's method
-gets through: such a contact is outside the law, whose largest pressure :func:`end` says.
+P, G and Q end where the spots are no circles any more. Beyond, they soon are straight lines in ln y, so that Newton's
+method gets through: such a contact is outside the law, whose largest pressure :func:`end` says.
 """
 
 from functools import partial
@@ -18,7 +18,7 @@ from .family import GUESS, NUMBERS, families
 from .summits import clenshaw
 
 __all__ = [
-    *("EDGE", "end", "exponent", "number", "of_spots", "rows_of", "stacked"),
+    *("EDGE", "end", "exponent", "number", "of_spots", "rows_of", "settled_slope", "stacked"),
     *("spot_area", "spot_curve", "spot_from_pressure", "spot_guess", "spot_peak"),
 ]
 
@@ -69,6 +69,11 @@ def number(rows, name):
     return rows[:, _AT[name], None]
 
 
+def settled_slope(rows):
+    """dP/d ln y far beyond the end, (B, 1)."""
+    return number(rows, "slope_P") + number(rows, "bend_P") / number(rows, "settles")
+
+
 def _along(rows, y):
     """x = 2 v - 1 of the series at y (B, m), dx/d ln y, and ln(y/end), 0 where y is not beyond the end."""
     scale, last = number(rows, "scale"), number(rows, "end")
@@ -88,8 +93,10 @@ def exponent(rows, which, y):
     """P, G or Q at y (B, m), and its derivative by ln y."""
     x, dx, beyond = _along(rows, y)
     value, slope = _series(rows, which, x)
-    last = rows[:, _AT["slope_P"] + which, None]
-    return value + last * beyond, np.where(beyond > 0, last, slope * dx)
+    last, bend = (rows[:, _AT[name] + which, None] for name in ("slope_P", "bend_P"))
+    settles = number(rows, "settles")
+    turned = bend * -np.expm1(-settles * beyond) / settles
+    return value + (last + bend / settles) * beyond - turned / settles, np.where(beyond > 0, last + turned, slope * dx)
 
 
 def _pressure(rows, y):
@@ -113,7 +120,7 @@ def spot_guess(q, rows):
     x = 2 * number(rows, "width_r") * np.arcsinh(number(rows, "scale") * np.minimum(r, last)) - 1
     inside, _ = clenshaw(rows[:, -GUESS:], x)
     beyond = np.log(np.maximum(r / last, 1.0))
-    return np.minimum(r, last) * np.exp(inside + beyond * 3 / (3 + number(rows, "slope_P")))
+    return np.minimum(r, last) * np.exp(inside + beyond * 3 / (3 + settled_slope(rows)))
 
 
 def spot_from_pressure(q, rows):

@@ -7,12 +7,12 @@ from numpy.typing import ArrayLike
 
 from .body.graded import is_graded
 from .models.auto import cheapest
-from .models.cell_error import cell_error
+from .models.cells import left_out
 from .models.graded import solve_graded
 from .models.model_error import judged
 from .models.named import model_of, solve_named
 from .models.plastic_share import has_yield, plastic_share
-from .models.range_of_law import RADII, has_range
+from .models.range_of_law import beyond_end, radii_of
 from .models.table_ends import beyond_table
 from .problem import Problem
 from .scaling import dimensionless, refused
@@ -25,7 +25,7 @@ from .threads import one_blas_thread
 
 @one_blas_thread()
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN and a status
-def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
+def solve(problem: Problem, x: ArrayLike = (0.0, 1.0), *, extrapolate: bool = False) -> Solution:
     """Solve a batch of cases. One that cannot be solved is a status and NaN.
 
     Smooth on a half-space is Hertz's closed form; smooth on a thin layer one linear solve; rough cases, and all on the
@@ -37,6 +37,8 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
     ----------
     problem : :class:`~solver.problem.Problem`, cases of any mixture of bases, micro laws, bondings and schemes
     x : (m,), radii r/a in [0, 1] at which the profiles p and λ are wanted
+    extrapolate : whether a contact keeps its numbers where spots that feel the coated body are so large that their law
+        has ended. Beyond, its curves are straight lines in their logarithms
 
     Returns
     -------
@@ -57,9 +59,19 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
     x = np.asarray(x, dtype=float)
     if x.ndim != 1 or not np.all((x >= 0) & (x <= 1)):
         raise ValueError("x must be one-dimensional and within [0, 1]")
-    yields = has_yield(problem).any()
-    radii = np.append(x, RADII) if yields or has_range(problem) else x
-    scaled, special = dimensionless(problem), shaped(problem) | (problem.w_adhesion > 0)
+    felt = problem.feels_layer()
+    if not felt.any() or felt.all():
+        return _solved(problem, x, extrapolate)
+    # those that feel the layer have radii of their own, and no others are to change by rounding because of these
+    parts = [(index, problem.take(index)) for index in (np.flatnonzero(~felt), np.flatnonzero(felt))]
+    return Solution.join(len(problem), len(x), [(index, _solved(part, x, extrapolate)) for index, part in parts])
+
+
+def _solved(problem, x, extrapolate):
+    """:func:`solve` of cases whose asperities all feel the layer, or of none."""
+    yields, felt = has_yield(problem).any(), problem.feels_layer()
+    radii = np.append(x, radii_of(problem, yields))
+    scaled, special = dimensionless(problem), shaped(problem) | (problem.w_adhesion > 0) | felt
     invalid = refused(problem, scaled) | problem.without_scheme() | unfit(scaled)
     if np.any(exact := special & (problem.base == "auto")):
         problem = problem.but(base=np.where(exact, "layered", problem.base))
@@ -79,7 +91,9 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
     if shaped(problem).any():
         beyond = ~invalid & beyond_table(scaled, solution)
         solution = solution.refused(beyond, Status.OUTSIDE_LAW)
-    solution = replace(solution, model_error=solution.model_error + cell_error(problem, solution))
+    if not extrapolate and felt.any():
+        solution = solution.refused(~invalid & beyond_end(problem, solution), Status.OUTSIDE_LAW)
+    solution = replace(solution, model_error=solution.model_error + left_out(problem, solution))
     if yields:
         solution = replace(solution, plastic_share=plastic_share(problem, solution.lam[:, len(x) :]))
     profiles = {name: getattr(solution, name)[:, : len(x)] for name in ("p", "lam")}

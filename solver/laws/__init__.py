@@ -36,6 +36,7 @@ GROUP = "roughcoat.laws"
 #: Names that no parameter of a law can have: the attributes of a Problem, and E and nu, which `scales` gets. The
 #: package `study` adds results and its other inputs.
 _OF_PROBLEM = ("control", "value", "parameters", "of", "take", "but", "rough", "invalid", "may_pull", "without_scheme")
+_OF_PROBLEM += ("can_feel", "feels_layer")
 RESERVED = {*CONTROL, *_OF_PROBLEM, "E", "nu"}
 #: Laws whose functions have been tried.
 _TRIED: WeakSet[Law] = WeakSet()
@@ -110,6 +111,8 @@ def _declare(laws):
         PARAMETERS.pop(name, None)  # of a law that has been replaced
     PARAMETERS.update({name: own._replace(needed_by=("micro", names)) for name, (own, names) in declared.items()})
     PARAMETERS["micro"] = PARAMETERS["micro"]._replace(choices=tuple(laws))
+    of_laws = "micro", tuple(law.name for law in laws.values() if law.on_body)
+    PARAMETERS["asperities_on"] = PARAMETERS["asperities_on"]._replace(used_by=of_laws)
     of_laws = "micro", tuple(law.name for law in laws.values() if law.poisson)
     PARAMETERS["nu1"] = PARAMETERS["nu1"]._replace(used_by=(*COUPLED, *of_laws))
     PARAMETERS["nu2"] = PARAMETERS["nu2"]._replace(needed_by=(*LAYERED, *of_laws), used_by=(*COUPLED, *of_laws))

@@ -1,0 +1,241 @@
+"""Where in a spot the pressure is largest: docs/model.md, Asperities on the coated body.
+
+With phi of :mod:`.spot` and f(t) = -phi'(t)/t, the pressure at r = sqrt(b² - s²) is
+
+    q(r) = ∫ f(t) t/sqrt(t² - r²) dt, t from r to b,   = ∫ f(sqrt(r² + u²)) du, u from 0 to s:
+
+a smooth function of s from the edge, s = 0, to the middle, s = b. So it is a polynomial in s/b on each of a few panels.
+Below a hard film on a soft body the largest pressure leaves the middle at some radius b, in a ring that widens, and
+may come back to the middle at a larger one, where the middle has overtaken the ring. A table of the radii between these
+says how large it is in the ring and where.
+"""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from ...numerics.quadrature import gauss_legendre, lagrange
+from .spot import POINTS, spots
+
+__all__ = ["Peaks", "largest", "peaks", "pressures"]
+
+#: The largest pressure stays in the middle where b/h is below _NARROW, and wherever L - 1 nowhere exceeds _HARD: it
+#: left it at 1.1 and at 1.6, whatever the Poisson ratios and the interface (n from 1.5 to 1e6), and in stacks no
+#: earlier (tests/laws/cell/test_peak.py).
+_NARROW, _HARD = 1.0, 1.3
+#: u = kh at which L - 1 is looked at.
+_U = np.geomspace(1e-4, 12, 60)
+#: Nodes of the polynomials on a panel of s/b (Chebyshev's, with both ends), and the widest panel in h.
+_NODES, _WIDEST = 32, 5.0
+#: Radii at which the cell is solved: so many, and _MORE for each factor of e in b/h. The pressures between are right to
+#: 1e-8 of themselves (tests/laws/cell/test_peak.py).
+_RADII, _MORE = 14, 12
+#: So many radii are looked at, and around each end of a ring _ROUNDS times _SECTIONS more: it is then right to 1e-7.
+_LOOKED_AT, _SECTIONS, _ROUNDS = 96, 13, 5
+#: Terms of the table on each of its pieces, which are halved at most _HALVINGS times, until what the pressure and r²
+#: miss between is below _SAME.
+_TERMS, _HALVINGS, _SAME = 14, 6, 1e-8
+#: Steps of Newton's method to the place of the largest pressure, from the best of the nodes.
+_STEPS = 5
+
+
+class Peaks(NamedTuple):
+    """The largest pressure in spots of a cell, by their radius.
+
+    ends : (n + 1,), ln b (unit l) at the ends of the pieces of the table; below the first the peak is in the middle
+    ring, lifts : (n,) bool: on this piece it is in a ring; the pressure is below 0 somewhere inside
+    series : (n, 2, terms), Chebyshev series in ln b: of the largest pressure over 2 b/pi, and of (r/b)² of its place
+    """
+
+    ends: np.ndarray
+    ring: np.ndarray
+    lifts: np.ndarray
+    series: np.ndarray
+
+    def at(self, b, p_max):
+        """The largest pressure, its radius over b, and whether the pressure is below 0 somewhere: (B,) each.
+
+        b : (B,), radii in l, up to the largest of the table; p_max : (B,), pressures in the middle, E = Ra = l = 1
+        """
+        w = np.log(b)
+        piece = np.searchsorted(self.ends, w, side="right") - 1
+        some = np.flatnonzero((piece >= 0) & np.append(self.ring | self.lifts, False)[np.minimum(piece, len(self.ring))])
+        p, r, lifts = np.array(p_max, dtype=float), np.zeros(len(w)), np.zeros(len(w), dtype=bool)
+        if len(some):
+            at = np.minimum(piece[some], len(self.ring) - 1)
+            low, high = self.ends[at], self.ends[at + 1]
+            T = np.polynomial.chebyshev.chebvander(2 * (w[some] - low) / (high - low) - 1, self.series.shape[2] - 1)
+            strength, square = np.einsum("pt,pkt->kp", T, self.series[at])
+            ring = self.ring[at] & (strength * 2 * b[some] / np.pi > p[some])
+            p[some] = np.where(ring, strength * 2 * b[some] / np.pi, p[some])
+            r[some] = np.where(ring, np.sqrt(np.clip(square, 0.0, 1.0)), 0.0)
+            lifts[some] = self.lifts[at]
+        return p, r, lifts
+
+
+def in_the_middle():
+    """:class:`Peaks` of cells whose largest pressure is in the middle at any radius."""
+    return Peaks(np.zeros(1), np.zeros(0, dtype=bool), np.zeros(0, dtype=bool), np.zeros((0, 2, _TERMS)))
+
+
+def peaks(cell, reach):
+    """:class:`Peaks` of a :class:`~.spot.Cell` for radii up to `reach` (unit l)."""
+    if cell.L1 is None or reach * cell.pitch <= _NARROW or cell.L1(_U).max() <= _HARD:
+        return in_the_middle()
+    w, most = np.log([_NARROW / cell.pitch, reach]), reach * cell.pitch
+    count = _RADII + int(_MORE * (w[1] - w[0]))
+    spot = spots(cell, np.exp(_on(w[0], w[1], _roots(count))))
+    breaks = np.sqrt(1 - np.linspace(1, 0, 1 + int(np.ceil(most / _WIDEST))) ** 2)
+    rows = pressures(spot, _at_nodes(breaks)) / (2 * spot.b / np.pi)[:, None]
+    series = np.linalg.solve(_vander(_roots(count), count), rows)
+
+    def looked_up(at):
+        """:class:`_Largest` at ln b (B,)."""
+        return largest(_vander((2 * at - w[0] - w[1]) / (w[1] - w[0]), count) @ series, breaks)
+
+    return _table(looked_up, w)
+
+
+class _Largest(NamedTuple):
+    """Of pressures (B,) each: the largest, (r/b)² of its place, whether it is in a ring, and whether some are below 0."""
+
+    value: np.ndarray
+    square: np.ndarray
+    ring: np.ndarray
+    lifts: np.ndarray
+
+
+def pressures(spot, y):
+    """q (S, Y) of :class:`~.spot.Spots` at r = b sqrt(1 - y²), for y (Y,) in [0, 1]."""
+    return spot.b[:, None] * (spot.fall @ _weights(spot.t.shape[1] // POINTS, y.tobytes()).T)
+
+
+@lru_cache(maxsize=32)
+def _weights(panels, y_bytes):
+    """From values of f at the points t/b to q/b at y: (Y, panels POINTS)."""
+    y, made = np.frombuffer(y_bytes), []
+    nodes, weights = gauss_legendre(POINTS + 8)
+    ends = np.arange(panels + 1) / panels
+    # of the variable u/b: where t = sqrt(r² + u²) passes the ends of the panels
+    u = np.sqrt(np.maximum(y[:, None] ** 2 - (1 - ends) * (1 + ends), 0.0))
+    for j in range(panels):
+        width = np.diff(u[:, j : j + 2])
+        at = u[:, j, None] + width * nodes
+        t = np.sqrt((1 - y[:, None]) * (1 + y[:, None]) + at**2)
+        basis = lagrange(gauss_legendre(POINTS)[0], np.clip(t * panels - j, 0.0, 1.0).ravel())
+        made.append(np.einsum("yg,ygt->yt", width * weights, basis.reshape(*at.shape, -1)))
+    return np.concatenate(made, axis=1)
+
+
+def largest(values, breaks):
+    """:class:`_Largest` of pressures (B, P nodes) at the :func:`_at_nodes` of the panels between `breaks`."""
+    panels, row = values.reshape(len(values), -1, _NODES), np.arange(len(values))
+    best = _highest(values)
+    j, k = best // _NODES, best % _NODES
+    # a node that two panels share belongs to the one into which the pressure rises
+    onward = (k == _NODES - 1) & (panels[row, j] @ _slopes()[-1] > 0)
+    j, k = np.where(onward, j + 1, j), np.where(onward, 0, k)
+    series = panels[row, j] @ _to_series()
+    first = series @ _derivative()
+    second, x = first @ _derivative(), _ends()[k]
+    low, high = _ends()[np.maximum(k - 1, 0)], _ends()[np.minimum(k + 1, _NODES - 1)]
+    for _ in range(_STEPS):
+        T = _vander(x, _NODES)
+        slope, bend = (T * first).sum(axis=1), (T * second).sum(axis=1)
+        x = np.clip(x - np.where(bend < 0, slope / np.where(bend < 0, bend, 1.0), 0.0), low, high)
+    value, middle = (_vander(x, _NODES) * series).sum(axis=1), values[:, -1]
+    y = _on(breaks[j], breaks[j + 1], x)
+    ring = (value > middle) & (y < 1)
+    lifts = (values[:, 1:] < 0).any(axis=1)
+    return _Largest(np.where(ring, value, middle), np.where(ring, (1 - y) * (1 + y), 0.0), ring, lifts)
+
+
+def _highest(values):
+    """Index (B,) of the largest of the local maxima among pressures (B, P nodes) outside of the middle, which is the
+    last; of the node beside the middle where there is none."""
+    inside = values[:, 1:-1]
+    peaks = (inside >= values[:, :-2]) & (inside >= values[:, 2:])
+    highest = 1 + np.where(peaks, inside, -np.inf).argmax(axis=1)
+    return np.where(peaks.any(axis=1), highest, values.shape[1] - 2)
+
+
+def _table(looked_up, w):
+    """:class:`Peaks` of a function of ln b, between both `w`."""
+    at = np.linspace(*w, _LOOKED_AT)
+    kind = _kind(looked_up(at))
+    last = np.flatnonzero(np.diff(kind))
+    ends, row = np.stack([at[last], at[last + 1]]), np.arange(len(last))
+    for _ in range(_ROUNDS if len(last) else 0):
+        fine = np.linspace(*ends, _SECTIONS)
+        changed = _kind(looked_up(fine.ravel())).reshape(fine.shape) != kind[last]
+        first = np.where(changed[1:].any(axis=0), 1 + changed[1:].argmax(axis=0), _SECTIONS - 1)
+        ends = np.stack([fine[first - 1, row], fine[first, row]])
+    edges, pieces = [w[0], *ends[1], w[1]], []
+    for low, high, own in zip(edges[:-1], edges[1:], [kind[0], *kind[last + 1]], strict=True):
+        pieces += _pieces(looked_up, low, high, own, _HALVINGS)
+    lows, highs, kinds, series = (np.array(column) for column in zip(*pieces, strict=True))
+    return Peaks(np.append(lows, highs[-1]), kinds % 2 == 1, kinds >= 2, series)
+
+
+def _kind(found):
+    """1 in a ring, and 2 more where it lifts off."""
+    return found.ring + 2 * found.lifts
+
+
+def _pieces(looked_up, low, high, kind, halvings):
+    """(low, high, kind, series) of pieces of the table; those in the middle need no series."""
+    if kind % 2 == 0:
+        return [(low, high, kind, np.zeros((2, _TERMS)))]
+    found = looked_up(_on(low, high, _roots(_TERMS)))
+    series = np.linalg.solve(_vander(_roots(_TERMS), _TERMS), np.stack([found.value, found.square], axis=1)).T
+    between = (_roots(_TERMS)[1:] + _roots(_TERMS)[:-1]) / 2
+    found = looked_up(_on(low, high, between))
+    missed = np.abs(series @ _vander(between, _TERMS).T - [found.value, found.square])
+    if halvings == 0 or (missed.max(axis=1) <= _SAME * np.array([found.value.max(), 1.0])).all():
+        return [(low, high, kind, series)]
+    middle = (low + high) / 2
+    halves = (low, middle), (middle, high)
+    return [piece for half in halves for piece in _pieces(looked_up, *half, kind, halvings - 1)]
+
+
+def _on(low, high, x):
+    """What is at x in [-1, 1] of an interval."""
+    return low + (high - low) * (1 + x) / 2
+
+
+def _roots(count):
+    """Chebyshev's nodes (count,) in (-1, 1), ascending."""
+    return -np.cos(np.pi * (np.arange(count) + 0.5) / count)
+
+
+def _ends():
+    """The nodes (_NODES,) of a panel in [-1, 1], with both ends."""
+    return -np.cos(np.pi * np.arange(_NODES) / (_NODES - 1))
+
+
+def _at_nodes(breaks):
+    """y (P nodes,) at the nodes of the panels between `breaks`."""
+    return _on(breaks[:-1, None], breaks[1:, None], _ends()).ravel()
+
+
+def _vander(x, count):
+    return np.polynomial.chebyshev.chebvander(x, count - 1)
+
+
+@lru_cache(maxsize=1)
+def _to_series():
+    """From values at the nodes of a panel to Chebyshev coefficients, from the right, (nodes, nodes)."""
+    return np.linalg.inv(_vander(_ends(), _NODES)).T
+
+
+@lru_cache(maxsize=1)
+def _derivative():
+    """From Chebyshev coefficients to those of the derivative, from the right, (nodes, nodes)."""
+    return np.array([np.append(np.polynomial.chebyshev.chebder(row), [0.0]) for row in np.eye(_NODES)])
+
+
+@lru_cache(maxsize=1)
+def _slopes():
+    """From values at the nodes of a panel to derivatives there, (nodes, nodes)."""
+    return _vander(_ends(), _NODES) @ _derivative().T @ _to_series().T

@@ -22,7 +22,7 @@ from numpy.polynomial import chebyshev
 
 from ...numerics.kept import Kept
 from .rows import of_kernel
-from .spot import FEW, Cell, pieces, spots
+from .spot import Cell, alike, pieces, spots
 
 __all__ = ["GUESS", "NUMBERS", "REACH", "Family", "families", "family", "kernel_keys"]
 
@@ -46,8 +46,6 @@ _DIGITS = 44
 #: On a soft layer a disc cell goes wrong: its series ends where A/A_hex - 1 exceeds that without a layer by _SOFT
 #: (CELL.md: A and p turn negative later). It is looked for at _SCANNED radii.
 _SOFT, _SCANNED = 0.1, 24
-#: Radii are solved so many numbers of their matrices at a time.
-_AT_ONCE = 2**20
 #: Bytes of the families that are kept: some 10,000 of them.
 _kept = Kept(2e7)
 
@@ -172,16 +170,8 @@ def _chebyshev(values):
 
 def solved(cell, b, N):
     """p, A and p_max (3, S) of the radii b (S,), each with as many points as it needs."""
-    out, beta = np.empty((3, len(b))), b * cell.pitch if cell.L1 is not None else 0 * b
-    order, ends = np.argsort(beta), [most for _, most in FEW]
-    while len(order):
-        first = beta[order[0]]
-        # those up to the next number of points; of more than one panel those up to a fifth wider
-        most = next((end for end in ends if first <= end), 1.2 * first)
-        count = np.count_nonzero(beta[order] <= most)
-        size = max(1.0, beta[order[count - 1]] / 5) * 24
-        count = min(count, max(1, int(_AT_ONCE / size**2)))
-        some, order = order[:count], order[count:]
+    out = np.empty((3, len(b)))
+    for some in alike(cell, b):
         spot = spots(cell, b[some], N)
         out[:, some] = spot.p, spot.A, spot.p_max
     return out

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...numerics.quadrature import gauss_legendre, lagrange
-from .spot import POINTS, spots
+from .spot import POINTS, alike, pieces, spots
 
 __all__ = ["Peaks", "largest", "peaks", "pressures"]
 
@@ -28,9 +28,9 @@ _NARROW, _HARD = 1.0, 1.3
 _U = np.geomspace(1e-4, 12, 60)
 #: Nodes of the polynomials on a panel of s/b (Chebyshev's, with both ends), and the widest panel in h.
 _NODES, _WIDEST = 32, 5.0
-#: Radii at which the cell is solved: so many, and _MORE for each factor of e in b/h. The pressures between are right to
-#: 1e-8 of themselves (tests/laws/cell/test_peak.py).
-_RADII, _MORE = 14, 12
+#: Radii at which the cell is solved, by the powers of ln(b/h): the pressures between are right to 1e-7 of themselves
+#: (tests/laws/cell/test_peak.py).
+_RADII = 14, 8, 3
 #: So many radii are looked at, and around each end of a ring _ROUNDS times _SECTIONS more: it is then right to 1e-7.
 _LOOKED_AT, _SECTIONS, _ROUNDS = 96, 13, 5
 #: Terms of the table on each of its pieces, which are halved at most _HALVINGS times, until what the pressure and r²
@@ -84,10 +84,13 @@ def peaks(cell, reach):
     if cell.L1 is None or reach * cell.pitch <= _NARROW or cell.L1(_U).max() <= _HARD:
         return in_the_middle()
     w, most = np.log([_NARROW / cell.pitch, reach]), reach * cell.pitch
-    count = _RADII + int(_MORE * (w[1] - w[0]))
-    spot = spots(cell, np.exp(_on(w[0], w[1], _roots(count))))
+    count = int(np.polynomial.polynomial.polyval(w[1] - w[0], _RADII))
+    b, N = np.exp(_on(*w, _roots(count))), pieces(cell, reach)
     breaks = np.sqrt(1 - np.linspace(1, 0, 1 + int(np.ceil(most / _WIDEST))) ** 2)
-    rows = pressures(spot, _at_nodes(breaks)) / (2 * spot.b / np.pi)[:, None]
+    y = _at_nodes(breaks)
+    rows = np.empty((count, len(y)))
+    for some in alike(cell, b):
+        rows[some] = pressures(spots(cell, b[some], N), y) / (2 * b[some] / np.pi)[:, None]
     series = np.linalg.solve(_vander(_roots(count), count), rows)
 
     def looked_up(at):
@@ -108,24 +111,29 @@ class _Largest(NamedTuple):
 
 def pressures(spot, y):
     """q (S, Y) of :class:`~.spot.Spots` at r = b sqrt(1 - y²), for y (Y,) in [0, 1]."""
-    return spot.b[:, None] * (spot.fall @ _weights(spot.t.shape[1] // POINTS, y.tobytes()).T)
+    return spot.b[:, None] * (spot.fall @ _weights(spot.t.shape[1], y.tobytes()).T)
 
 
 @lru_cache(maxsize=32)
-def _weights(panels, y_bytes):
-    """From values of f at the points t/b to q/b at y: (Y, panels POINTS)."""
-    y, made = np.frombuffer(y_bytes), []
-    nodes, weights = gauss_legendre(POINTS + 8)
+def _weights(count, y_bytes):
+    """From values of f at `count` points t/b to q/b at y: (Y, count)."""
+    panels = max(count // POINTS, 1) if count % POINTS == 0 else 1
+    size = count // panels
+    y, rows, nodes = np.frombuffer(y_bytes), [], gauss_legendre(size)[0]
+    x, weights = gauss_legendre(size + 8)
     ends = np.arange(panels + 1) / panels
     # of the variable u/b: where t = sqrt(r² + u²) passes the ends of the panels
     u = np.sqrt(np.maximum(y[:, None] ** 2 - (1 - ends) * (1 + ends), 0.0))
     for j in range(panels):
-        width = np.diff(u[:, j : j + 2])
-        at = u[:, j, None] + width * nodes
-        t = np.sqrt((1 - y[:, None]) * (1 + y[:, None]) + at**2)
-        basis = lagrange(gauss_legendre(POINTS)[0], np.clip(t * panels - j, 0.0, 1.0).ravel())
-        made.append(np.einsum("yg,ygt->yt", width * weights, basis.reshape(*at.shape, -1)))
-    return np.concatenate(made, axis=1)
+        some = np.flatnonzero(u[:, j + 1] > 0)
+        width = np.diff(u[some, j : j + 2])
+        at = u[some, j, None] + width * x
+        t = np.sqrt((1 - y[some, None]) * (1 + y[some, None]) + at**2)
+        basis = lagrange(nodes, np.clip(t * panels - j, 0.0, 1.0).ravel()).reshape(*at.shape, size)
+        row = np.zeros((len(y), size))
+        row[some] = np.matmul((width * weights)[:, None], basis)[:, 0]
+        rows.append(row)
+    return np.concatenate(rows, axis=1)
 
 
 def largest(values, breaks):

@@ -17,7 +17,7 @@ import numpy as np
 from ...numerics.quadrature import gauss_legendre
 from .sums import LATTICES, neighbours, waves
 
-__all__ = ["Cell", "Spots", "spots"]
+__all__ = ["Cell", "Spots", "alike", "spots"]
 
 #: Points on a panel of the radius, least number of points, and the widest panel in h (tests/laws/cell/test_rows.py).
 POINTS, _LEAST, _WIDEST = 24, 48, 5.0
@@ -27,6 +27,8 @@ _DEGREE, _OF_H, _OF_D = 11, 0.5, 0.2
 #: Numbers of points of one panel, and the b/h up to which each serves where speed counts: 1e-10 at n = 1000, where
 #: rounding is as large, and 1e-11 of other layers (tests/laws/cell/test_family.py).
 FEW = ((16, 2.5), (24, 4.0), (32, 7.0))
+#: Radii are solved so many numbers of their matrices at a time.
+_AT_ONCE = 2**20
 
 
 class Cell(NamedTuple):
@@ -128,6 +130,21 @@ def points(cell, reach, sparing=False):
         n = max(n, int(np.ceil(reach * cell.pitch / _WIDEST)))
     x, w = gauss_legendre(POINTS)
     return ((np.arange(n)[:, None] + x) / n).ravel(), np.tile(w / n, n)
+
+
+def alike(cell, b):
+    """Yield indices of the radii b (S,) that are solved together, with as many points as the largest of them needs."""
+    beta = b * cell.pitch if cell.L1 is not None else 0 * b
+    order, ends = np.argsort(beta), [most for _, most in FEW]
+    while len(order):
+        first = beta[order[0]]
+        # those up to the next number of points; of more than one panel those up to a fifth wider
+        most = next((end for end in ends if first <= end), 1.2 * first)
+        count = np.count_nonzero(beta[order] <= most)
+        size = max(1.0, beta[order[count - 1]] / _WIDEST) * POINTS
+        count = min(count, max(1, int(_AT_ONCE / size**2)))
+        yield order[:count]
+        order = order[count:]
 
 
 def spots(cell, b, N=None):

@@ -21,7 +21,7 @@ from .rows import of_kernel, refuse_cells, refuse_layers
 from .spot import POINTS, Cell, Spots, spots
 from .sums import LATTICES, lattice_waves
 
-__all__ = ["axis_stresses", "cell_axis"]
+__all__ = ["axis_stresses", "cell_axis", "lone_on_axis", "long_waves", "transform"]
 
 #: Waves above u = kh = _CUT reach the interface with less than 1e-15 of their pressure.
 _CUT = 38.0
@@ -107,31 +107,32 @@ def axis_stresses(cell: Cell, spot: Spots, layers: TwoLayers, z: np.ndarray, sid
 def _half_space(spot, lattice, z, nu):
     """sr and sz (Z,) of the waves G != 0 in a half-space of the layer's material."""
     b = spot.b[0]
-    low, weights, between, lows = _long_waves(lattice, b)
+    low, weights, between, lows = long_waves(lattice, b)
     of_low, of_between = weights * transform(spot, low), lows * transform(spot, between)
 
     def less(shape):
         """Sum less integral of the long waves, of a function of kz, (Z,)."""
         return shape(np.outer(z, low)) @ of_low - shape(np.outer(z, between)) @ of_between
 
-    E, F = _whole(spot, z)
+    E, F = lone_on_axis(spot, z)
     sz = less(lambda x: -(1 + x) * np.exp(-x)) - (E + F)
     sr = less(lambda x: (x - 1 - 2 * nu) * np.exp(-x)) + F - (1 + 2 * nu) * E
     return sr / 2, sz
 
 
-def _long_waves(lattice, b):
-    """Waves of the lattice (W,) with their weights c w, and points k (K,) with the weights of ∫ w k dk."""
-    D = 12 / (LATTICES[lattice] - b)
-    k, c = lattice_waves(lattice, 0.0, b)
+def long_waves(lattice, b, r=0.0):
+    """Waves of the lattice (W,) with their weights c w, and points k (K,) with the weights of ∫ w k dk, of the field of
+    a spot of radius b at radii up to r from its axis."""
+    D = 12 / (LATTICES[lattice] - b - r)
+    k, c = lattice_waves(lattice, 0.0, b + r)
     nodes, weights = gauss_legendre(16)
-    panels = max(12, int(np.ceil(12 * D * b / 4)))
+    panels = max(12, int(np.ceil(12 * D * (b + r) / 4)))
     between = ((np.arange(panels)[:, None] + nodes) / panels * 12 * D).ravel()
     lows = np.tile(weights / panels * 12 * D, panels) * between * special.erfc((between - 6 * D) / D) / 2
     return k, c, between, lows
 
 
-def _whole(spot, z):
+def lone_on_axis(spot, z):
     """E = ∫ q^ k e^(-kz) dk and F = ∫ q^ k (kz) e^(-kz) dk (Z,) of one spot, by -phi'(t)/t at points that are halved
     towards t = 0."""
     edges = np.append(0.0, spot.b[0] * 0.5 ** np.arange(_HALVINGS, -1, -1.0))

@@ -1,0 +1,98 @@
+"""The field below a spot of a periodic cell, beside its axis too: docs/stresses.md, Below a spot.
+
+Of the waves G != 0 of the lattice, averaged over the angle about the axis, with the transfer u, S, T, M of the coated
+body per unit pressure and q^ of the spot,
+
+    sz = 2 pi Nbar sum q^(G) S J0(Gr),   trz = 2 pi Nbar sum q^(G) T J1(Gr),
+    sr + st = 2 pi Nbar sum q^(G) M J0(Gr),   sr - st = -2 pi Nbar sum q^(G) u J2(Gr).
+
+In the layer the transfer is that of a half-space and a difference that falls as waves from the interface do. Of the
+half-space the lone spot is a closed form over k, to which the sum over G less the integral over k of the long waves
+comes, as on the axis (:mod:`~solver.laws.cell.axis`).
+"""
+
+import numpy as np
+
+from ..kernels.transfer import Bodies, Kind, radial_sum, wave_state
+from ..laws.cell.axis import lone_on_axis, long_waves, transform
+from ..laws.cell.peak import pressures
+from ..laws.cell.spot import POINTS
+from ..laws.cell.sums import lattice_waves
+from ..numerics.mesh import Mesh, on_panels
+from ..numerics.quadrature import radau_nodes
+from . import normal
+from .pressure import Pressure
+from .waves import bessel
+
+#: Waves above u = kh reach the interface with less than e^-u of their pressure: 1e-15; and where some 1e-7 do.
+EXACT, ROUGH = 38.0, 18.0
+#: Below this X = kh the state is carried from the surface down (:mod:`~solver.kernels.transfer`).
+_THIN = 1.0
+#: Nodes of the pressure of a spot on each panel of s = sqrt(1 - (r/b)²), and the widest panel in h.
+_NODES, _WIDEST = 32, 5.0
+#: Numbers in an array of states: so many waves are taken at once.
+_AT_ONCE = 200_000
+
+
+def below_spot(cell, spot, layers, r, z, body, last=EXACT):
+    """sr, st, sz and trz (4, Z, R) of the waves G != 0 below one spot, in units E = Ra = l = 1; tension is positive.
+
+    cell, spot : :class:`~solver.laws.cell.spot.Cell` and :class:`~solver.laws.cell.spot.Spots` of one radius
+    layers : :class:`~solver.kernels.two_layers.TwoLayers` of the case
+    r, z : (R,), radii from the axis, which with b are less than the distance of neighbours; (Z,), depths, in l
+    body : bool, in the body, z >= h; else in the layer, z <= h
+    last : waves of u = kh up to this are taken
+    """
+    lattice, b, h = "hex" if cell.lattice == "disc" else cell.lattice, spot.b[0], 1 / cell.pitch
+    nu = float((layers.nu2 if body else layers.nu1)[0])
+    k, c = lattice_waves(lattice, last * cell.pitch, b + r.max())
+    amplitudes = c * transform(spot, k)
+    bodies, kind = Bodies.of(layers), Kind.BODY if body else Kind.DIFFERENCE
+    whole = np.zeros((4, len(z), len(r)))
+    for thin in (True, False):
+        some = np.flatnonzero((k * h < _THIN) == thin)
+        for part in np.array_split(some, 1 + len(some) * len(z) // _AT_ONCE) if len(some) else ():
+            state = wave_state(kind, bodies, k[part] * h, np.outer(z, k[part]), (-1.0, 0.0), thin)
+            whole += _summed(state, nu, amplitudes[part], bessel(k[part], r, 2))
+    if not body:
+        whole += _in_half_space(lattice, spot, r, z, nu)
+    return np.stack([*normal.components(whole).values()])
+
+
+def _summed(state, nu, amplitudes, J):
+    """The four integrals (4, Z, R) of states (Z, K) of waves and their amplitudes (K,)."""
+    u, _, S, T = state
+    rows = (radial_sum(state, nu), 0), (-u, 2), (S, 0), (T, 1)
+    return np.stack([(values * amplitudes) @ J[order] for values, order in rows])
+
+
+def _in_half_space(lattice, spot, r, z, nu):
+    """The four integrals of the waves G != 0 in a half-space of the layer's material."""
+    k, c, between, weights = long_waves(lattice, spot.b[0], r.max())
+    k, amplitudes = np.append(k, between), np.append(c, -weights)
+    amplitudes = amplitudes * transform(spot, k)
+    x = np.outer(z, k)
+    decay = np.exp(-x)
+    state = decay * (x - 1 + 2 * nu), None, -decay * (1 + x), -decay * x
+    return _summed(state, nu, amplitudes, bessel(k, r, 2)) + _lone(spot, r, z, nu)
+
+
+def _lone(spot, r, z, nu):
+    """The four integrals of a lone spot on a half-space, in closed form over k."""
+    b = spot.b[0]
+    if not r.any():
+        E, F = lone_on_axis(spot, z)
+        return np.stack([F - (1 + 2 * nu) * E, 0 * E, -(E + F), 0 * E])[..., None]
+    return normal.in_closed_form(pressure_of(spot), r / b, z / b, np.array([nu]), False)[:, 0]
+
+
+def pressure_of(spot):
+    """The :class:`~.pressure.Pressure` of one spot, in units E = Ra = l = 1; its contact radius is b."""
+    panels = len(spot.t[0]) // POINTS // 2
+    ends = np.sqrt(1 - np.linspace(1, 0, 1 + max(1, panels)) ** 2)
+    breaks = tuple(ends.tolist())
+    s = on_panels(radau_nodes(_NODES), breaks)
+    s[-1] = 1.0
+    none = np.zeros(0)
+    mesh = Mesh(_NODES, breaks, s, np.sqrt((1 - s) * (1 + s)), none, none, none)
+    return Pressure(mesh, pressures(spot, s))

@@ -64,8 +64,10 @@ def with_model_error(problem, solution):
 
 
 def error_of_law(problem):
-    """(B,): the relative error of the micro laws themselves."""
-    return sum(law.error * (problem.micro == name) for name, law in LAWS.items())
+    """(B,): the relative error of the tables of the micro laws themselves, which asperities that feel the body do not
+    have."""
+    tabulated = sum(law.error * (problem.micro == name) for name, law in LAWS.items())
+    return np.where(problem.feels_layer(), 0.0, tabulated)
 
 
 def closed_form(problem, a):
@@ -97,11 +99,11 @@ def _ways(problem, solvable):
     yield solvable & is_smooth & half_space, _smooth_half_space
     yield solvable & is_smooth & thin, _smooth_layer
     iterated = solvable & ~(is_smooth & (half_space | thin))
-    kinds = problem.micro, problem.base, problem.scheme, problem.shape
+    kinds = problem.micro, problem.base, problem.scheme, problem.shape, problem.feels_layer()
     # of each kind the words that occur, and the cases that have them
     present = ([(word, words == word) for word in dict.fromkeys(words.tolist())] for words in kinds)
-    for (_, of_law), (_, on_body), (scheme, by_scheme), (_, of_shape) in product(*present):
-        chosen = iterated & of_law & on_body & by_scheme & of_shape
+    for (_, of_law), (_, on_body), (scheme, by_scheme), (_, of_shape), (_, felt) in product(*present):
+        chosen = iterated & of_law & on_body & by_scheme & of_shape & felt
         for limit in np.unique(problem.max_iterations[chosen]):
             yield chosen & (problem.max_iterations == limit), SCHEMES[scheme]
 

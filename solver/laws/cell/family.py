@@ -46,18 +46,22 @@ _DIGITS = 44
 #: On a soft layer a disc cell goes wrong: its series ends where A/A_hex - 1 exceeds that without a layer by _SOFT
 #: (CELL.md: A and p turn negative later). It is looked for at _SCANNED radii.
 _SOFT, _SCANNED = 0.1, 24
+#: The largest mean pressure of a spot is looked for at so many radii.
+_LOOKED = 200
 #: Bytes of the families that are kept: some 10,000 of them.
 _kept = Kept(2e7)
 
 #: The numbers of a family before its series, in their order: b/h over b/Bbar, 1/asinh and the largest b/Bbar of P, G
 #: and Q; 1/asinh and the largest r/Bbar of the inverse; the slopes by ln b at the end of P, G and Q; the largest p/p*
-#: that the law knows.
-NUMBERS = ("scale", "width", "end", "width_r", "end_r", "slope_P", "slope_G", "slope_Q", "most")
+#: that the law knows; of the disc cell, b/Bbar from which the mean pressure of a spot falls, and this mean over that of
+#: a lone spot of the radius Bbar (the end, and 0, where it does not).
+NUMBERS = ("scale", "width", "end", "width_r", "end_r", "slope_P", "slope_G", "slope_Q", "most", "turn", "top")
 
 
 class Family(NamedTuple):
     """Series of P, G and Q, Chebyshev coefficients (N,) each, and of the inverse (GUESS,); pitch over h, and the
-    largest radius (unit l). `known` is False of a family that no law has: a pitch above MOST."""
+    largest radius (unit l). `known` is False of a family that no law has, of a pitch above MOST. `disc` : whether it is
+    of disc cells."""
 
     pitch: float
     reach: float
@@ -66,6 +70,7 @@ class Family(NamedTuple):
     Q: np.ndarray
     inverse: np.ndarray
     known: bool = True
+    disc: bool = False
 
     def at(self, b):
         """p, A and p_max at radii b of any shape up to the reach, in units E = Ra = l = 1."""
@@ -83,8 +88,31 @@ class Family(NamedTuple):
         slopes = [along * chebyshev.chebval(1.0, chebyshev.chebder(series)) for series in (self.P, self.G, self.Q)]
         widths = 1 / np.arcsinh(scale * end), 1 / np.arcsinh(scale * end_r)
         most = 2 / np.pi * end_r**3 if self.known else 0.0
+        turn = _turn(scale, end, self.P) if self.disc else (end, 0.0)
         series = [np.append(one, np.zeros(terms - len(one))) for one in (self.P, self.G, self.Q)]
-        return np.concatenate([[scale, widths[0], end, widths[1], end_r, *slopes, most], *series, self.inverse])
+        return np.concatenate([[scale, widths[0], end, widths[1], end_r, *slopes, most, *turn], *series, self.inverse])
+
+
+def half_space(t):
+    """exp(P) of the disc cell on a half-space at t = b/Bbar, Eq. (7), and its derivative by ln t over it."""
+    sin = np.sqrt(1 - t * t)
+    whole = np.arccos(t) + t * sin
+    return np.pi / 2 / whole, 2 * t**3 / (sin * whole)
+
+
+def _turn(scale, end, P):
+    """t = b/Bbar from which the mean pressure of a spot, t exp(P - P0) in the unit of that at t = 1, falls, and it."""
+    t = np.sinh(np.linspace(0, 1, _LOOKED)[1:] * np.arcsinh(scale * end)) / scale
+    x = 2 * np.arcsinh(scale * t) / np.arcsinh(scale * end) - 1
+    mean = t * np.exp(chebyshev.chebval(x, P)) / half_space(t)[0]
+    falls = np.flatnonzero(np.diff(mean) < 0)
+    if not len(falls) or falls[0] == 0:
+        return end, 0.0
+    at = slice(falls[0] - 1, falls[0] + 2)
+    top = np.polyfit(x[at] - x[falls[0]], mean[at], 2)  # the parabola through the largest and its neighbours
+    turn = x[falls[0]] - top[1] / (2 * top[0])
+    t = np.sinh((turn + 1) / 2 * np.arcsinh(scale * end)) / scale
+    return t, t * np.exp(chebyshev.chebval(turn, P)) / half_space(t)[0]
 
 
 def kernel_keys(kernel, m):
@@ -133,14 +161,14 @@ def _made(lattice, pitch, kernel, m):
     series = _series(cell, reach, N)
     if not np.isfinite(series).all():  # where p, A or p_max are not above 0
         return _bare(lattice)
-    return pitch, reach, *series, _inverse(pitch, reach, series[0])
+    return pitch, reach, *series, _inverse(pitch, reach, series[0]), True, lattice == "disc"
 
 
 def _bare(lattice):
     """The fields of a family that no law has: the numbers are those without a layer."""
     cell, reach = Cell(lattice, 1.0), np.sqrt(REACH / np.pi)
     series = _series(cell, reach, pieces(cell, reach))
-    return 1.0, reach, *series, _inverse(1.0, reach, series[0]), False
+    return 1.0, reach, *series, _inverse(1.0, reach, series[0]), False, lattice == "disc"
 
 
 def _series(cell, reach, N):

@@ -16,7 +16,10 @@ import numpy as np
 from ..law import Bound, Curve, Law, log_step, where_positive
 from .family import GUESS, NUMBERS, families
 
-__all__ = ["EDGE", "end", "of_spots", "rows_of", "spot_area", "spot_curve", "spot_from_pressure", "spot_guess"]
+__all__ = [
+    *("EDGE", "end", "exponent", "number", "of_spots", "rows_of"),
+    *("spot_area", "spot_curve", "spot_from_pressure", "spot_guess", "spot_peak"),
+]
 
 _AT = {name: i for i, name in enumerate(NUMBERS)}
 #: Newton steps from the guess, which is right to 1e-2 or better: the third is below rounding.
@@ -39,7 +42,7 @@ def rows_of(lattice, kernel, m, h, Nbar):
 def of_spots(name, lattice, scales, **rest):
     """`on_body` of the :class:`~solver.laws.law.Law` of equal asperities of this name, on a lattice. `scales` and
     `rest` are those of the law."""
-    parts = {"curve": spot_curve, "area": spot_area, "peak": _peak, "edge": _edge, "guess": spot_guess, "end": _end}
+    parts = {"curve": spot_curve, "area": spot_area, "peak": spot_peak, "edge": _edge, "guess": spot_guess, "end": _end}
     law = Law(name=f"{name}_on_body", scales=scales, from_pressure=spot_from_pressure, **parts, **rest)
     return partial(_bound, law, lattice)
 
@@ -55,15 +58,16 @@ def end(bound):
     return bound.p_star * np.broadcast_to(bound.law.end(*bound.own), (len(bound.p_star), 1))[:, 0]
 
 
-def _number(rows, name):
+def number(rows, name):
+    """One of the NUMBERS of the families of B cases, (B, 1)."""
     return rows[:, _AT[name], None]
 
 
 def _along(rows, y):
     """x = 2 v - 1 of the series at y (B, m), dx/d ln y, and ln(y/end), 0 where y is not beyond the end."""
-    scale, last = _number(rows, "scale"), _number(rows, "end")
+    scale, last = number(rows, "scale"), number(rows, "end")
     beyond = np.log(np.maximum(y / last, 1.0))
-    beta, width = scale * np.minimum(y, last), 2 * _number(rows, "width")
+    beta, width = scale * np.minimum(y, last), 2 * number(rows, "width")
     return width * np.arcsinh(beta) - 1, width * beta / np.hypot(1, beta), beyond
 
 
@@ -83,7 +87,7 @@ def _clenshaw(coefficients, x):
     return x * value - before + coefficients[:, :1], value + x * slope - slope_before
 
 
-def _exponent(rows, which, y):
+def exponent(rows, which, y):
     """P, G or Q at y (B, m), and its derivative by ln y."""
     x, dx, beyond = _along(rows, y)
     value, slope = _series(rows, which, x)
@@ -93,7 +97,7 @@ def _exponent(rows, which, y):
 
 def _pressure(rows, y):
     """q and dq/dy at y (B, m)."""
-    P, dP = _exponent(rows, 0, y)
+    P, dP = exponent(rows, 0, y)
     slope = 2 / np.pi * y**2 * np.exp(P)
     return slope * y, slope * (3 + dP)
 
@@ -101,18 +105,18 @@ def _pressure(rows, y):
 def spot_curve(y, rows):
     """:class:`~solver.laws.law.Curve` at y (B, m)."""
     q, dq = _pressure(rows, y)
-    G, dG = _exponent(rows, 1, y)
+    G, dG = exponent(rows, 1, y)
     slope = y * np.exp(G)
     return Curve(q, slope * y, dq, slope * (2 + dG))
 
 
 def spot_guess(q, rows):
     """y with q(y) = q, roughly: by the inverse of the family, a series in asinh(r/h), r the radius of a lone spot."""
-    r, last = np.cbrt(np.pi / 2 * np.maximum(q, 0.0)), _number(rows, "end_r")
-    x = 2 * _number(rows, "width_r") * np.arcsinh(_number(rows, "scale") * np.minimum(r, last)) - 1
+    r, last = np.cbrt(np.pi / 2 * np.maximum(q, 0.0)), number(rows, "end_r")
+    x = 2 * number(rows, "width_r") * np.arcsinh(number(rows, "scale") * np.minimum(r, last)) - 1
     inside, _ = _clenshaw(rows[:, -GUESS:], x)
     beyond = np.log(np.maximum(r / last, 1.0))
-    return np.minimum(r, last) * np.exp(inside + beyond * 3 / (3 + _number(rows, "slope_P")))
+    return np.minimum(r, last) * np.exp(inside + beyond * 3 / (3 + number(rows, "slope_P")))
 
 
 def spot_from_pressure(q, rows):
@@ -129,13 +133,13 @@ def spot_area(y, q, rows):
     return np.minimum(y * y, 1.0)
 
 
-def _peak(y, q, rows):
+def spot_peak(y, q, rows):
     """p_max/p*, the pressure in the middle of a spot."""
-    return 3 / np.pi * y * np.exp(_exponent(rows, 2, y)[0])
+    return 3 / np.pi * y * np.exp(exponent(rows, 2, y)[0])
 
 
 def _end(rows):
-    return _number(rows, "most")
+    return number(rows, "most")
 
 
 def _edge(rows):

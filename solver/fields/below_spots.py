@@ -16,7 +16,7 @@ import numpy as np
 from ..kernels.transfer import Bodies, Kind, radial_sum, wave_state
 from ..laws.cell.axis import lone_on_axis, long_waves, transform
 from ..laws.cell.peak import pressures
-from ..laws.cell.spot import POINTS
+from ..laws.cell.spot import panels_of
 from ..laws.cell.sums import lattice_waves
 from ..numerics.mesh import Mesh, on_panels
 from ..numerics.quadrature import radau_nodes
@@ -28,8 +28,8 @@ from .waves import bessel
 EXACT, ROUGH = 38.0, 18.0
 #: Below this X = kh the state is carried from the surface down (:mod:`~solver.kernels.transfer`).
 _THIN = 1.0
-#: Nodes of the pressure of a spot on each panel of s = sqrt(1 - (r/b)²), and the widest panel in h.
-_NODES, _WIDEST = 32, 5.0
+#: Nodes of the pressure of a spot on each panel of s = sqrt(1 - (r/b)²).
+_NODES = 32
 #: Numbers in an array of states: so many waves are taken at once.
 _AT_ONCE = 200_000
 
@@ -88,8 +88,8 @@ def _lone(spot, r, z, nu):
 
 def pressure_of(spot):
     """The :class:`~.pressure.Pressure` of one spot, in units E = Ra = l = 1; its contact radius is b."""
-    panels = len(spot.t[0]) // POINTS // 2
-    ends = np.sqrt(1 - np.linspace(1, 0, 1 + max(1, panels)) ** 2)
+    panels, _ = panels_of(len(spot.t[0]))
+    ends = np.sqrt(1 - np.linspace(1, 0, 1 + max(1, panels // 2)) ** 2)
     breaks = tuple(ends.tolist())
     s = on_panels(radau_nodes(_NODES), breaks)
     s[-1] = 1.0

@@ -231,5 +231,6 @@ LAW = Law(
     from_pressure=_from_pressure,
     guess=_guess,
     on_body=_on_body,
+    cell="disc",
     **_REST,
 )

@@ -16,9 +16,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...numerics.quadrature import gauss_legendre, lagrange
-from .spot import POINTS, alike, pieces, spots
+from .spot import alike, panels_of, pieces, spots
 
-__all__ = ["Peaks", "largest", "peaks", "pressures"]
+__all__ = ["Peaks", "may_leave_the_middle", "peaks", "pressures"]
 
 #: The largest pressure stays in the middle where b/h is below _NARROW, and wherever L - 1 nowhere exceeds _HARD: it
 #: left it at 1.1 and at 1.6, whatever the Poisson ratios and the interface (n from 1.5 to 1e6), and in stacks no
@@ -60,7 +60,9 @@ class Peaks(NamedTuple):
         """
         w = np.log(b)
         piece = np.searchsorted(self.ends, w, side="right") - 1
-        some = np.flatnonzero((piece >= 0) & np.append(self.ring | self.lifts, False)[np.minimum(piece, len(self.ring))])
+        some = np.flatnonzero(
+            (piece >= 0) & np.append(self.ring | self.lifts, False)[np.minimum(piece, len(self.ring))]
+        )
         p, r, lifts = np.array(p_max, dtype=float), np.zeros(len(w)), np.zeros(len(w), dtype=bool)
         if len(some):
             at = np.minimum(piece[some], len(self.ring) - 1)
@@ -79,9 +81,14 @@ def in_the_middle():
     return Peaks(np.zeros(1), np.zeros(0, dtype=bool), np.zeros(0, dtype=bool), np.zeros((0, 2, _TERMS)))
 
 
+def may_leave_the_middle(cell):
+    """Whether the largest pressure of some spot may be beside the middle."""
+    return cell.L1 is not None and bool(cell.L1(_U).max() > _HARD)
+
+
 def peaks(cell, reach):
     """:class:`Peaks` of a :class:`~.spot.Cell` for radii up to `reach` (unit l)."""
-    if cell.L1 is None or reach * cell.pitch <= _NARROW or cell.L1(_U).max() <= _HARD:
+    if reach * cell.pitch <= _NARROW or not may_leave_the_middle(cell):
         return in_the_middle()
     w, most = np.log([_NARROW / cell.pitch, reach]), reach * cell.pitch
     count = int(np.polynomial.polynomial.polyval(w[1] - w[0], _RADII))
@@ -101,7 +108,8 @@ def peaks(cell, reach):
 
 
 class _Largest(NamedTuple):
-    """Of pressures (B,) each: the largest, (r/b)² of its place, whether it is in a ring, and whether some are below 0."""
+    """Of pressures (B,) each: the largest, (r/b)² of its place, whether that is in a ring, and whether some are below
+    0."""
 
     value: np.ndarray
     square: np.ndarray
@@ -117,8 +125,7 @@ def pressures(spot, y):
 @lru_cache(maxsize=32)
 def _weights(count, y_bytes):
     """From values of f at `count` points t/b to q/b at y: (Y, count)."""
-    panels = max(count // POINTS, 1) if count % POINTS == 0 else 1
-    size = count // panels
+    panels, size = panels_of(count)
     y, rows, nodes = np.frombuffer(y_bytes), [], gauss_legendre(size)[0]
     x, weights = gauss_legendre(size + 8)
     ends = np.arange(panels + 1) / panels

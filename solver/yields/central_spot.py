@@ -1,0 +1,120 @@
+"""The largest stresses below the central spot of asperities that feel the coated body: docs/stresses.md, Below a spot.
+
+They are those of the waves of the cell on the axis of the spot and those of the nominal pressure on the axis of the
+contact, which is the same. At the interface tension and shear are looked for up to half of the pitch beside the axis.
+"""
+
+import numpy as np
+
+from ..fields.below_spots import below_spot
+from ..fields.invariants import mises
+from ..laws.cell.spot import spots
+from ..laws.cell.sums import LATTICES
+from .extremes import farthest_of
+from .felt_spots import felt_cells, units_of
+from .peaks import chebyshev_nodes, in_patch
+
+#: Name -> the function of sr, st, sz, trz whose largest value it is, and where: on the axis in the layer or in the
+#: body, on the axis at the interface in the layer, or at the interface.
+SPOT_EXTREMES = {
+    "mises1_spot": (mises, "layer"),
+    "mises2_spot": (mises, "body"),
+    "sr_interface1_spot": (lambda sr, st, sz, trz: sr, "above"),
+    "sz_interface_spot_max": (lambda sr, st, sz, trz: sz, "interface"),
+    "tau_interface_spot": (lambda sr, st, sz, trz: np.abs(trz), "interface"),
+}
+#: Those that may not exist: below _NOTHING of the largest pressure they are rounding, and 0.
+_MAY_LACK, _NOTHING = ("sz_interface_spot_max", "tau_interface_spot"), 1e-11
+#: Nodes of the polynomials on each panel. The first panel is this part of the least length over which stresses change,
+#: and each next one twice as wide (tests/yields/test_central_spot.py has twice as many nodes).
+_NODES, _FIRST = 10, 0.5
+#: Farther below the interface than this many pitches the waves of the cell are rounding.
+_DEPTH = 6.0
+
+
+def largest(loaded, scaled, a, lam0, p_max):
+    """Name of :data:`SPOT_EXTREMES` -> (2, B): its value in units of the pressure, and its depth in a; NaN where there
+    is no such body, and the depth NaN of what is not there.
+
+    loaded : :class:`~.loaded.Loaded` of cases whose asperities feel the layer; lam0, p_max : (B,), contact fraction in
+        the centre, and largest pressure, in E2*
+    """
+    different, index = felt_cells(scaled)
+    pitch, unit = units_of(scaled, a)
+    made = {name: np.full((2, len(a)), np.nan) for name in SPOT_EXTREMES}
+    for i, member in enumerate(different[j] for j in index):
+        if not (member.known and lam0[i] > 0):
+            continue
+        case = _Case(loaded.take([i]), member, np.sqrt(lam0[i] / np.pi), pitch[i], unit[i])
+        for where in dict.fromkeys(place for _, place in SPOT_EXTREMES.values()):
+            panels = case.panels(where)
+            for name in [name for name, (_, place) in SPOT_EXTREMES.items() if place == where] if panels else ():
+                value, z = _best(panels, SPOT_EXTREMES[name][0])
+                lacks = name in _MAY_LACK and value <= _NOTHING * p_max[i]
+                made[name][:, i] = (0.0, np.nan) if lacks else (value, z)
+    return made
+
+
+def _best(panels, value):
+    """The largest value of a function of stresses, polynomials on panels of depths or radii, and its depth."""
+    best = -np.inf, np.nan
+    for low, high, z, stresses in panels:
+        largest, (_, v) = in_patch(stresses[..., None], value)
+        if not largest <= best[0]:
+            best = largest, low + (high - low) * (1 + v) / 2 if z is None else z
+    return best
+
+
+class _Case:
+    """One case: the stresses of its cell and of its nominal pressure, at places in a."""
+
+    def __init__(self, loaded, member, b, pitch, unit):
+        self.loaded, self.cell, self.pitch, self.unit = loaded, member.cell, pitch, unit
+        self.spot, self.h = spots(member.cell, [b]), loaded.h[0]
+
+    def panels(self, where):
+        """(low, high, depth, stresses (4, nodes)) of each panel, of depths, and of radii at the depth z of the
+        interface; none of a body that is rigid."""
+        least = _FIRST * min(self.spot.b[0] * self.pitch, self.h, 1.0)
+        if where == "above":
+            return [(self.h, self.h, None, self._on_axis(np.array([self.h]), False))]
+        if where == "layer":
+            edges = _doubling(0.0, least, self.h)
+        elif where == "body":
+            if self.loaded.layers.n[0] == 0:
+                return []
+            edges = _doubling(self.h, least, self.h + farthest_of(self.loaded))
+        else:
+            edges = _doubling(0.0, least, self._beside() * self.pitch)
+        at = edges[:-1, None] + np.diff(edges)[:, None] * (1 + chebyshev_nodes(_NODES)) / 2
+        if where == "interface":
+            stresses, depth = self._at_interface(at.ravel()), self.h
+        else:
+            stresses, depth = self._on_axis(at.ravel(), where == "body"), None
+        stresses = stresses.reshape(4, len(at), _NODES)
+        return [(*ends, depth, stresses[:, j]) for j, ends in enumerate(zip(edges[:-1], edges[1:], strict=True))]
+
+    def _beside(self):
+        """Half of the distance of neighbours, in l."""
+        return LATTICES["hex" if self.cell.lattice == "disc" else self.cell.lattice] / 2
+
+    def _on_axis(self, z, body):
+        """Stresses (4, Z) on the axis at depths z (Z,)."""
+        whole, zero = self.loaded.stresses(np.zeros(1), z, body)[:, 0, 0, :, 0], np.zeros(1)
+        near = z <= self.h + _DEPTH * self.pitch
+        at = np.clip(z[near] / self.pitch, *((1 / self.cell.pitch, None) if body else (None, 1 / self.cell.pitch)))
+        whole[:, near] += self.unit * below_spot(self.cell, self.spot, self.loaded.layers, zero, at, body)[..., 0]
+        return whole
+
+    def _at_interface(self, r):
+        """Stresses (4, R) at the interface at radii r (R,)."""
+        whole, at = self.loaded.stresses(r, np.array([self.h]), False)[:, 0, 0, 0], np.array([1 / self.cell.pitch])
+        layers, radii = self.loaded.layers, r / self.pitch
+        # in the body alone are sz and trz, which are continuous, right of a rigid one
+        return whole + self.unit * below_spot(self.cell, self.spot, layers, radii, at, True)[:, 0]
+
+
+def _doubling(start, first, last):
+    """Edges from `start` to `last`, the first panel `first` wide, each next one twice as wide."""
+    count = max(int(np.ceil(np.log2(1 + (last - start) / first))), 1)
+    return np.minimum(start + first * (2.0 ** np.arange(count + 1) - 1), last)

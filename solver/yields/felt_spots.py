@@ -1,0 +1,124 @@
+"""The largest stress below asperities that feel the coated body: docs/stresses.md, Asperities.
+
+The stresses of the waves of the cell below a spot, beside its axis too, and those of the nominal pressure are added as
+tensors, in the plane of both axes: in the centre of the contact, where the nominal stresses are the same in all
+directions about the axis, that is all there is.
+"""
+
+from functools import partial
+from itertools import product
+
+import numpy as np
+
+from ..fields.invariants import mises
+from ..kernels.two_layers import TwoLayers, layer_modulus
+from ..laws import LAWS
+from ..laws.cell.members import members
+from .peaks import between, chebyshev_nodes
+from .spot_table import deepest, table
+
+#: Nodes of the nominal stress over the depth, a polynomial.
+_NODES = 8
+#: Points of each direction among which the largest stress is looked for, and how often around the best of them.
+_POINTS, _ROUNDS = 17, 5
+
+
+def felt_cells(scaled):
+    """The different :class:`~solver.laws.cell.members.Member` of cases that feel their layers, and the index (B,) of
+    that of each; `scaled` : in units R = E2* = 1, of any laws."""
+    made, index = [], np.zeros(len(scaled), dtype=int)
+    for micro in dict.fromkeys(scaled.micro.tolist()):
+        rows = np.flatnonzero(scaled.micro == micro)
+        part = scaled.take(rows)
+        pitch = 1 / (part.h * np.sqrt(part.Nbar))
+        some, own = members(LAWS[micro].cell, pitch, TwoLayers.of(part), part.m)
+        index[rows] = own + len(made)
+        made += some
+    return made, index
+
+
+def units_of(scaled, a):
+    """The pitch l in a, and the stress E l/Ra that is 1 for a cell, in E2*, (B,) each."""
+    E, pitch = layer_modulus(scaled.n) / (1 + scaled.m), 1 / np.sqrt(scaled.Nbar)
+    return pitch / a, E * pitch / scaled.Ra
+
+
+def largest(loaded, scaled, a, lam, radii):
+    """(3, B): the largest von Mises stress below spots, in units of the pressure, and the radius of the axis of the
+    spot (signed if mu > 0) and the depth in a of its place.
+
+    loaded : :class:`~.loaded.Loaded` of the cases; lam : (B, R), contact fractions at `radii` (R,) in a, which are
+        nodes of the angle arcsin(r/a), the first 0; NaN beyond the centre: not known
+    """
+    different, index = felt_cells(scaled)
+    pitch, unit = units_of(scaled, a)
+    made = np.full((3, len(a)), np.nan)
+    for i, member in enumerate(different[j] for j in index):
+        known = np.isfinite(lam[i])
+        if not (member.known and known[0]):
+            continue
+        spots = slice(None) if known.all() else slice(1)
+        b = np.sqrt(np.maximum(lam[i, spots], _LEAST) / np.pi)
+        alone = loaded.take([i])
+        cells = table(member.key, member.cell, alone.layers, member.reach)
+        below = _Below(cells, b, 1 / member.cell.pitch, pitch[i], unit[i], alone, radii[spots])
+        for sign, side in product(range(len(loaded.signs)), (1.0, -1.0)[: 2 if below.shape[2] > 1 else 1]):
+            value, (u, v, _) = _in_box(partial(below.mises, sign=sign, side=side), below.shape)
+            if not value <= made[0, i]:
+                r = np.sin(np.pi / 4 * (1 + u)) if len(b) > 1 else 0.0
+                depth = (1 + v) / 2 * deepest(below.radius(np.array([u])), below.h)[0]
+                made[:, i] = value, loaded.signs[sign] * r + 0.0, depth * pitch[i]
+    return made
+
+
+class _Below:
+    """The stresses of one case below spots, as polynomials of the place of their axis, the depth and the radius from
+    the axis, each in [-1, 1]: u of arcsin(r/a), v of z over the deepest, w of arcsin(r/b)."""
+
+    def __init__(self, cells, b, h, pitch, unit, loaded, radii):
+        self.cells, self.b, self.h, self.unit = cells, b, h, unit
+        self.deep = deepest(b, h).max()
+        z = pitch * self.deep * (1 + chebyshev_nodes(_NODES)) / 2
+        self.whole = loaded.stresses(radii, z, False)[:, 0]  # (4, S, nodes, R)
+        self.shape = (len(b), *cells.small.shape[2:])
+
+    def radius(self, u):
+        """b (U,) of the spots at u (U,)."""
+        return np.maximum(_on_nodes(u, len(self.b)) @ self.b, 0.0)
+
+    def mises(self, u, v, w, sign, side):
+        """von Mises' stress (U, V, W). sign : which side of the contact; side : of the spot, 1 or -1, where 1 is away
+        from the axis of the contact"""
+        b = self.radius(u)
+        cell = np.tensordot(self.cells.at(b), _on_nodes(v, self.shape[1]), (2, 1))
+        cell = self.unit * np.tensordot(cell, _on_nodes(w, self.shape[2]), (2, 1))  # (U, 4, V, W)
+        cell[:, 3] *= side
+        z = deepest(b, self.h)[:, None] * (1 + v) / self.deep - 1
+        over = between(z.ravel(), _NODES).reshape(*z.shape, _NODES)
+        nominal = np.einsum("fnr,ur,uvn->ufv", self.whole[:, sign], _on_nodes(u, len(self.b)), over)
+        return mises(*(cell + nominal[..., None]).swapaxes(0, 1))
+
+
+#: A spot at the edge has no size; it is taken for one of this contact fraction.
+_LEAST = 1e-12
+
+
+def _on_nodes(points, count):
+    """From values at `count` nodes to those at points (P,): (P, count)."""
+    return between(points, count) if count > 1 else np.ones((len(points), 1))
+
+
+def _in_box(value, shape):
+    """The largest value, and its place in [-1, 1]³, of a function of points (U,), (V,), (W,); `shape` : (3,), in
+    directions with 1 it does not change."""
+    centre, half = np.zeros(3), 1.0
+    for _ in range(_ROUNDS):
+        points = [np.clip(c + half * np.linspace(-1, 1, _POINTS), -1, 1) for c in centre]
+        points = [p if n > 1 else np.zeros(1) for p, n in zip(points, shape, strict=True)]
+        made = value(*points)
+        if not np.all(np.isfinite(made)):
+            return np.nan, centre
+        best = np.unravel_index(np.argmax(made), made.shape)
+        centre = np.array([p[i] for p, i in zip(points, best, strict=True)])
+        half = half * 4 / _POINTS
+    return made[best], centre

@@ -46,35 +46,34 @@ def below_spot(cell, spot, layers, r, z, body, last=EXACT):
     lattice, b, h = "hex" if cell.lattice == "disc" else cell.lattice, spot.b[0], 1 / cell.pitch
     nu = float((layers.nu2 if body else layers.nu1)[0])
     k, c = lattice_waves(lattice, last * cell.pitch, b + r.max())
-    amplitudes = c * transform(spot, k)
+    weights = c * transform(spot, k)
     bodies, kind = Bodies.of(layers), Kind.BODY if body else Kind.DIFFERENCE
     whole = np.zeros((4, len(z), len(r)))
     for thin in (True, False):
         some = np.flatnonzero((k * h < _THIN) == thin)
         for part in np.array_split(some, 1 + len(some) * len(z) // _AT_ONCE) if len(some) else ():
             state = wave_state(kind, bodies, k[part] * h, np.outer(z, k[part]), (-1.0, 0.0), thin)
-            whole += _summed(state, nu, amplitudes[part], bessel(k[part], r, 2))
+            whole += _summed(state, nu, weights[part], bessel(k[part], r, 2))
     if not body:
         whole += _in_half_space(lattice, spot, r, z, nu)
     return np.stack([*normal.components(whole).values()])
 
 
-def _summed(state, nu, amplitudes, J):
-    """The four integrals (4, Z, R) of states (Z, K) of waves and their amplitudes (K,)."""
+def _summed(state, nu, weights, J):
+    """The four integrals (4, Z, R) of states (Z, K) of waves with their weights (K,)."""
     u, _, S, T = state
     rows = (radial_sum(state, nu), 0), (-u, 2), (S, 0), (T, 1)
-    return np.stack([(values * amplitudes) @ J[order] for values, order in rows])
+    return np.stack([(values * weights) @ J[order] for values, order in rows])
 
 
 def _in_half_space(lattice, spot, r, z, nu):
     """The four integrals of the waves G != 0 in a half-space of the layer's material."""
-    k, c, between, weights = long_waves(lattice, spot.b[0], r.max())
-    k, amplitudes = np.append(k, between), np.append(c, -weights)
-    amplitudes = amplitudes * transform(spot, k)
+    k, c, between, lows = long_waves(lattice, spot.b[0], r.max())
+    k, c = np.append(k, between), np.append(c, -lows)
     x = np.outer(z, k)
     decay = np.exp(-x)
     state = decay * (x - 1 + 2 * nu), None, -decay * (1 + x), -decay * x
-    return _summed(state, nu, amplitudes, bessel(k, r, 2)) + _lone(spot, r, z, nu)
+    return _summed(state, nu, c * transform(spot, k), bessel(k, r, 2)) + _lone(spot, r, z, nu)
 
 
 def _lone(spot, r, z, nu):

@@ -11,8 +11,8 @@ from ..scaling import dimensionless
 from ..solve import solve
 from ..status import Status
 from ..threads import one_blas_thread
-from . import felt_spots
 from .asperities import POINTS, hertz_part
+from .below import felt_spots
 from .contact import alike
 from .peaks import between, chebyshev_nodes, in_patch
 
@@ -68,7 +68,7 @@ def _at_radii(scaled, a):
 
 def _on_body(loaded, scaled, a, solved):
     """(3, B), as :func:`_largest`, of asperities that feel the coated body."""
-    return felt_spots.largest(loaded, scaled, a, solved.lam, _RADII)
+    return felt_spots.largest_stress(loaded, scaled, a, solved.lam, _RADII)
 
 
 def _on_half_space(loaded, scaled, a, solved):

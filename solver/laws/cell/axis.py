@@ -31,8 +31,8 @@ _AT = 1e-9
 _THIN = 1.0
 #: Points on each panel of t. The panels are halved so often towards t = 0, where those of a small depth are needed.
 _POINTS, _HALVINGS = 20, 48
-#: Points of a transform on a panel, beyond half of those of phi and half of the radians of its waves, and how many waves
-#: have the same (tests/laws/cell/test_rows.py).
+#: Points of a transform on a panel, beyond half of those of phi and half of the radians of its waves, and how many
+#: waves have the same (tests/laws/cell/test_rows.py).
 _MORE, _WAVES = 14, 200
 
 

@@ -59,13 +59,11 @@ class Peaks(NamedTuple):
         b : (B,), radii in l, up to the largest of the table; p_max : (B,), pressures in the middle, E = Ra = l = 1
         """
         w = np.log(b)
-        piece = np.searchsorted(self.ends, w, side="right") - 1
-        some = np.flatnonzero(
-            (piece >= 0) & np.append(self.ring | self.lifts, False)[np.minimum(piece, len(self.ring))]
-        )
+        piece = np.minimum(np.searchsorted(self.ends, w, side="right"), len(self.ring)) - 1
+        some = np.flatnonzero((piece >= 0) & np.append(self.ring | self.lifts, False)[piece])
         p, r, lifts = np.array(p_max, dtype=float), np.zeros(len(w)), np.zeros(len(w), dtype=bool)
         if len(some):
-            at = np.minimum(piece[some], len(self.ring) - 1)
+            at = piece[some]
             low, high = self.ends[at], self.ends[at + 1]
             T = np.polynomial.chebyshev.chebvander(2 * (w[some] - low) / (high - low) - 1, self.series.shape[2] - 1)
             strength, square = np.einsum("pt,pkt->kp", T, self.series[at])

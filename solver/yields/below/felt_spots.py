@@ -10,12 +10,12 @@ from itertools import product
 
 import numpy as np
 
-from ..fields.invariants import mises
-from ..kernels.two_layers import TwoLayers, layer_modulus
-from ..laws import LAWS
-from ..laws.cell.members import members
-from .peaks import between, chebyshev_nodes
-from .spot_table import deepest, table
+from ...fields.invariants import mises
+from ...kernels.two_layers import TwoLayers, layer_modulus
+from ...laws import LAWS
+from ...laws.cell.members import members
+from ..peaks import between, chebyshev_nodes
+from .spot_table import deepest, table_of
 
 #: Nodes of the nominal stress over the depth, a polynomial.
 _NODES = 8
@@ -43,11 +43,11 @@ def units_of(scaled, a):
     return pitch / a, E * pitch / scaled.Ra
 
 
-def largest(loaded, scaled, a, lam, radii):
+def largest_stress(loaded, scaled, a, lam, radii):
     """(3, B): the largest von Mises stress below spots, in units of the pressure, and the radius of the axis of the
     spot (signed if mu > 0) and the depth in a of its place.
 
-    loaded : :class:`~.loaded.Loaded` of the cases; lam : (B, R), contact fractions at `radii` (R,) in a, which are
+    loaded : :class:`~..loaded.Loaded` of the cases; lam : (B, R), contact fractions at `radii` (R,) in a, which are
         nodes of the angle arcsin(r/a), the first 0; NaN beyond the centre: not known
     """
     different, index = felt_cells(scaled)
@@ -60,7 +60,7 @@ def largest(loaded, scaled, a, lam, radii):
         spots = slice(None) if known.all() else slice(1)
         b = np.sqrt(np.maximum(lam[i, spots], _LEAST) / np.pi)
         alone = loaded.take([i])
-        cells = table(member.key, member.cell, alone.layers, member.reach)
+        cells = table_of(member.key, member.cell, alone.layers, member.reach)
         below = _Below(cells, b, 1 / member.cell.pitch, pitch[i], unit[i], alone, radii[spots])
         for sign, side in product(range(len(loaded.signs)), (1.0, -1.0)[: 2 if below.shape[2] > 1 else 1]):
             value, (u, v, _) = _in_box(partial(below.mises, sign=sign, side=side), below.shape)

@@ -9,11 +9,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
-from ..fields.below_spots import ROUGH, below_spot
-from ..laws.cell.peak import may_leave_the_middle
-from ..laws.cell.spot import pieces, spots
-from ..numerics.kept import Kept
-from .peaks import chebyshev_nodes
+from ...fields.below_spots import ROUGH, below_spot
+from ...laws.cell.peak import may_leave_the_middle
+from ...laws.cell.spot import pieces, spots
+from ...numerics.kept import Kept
+from ..peaks import chebyshev_nodes
 
 #: Radii of the table below _SMALL h, in b, and by powers of ln(b/(_SMALL h)) beyond, in that.
 _SMALL, _FEW, _MORE = 1 / 1.5, 13, (6, 4, 1)
@@ -54,7 +54,7 @@ def deepest(b, h):
     return np.minimum(_DEEP * b, h)
 
 
-def table(key, cell, layers, reach):
+def table_of(key, cell, layers, reach):
     """The :class:`Table` of a :class:`~solver.laws.cell.spot.Cell`, kept for its `key`."""
     return _kept.get(key, lambda: _made(cell, layers, reach))
 

@@ -6,13 +6,13 @@ contact, which is the same. At the interface tension and shear are looked for up
 
 import numpy as np
 
-from ..fields.below_spots import below_spot
-from ..fields.invariants import mises
-from ..laws.cell.spot import spots
-from ..laws.cell.sums import LATTICES
-from .extremes import farthest_of
+from ...fields.below_spots import below_spot
+from ...fields.invariants import mises
+from ...laws.cell.spot import spots
+from ...laws.cell.sums import LATTICES
+from ..extremes import farthest_of
+from ..peaks import chebyshev_nodes, in_patch
 from .felt_spots import felt_cells, units_of
-from .peaks import chebyshev_nodes, in_patch
 
 #: Name -> the function of sr, st, sz, trz whose largest value it is, and where: on the axis in the layer or in the
 #: body, on the axis at the interface in the layer, or at the interface.
@@ -32,11 +32,11 @@ _NODES, _FIRST = 10, 0.5
 _DEPTH = 6.0
 
 
-def largest(loaded, scaled, a, lam0, p_max):
+def spot_extremes(loaded, scaled, a, lam0, p_max):
     """Name of :data:`SPOT_EXTREMES` -> (2, B): its value in units of the pressure, and its depth in a; NaN where there
     is no such body, and the depth NaN of what is not there.
 
-    loaded : :class:`~.loaded.Loaded` of cases whose asperities feel the layer; lam0, p_max : (B,), contact fraction in
+    loaded : :class:`~..loaded.Loaded` of cases whose asperities feel the layer; lam0, p_max : (B,), contact fraction in
         the centre, and largest pressure, in E2*
     """
     different, index = felt_cells(scaled)

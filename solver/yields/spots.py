@@ -66,25 +66,25 @@ def _at_radii(scaled, a):
     return solve(type(at_a)("a", a, at_a.parameters), _RADII)
 
 
-def _on_body(loaded, scaled, a, solved):
+def _on_body(loaded, scaled, a, at_radii):
     """(3, B), as :func:`_largest`, of asperities that feel the coated body."""
-    return felt_spots.largest_stress(loaded, scaled, a, solved.lam, _RADII)
+    return felt_spots.largest_stress(loaded, scaled, a, at_radii.lam, _RADII)
 
 
-def _on_half_space(loaded, scaled, a, solved):
+def _on_half_space(loaded, scaled, a, at_radii):
     """(3, B), as :func:`_largest`, of asperities on a half-space."""
-    c, p0s = _of_spots(scaled, solved)
+    c, p0s = _of_spots(scaled, at_radii)
     b = c / np.sqrt(np.pi * scaled.Nbar[:, None]) / a[:, None]
     return _largest(loaded, np.where(loaded.bare, scaled.nu2, scaled.nu1), c, p0s, b)
 
 
-def _of_spots(scaled, solved):
+def _of_spots(scaled, at_radii):
     """b/B̄ and Hertz's part of the largest pressure of the spots at :data:`_RADII`, (B, R) each; NaN where no spot is
     known."""
     E = np.where(scaled.base == "half_space", 1.0, layer_modulus(scaled.n)) / (1 + scaled.m)
-    c = np.where(np.isin(scaled.micro, _CELLS)[:, None], np.maximum(np.sqrt(solved.lam), _LEAST), np.nan)
+    c = np.where(np.isin(scaled.micro, _CELLS)[:, None], np.maximum(np.sqrt(at_radii.lam), _LEAST), np.nan)
     p0s = 2 * E[:, None] * c / (np.pi * np.sqrt(np.pi * scaled.Nbar) * scaled.Ra)[:, None]
-    central = hertz_part(solved.p_max, solved.p0, E, scaled.Nbar, scaled.Ra)
+    central = hertz_part(at_radii.p_max, at_radii.p0, E, scaled.Nbar, scaled.Ra)
     p0s[:, :1], c[:, :1] = (values[:, None] for values in central)
     return c, p0s
 
@@ -93,12 +93,13 @@ def _largest(loaded, nu, c, p0s, b):
     """(3, B): the largest stress, its radius and depth in a. b : (B, R), in a."""
     cell = _cell(nu[:, None], c, p0s, loaded.pressure.at(_RADII))
     count = _FEW if np.nanmax(b) < _SMALL else _MANY
-    deepest = _ENDS[1] * np.nanmax(b, axis=1)
+    # deeper than the layer there is none of its stress; spots that large have that at the interface
+    deepest = np.minimum(_ENDS[1] * np.nanmax(b, axis=1), np.inf if loaded.bare else loaded.h)
     whole = loaded.stresses(_RADII, deepest[:, None] * (1 + chebyshev_nodes(count)) / 2, loaded.bare)
     made = np.full((3, len(c)), np.nan)
     for i in range(len(c)):
         spots = slice(None) if np.isfinite(c[i]).all() else slice(1)  # at all radii, or in the centre
-        share = b[i, spots, None] * _Z / deepest[i]  # (R, Z)
+        share = np.minimum(b[i, spots, None] * _Z / deepest[i], 1.0)  # (R, Z)
         matrix = between((2 * share - 1).ravel(), count).reshape(*share.shape, count)
         for side, sign in enumerate(loaded.signs):
             stresses = np.einsum("rdz,fzr->fdr", matrix, whole[:, i, side, :, spots])

@@ -18,12 +18,12 @@ import numpy as np
 from ...numerics.quadrature import gauss_legendre, lagrange
 from .spot import alike, panels_of, pieces, spots
 
-__all__ = ["Peaks", "may_leave_the_middle", "peaks", "pressures"]
+__all__ = ["NARROW", "Peaks", "may_leave_the_middle", "peaks", "pressures"]
 
-#: The largest pressure stays in the middle where b/h is below _NARROW, and wherever L - 1 nowhere exceeds _HARD: it
+#: The largest pressure stays in the middle where b/h is below NARROW, and wherever L - 1 nowhere exceeds _HARD: it
 #: left it at 1.1 and at 1.6, whatever the Poisson ratios and the interface (n from 1.5 to 1e6), and in stacks no
 #: earlier (tests/laws/cell/test_peak.py).
-_NARROW, _HARD = 1.0, 1.3
+NARROW, _HARD = 1.0, 1.3
 #: u = kh at which L - 1 is looked at.
 _U = np.geomspace(1e-4, 12, 60)
 #: Nodes of the polynomials on a panel of s/b (Chebyshev's, with both ends), and the widest panel in h.
@@ -54,24 +54,28 @@ class Peaks(NamedTuple):
     series: np.ndarray
 
     def at(self, b, p_max):
-        """The largest pressure, its radius over b, and whether the pressure is below 0 somewhere: (B,) each.
+        """The largest pressure, and its radius over b, (B,) each.
 
         b : (B,), radii in l, up to the largest of the table; p_max : (B,), pressures in the middle, E = Ra = l = 1
         """
         w = np.log(b)
         piece = np.minimum(np.searchsorted(self.ends, w, side="right"), len(self.ring)) - 1
-        some = np.flatnonzero((piece >= 0) & np.append(self.ring | self.lifts, False)[piece])
-        p, r, lifts = np.array(p_max, dtype=float), np.zeros(len(w)), np.zeros(len(w), dtype=bool)
+        p, r = np.array(p_max, dtype=float), np.zeros(len(w))
+        some = np.flatnonzero((piece >= 0) & np.append(self.ring, False)[piece])
         if len(some):
-            at = piece[some]
-            low, high = self.ends[at], self.ends[at + 1]
-            T = np.polynomial.chebyshev.chebvander(2 * (w[some] - low) / (high - low) - 1, self.series.shape[2] - 1)
-            strength, square = np.einsum("pt,pkt->kp", T, self.series[at])
-            ring = self.ring[at] & (strength * 2 * b[some] / np.pi > p[some])
-            p[some] = np.where(ring, strength * 2 * b[some] / np.pi, p[some])
+            low, high = self.ends[piece[some]], self.ends[piece[some] + 1]
+            T = _vander(2 * (w[some] - low) / (high - low) - 1, self.series.shape[2])
+            value, square = np.einsum("pt,pkt->kp", T, self.series[piece[some]])
+            value = value * 2 * b[some] / np.pi
+            ring = value > p[some]
+            p[some] = np.where(ring, value, p[some])
             r[some] = np.where(ring, np.sqrt(np.clip(square, 0.0, 1.0)), 0.0)
-            lifts[some] = self.lifts[at]
-        return p, r, lifts
+        return p, r
+
+    def lifts_off(self, b):
+        """Whether the pressure is below 0 inside of a spot of one of the radii up to b (B,): bool."""
+        first = np.min(self.ends[:-1][self.lifts], initial=np.inf)
+        return np.log(b) > first
 
 
 def in_the_middle():
@@ -86,9 +90,9 @@ def may_leave_the_middle(cell):
 
 def peaks(cell, reach):
     """:class:`Peaks` of a :class:`~.spot.Cell` for radii up to `reach` (unit l)."""
-    if reach * cell.pitch <= _NARROW or not may_leave_the_middle(cell):
+    if reach * cell.pitch <= NARROW or not may_leave_the_middle(cell):
         return in_the_middle()
-    w, most = np.log([_NARROW / cell.pitch, reach]), reach * cell.pitch
+    w, most = np.log([NARROW / cell.pitch, reach]), reach * cell.pitch
     count = int(np.polynomial.polynomial.polyval(w[1] - w[0], _RADII))
     b, N = np.exp(_on(*w, _roots(count))), pieces(cell, reach)
     breaks = np.sqrt(1 - np.linspace(1, 0, 1 + int(np.ceil(most / _WIDEST))) ** 2)

@@ -16,8 +16,9 @@ from ..parameters import one_of
 from ..problem import far_apart
 from ..scaling import dimensionless, law_of, of_one_law
 
-#: Bases whose asperities could feel the body. A thin layer has an error of its own, far above this one.
-_BASES = ("layered", "stack", "auto")
+#: Bases that have no error of their own. To that of "auto" this one is added where its law could feel the body; that of
+#: a thin layer is left as it is.
+_EXACT = ("layered", "stack")
 #: The mean over the angle errs by this part, times 2 λ to a power, in A, λ or p_max of resolved cells
 #: (tests/models/test_cells.py): of a square lattice, and of a hexagonal one, whose waves the disc cell has.
 _SQUARE, _HEX = (0.03, 3.5), (1e-3, 4.0)
@@ -34,7 +35,8 @@ def left_out(problem, solution):
     D. 0 of smooth cases, of laws that do not know the asperities, and on a half-space where their pitch is at most h.
     `solution` and problem have one unit."""
     error = np.zeros(len(problem))
-    felt, there = problem.feels_layer(), one_of(problem.base, _BASES) & np.isfinite(problem.Ra) & problem.rough()
+    felt = problem.feels_layer()
+    there = (one_of(problem.base, _EXACT) | problem.can_feel()) & np.isfinite(problem.Ra) & problem.rough()
     index = np.flatnonzero(there & np.isfinite(solution.P) & (felt | far_apart(problem.Nbar, problem.h)))
     if not len(index):
         return error

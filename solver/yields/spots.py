@@ -51,7 +51,7 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0):
         if len(index):
             part, ended = problem.take(index), solution.take(index)
             scaled, a = dimensionless(part), ended.a / part.R
-            at_radii = _at_radii(scaled, a)
+            at_radii = with_elastic_spots(scaled, a, _RADII)
             for rows, pressure, _ in pressures_of(scaled, ended, a):
                 for few, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]]):
                     here = rows[few]
@@ -60,10 +60,10 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0):
     return made
 
 
-def _at_radii(scaled, a):
-    """The :class:`~solver.solution.Solution` with profiles at :data:`_RADII`, of spots that stay elastic."""
+def with_elastic_spots(scaled, a, x):
+    """The :class:`~solver.solution.Solution` with profiles at x of contacts of radius a, of spots that stay elastic."""
     at_a = scaled.but(micro=np.where(scaled.micro == "elastic_plastic", "disc_cell", scaled.micro))
-    return solve(type(at_a)("a", a, at_a.parameters), _RADII)
+    return solve(type(at_a)("a", a, at_a.parameters), x)
 
 
 def _on_body(loaded, scaled, a, at_radii):

@@ -18,14 +18,14 @@ import numpy as np
 from ...numerics.quadrature import gauss_legendre, lagrange
 from .spot import alike, panels_of, pieces, spots
 
-__all__ = ["NARROW", "Peaks", "may_leave_the_middle", "peaks", "pressures"]
+__all__ = ["NARROW", "U", "Peaks", "may_leave_the_middle", "peaks", "pressures"]
 
 #: The largest pressure stays in the middle where b/h is below NARROW, and wherever L - 1 nowhere exceeds _HARD: it
 #: left it at 1.1 and at 1.6, whatever the Poisson ratios and the interface (n from 1.5 to 1e6), and in stacks no
 #: earlier (tests/laws/cell/test_peak.py).
 NARROW, _HARD = 1.0, 1.3
 #: u = kh at which L - 1 is looked at.
-_U = np.geomspace(1e-4, 12, 60)
+U = np.geomspace(1e-4, 12, 60)
 #: Nodes of the polynomials on a panel of s/b (Chebyshev's, with both ends), and the widest panel in h.
 _NODES, _WIDEST = 32, 5.0
 #: Radii at which the cell is solved, by the powers of ln(b/h): the pressures between are right to 1e-7 of themselves
@@ -85,7 +85,7 @@ def in_the_middle():
 
 def may_leave_the_middle(cell):
     """Whether the largest pressure of some spot may be beside the middle."""
-    return cell.L1 is not None and bool(cell.L1(_U).max() > _HARD)
+    return cell.L1 is not None and bool(cell.L1(U).max() > _HARD)
 
 
 def peaks(cell, reach):

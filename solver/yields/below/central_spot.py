@@ -7,11 +7,16 @@ contact, which is the same. At the interface tension and shear are looked for up
 import numpy as np
 
 from ...fields.below_spots import below_spot
+from ...fields.contact import have_fields, pressures_of
 from ...fields.invariants import mises
 from ...laws.cell.spot import spots
 from ...laws.cell.sums import LATTICES
+from ...scaling import dimensionless
+from ...threads import one_blas_thread
+from ..contact import alike
 from ..extremes import farthest_of
 from ..peaks import chebyshev_nodes, in_patch
+from ..spots import with_elastic_spots
 from .felt_spots import felt_cells, units_of
 
 #: Name -> the function of sr, st, sz, trz whose largest value it is, and where: on the axis in the layer or in the
@@ -32,13 +37,38 @@ _NODES, _FIRST = 10, 0.5
 _DEPTH = 6.0
 
 
-def spot_extremes(loaded, scaled, a, lam0, p_max):
-    """Name of :data:`SPOT_EXTREMES` -> (2, B): its value in units of the pressure, and its depth in a; NaN where there
-    is no such body, and the depth NaN of what is not there.
+@one_blas_thread()
+@np.errstate(all="ignore")  # a number that goes wrong is a NaN
+def of_contacts(problem, solution, mu=0.0, residual=0.0):
+    """Name of :data:`SPOT_EXTREMES` -> (2, B): the largest value in the unit of E2, and its depth in a. NaN where the
+    asperities do not feel the layer, where the contact is not solved and of bodies that are rigid; the depth is NaN of
+    what is not there.
 
-    loaded : :class:`~..loaded.Loaded` of cases whose asperities feel the layer; lam0, p_max : (B,), contact fraction in
-        the centre, and largest pressure, in E2*
+    problem, solution : B cases and their :class:`~solver.solution.Solution`, of which a, status and model_used count.
+        Below spots that yield the stress is that of spots which do not
+    mu : >= 0, friction, of the nominal pressure alone; residual : (B,) or a number, biaxial stress of the layer, in the
+        unit of E2
     """
+    made = {name: np.full((2, len(problem)), np.nan) for name in SPOT_EXTREMES}
+    index = np.flatnonzero(problem.feels_layer() & have_fields(problem, solution))
+    residual = np.broadcast_to(residual, len(problem)) / problem.E2
+    if len(index):
+        part, ended = problem.take(index), solution.take(index)
+        scaled, a = dimensionless(part), ended.a / part.R
+        elastic = with_elastic_spots(scaled, a, np.zeros(1))
+        for rows, pressure, _ in pressures_of(scaled, ended, a):
+            for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]]):
+                here = rows[some]
+                for name, values in _largest(loaded, scaled.take(here), a[here], elastic.take(here)).items():
+                    made[name][:, index[here]] = values
+        for values in made.values():
+            values[0, index] *= part.E2
+    return made
+
+
+def _largest(loaded, scaled, a, elastic):
+    """The same (2, B) in units of the pressure. loaded : :class:`~..loaded.Loaded`"""
+    lam0, p_max = elastic.lam[:, 0], elastic.p_max
     different, index = felt_cells(scaled)
     pitch, unit = units_of(scaled, a)
     made = {name: np.full((2, len(a)), np.nan) for name in SPOT_EXTREMES}

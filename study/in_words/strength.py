@@ -77,7 +77,7 @@ class _Limit(NamedTuple):
 
     @property
     def plural(self) -> bool:
-        return self.who.endswith("ies")
+        return self.who == "the asperities"
 
 
 class Strength(NamedTuple):

@@ -27,7 +27,7 @@ from .punch import sticking
 from .punch.stresses import none_in
 from .request import MOST_MESSAGES, Request
 from .scene.layers import axes_in, in_layers
-from .vocabulary import NUMERICS, absent, suggest
+from .vocabulary import NUMERICS, absent, names, suggest
 
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
 KEYS = {
@@ -108,6 +108,7 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
     micro, some_feel = grid.values["micro"][1] if "micro" in grid.values else (), not errors and bool(felt(grid).any())
     results = results_of(micro, "w_adhesion" in grid.values, some_feel)
+    stresses += names("spot_stress") if stresses and some_feel else ()
     definition = Definition(
         *(name, title, text, grid, x, profiles, dtype, block, ""),
         scene=scene,

@@ -21,8 +21,8 @@ from .spot import alike, panels_of, pieces, spots
 __all__ = ["NARROW", "U", "Peaks", "may_leave_the_middle", "peaks", "pressures"]
 
 #: The largest pressure stays in the middle where b/h is below NARROW, and wherever L - 1 nowhere exceeds _HARD: it
-#: left it at 1.1 and at 1.6, whatever the Poisson ratios and the interface (n from 1.5 to 1e6), and in stacks no
-#: earlier (tests/laws/cell/test_peak.py).
+#: leaves it from 1.04 on, as on a plate that nothing supports, and from 1.6 on, whatever the Poisson ratios and the
+#: interface; in stacks no earlier (tests/laws/cell/test_peak.py).
 NARROW, _HARD = 1.0, 1.3
 #: u = kh at which L - 1 is looked at.
 U = np.geomspace(1e-4, 12, 60)

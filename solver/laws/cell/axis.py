@@ -161,7 +161,7 @@ def transform(spot, k):
     """q^(k) = ∫ phi cos kt dt (K,) of one spot, to rounding: of shorter waves with more points."""
     b, (panels, size) = spot.b[0], panels_of(len(spot.phi[0]))
     order, out = np.argsort(k), np.empty_like(k)
-    for some in np.array_split(order, 1 + len(k) // _WAVES):
+    for some in np.array_split(order, 1 + len(k) // _WAVES) if len(k) else ():
         x, w = gauss_legendre(_MORE + size // 2 + int(np.ceil(k[some[-1]] * b / panels / 2)))
         t = ((np.arange(panels)[:, None] + x) * (b / panels)).ravel()
         phi = _between(spot, spot.phi[0], t) * np.tile(w * (b / panels), panels)

@@ -2,10 +2,8 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 from ...numerics.kept import Kept
-from .family import families, kernel_keys, rounded
+from .family import different, family
 from .peak import Peaks, peaks
 from .rows import of_kernel
 from .spot import Cell
@@ -29,13 +27,11 @@ class Member(NamedTuple):
 def members(lattice, pitch, kernel, m):
     """The different :class:`Member` of B cases, a list, and the index (B,) of that of each; arguments as of
     :func:`~.family.families`."""
-    of_cases, index = families(lattice, pitch, kernel, m)
-    first = np.unique(index, return_index=True)[1]
-    keys, pitch = kernel_keys(kernel.take(first), m[first]), rounded(pitch[first])
+    first, index = different(lattice, pitch, kernel, m)
     made = []
-    for i, family, key, l_h in zip(first, of_cases, keys, pitch.tolist(), strict=True):
-        cell = Cell(lattice, l_h, of_kernel(kernel.take([i]), float(m[i])))
-        made.append(Member((lattice, l_h, key), cell, family.reach, family.known))
+    for key, i in first:
+        own = family(key, kernel, m, i)
+        made.append(Member(key, Cell(lattice, key[1], of_kernel(kernel.take([i]), float(m[i]))), own.reach, own.known))
     return made, index
 
 

@@ -16,7 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...numerics.quadrature import gauss_legendre, lagrange
-from .spot import alike, panels_of, pieces, spots
+from .family import in_groups
+from .spot import panels_of, pieces, spots
 
 __all__ = ["NARROW", "U", "Peaks", "may_leave_the_middle", "peaks", "pressures"]
 
@@ -97,10 +98,8 @@ def peaks(cell, reach):
     b, N = np.exp(_on(*w, _roots(count))), pieces(cell, reach)
     breaks = np.sqrt(1 - np.linspace(1, 0, 1 + int(np.ceil(most / _WIDEST))) ** 2)
     y = _at_nodes(breaks)
-    rows = np.empty((count, len(y)))
-    for some in alike(cell, b):
-        rows[some] = pressures(spots(cell, b[some], N), y) / (2 * b[some] / np.pi)[:, None]
-    series = np.linalg.solve(_vander(_roots(count), count), rows)
+    rows = in_groups(cell, b, lambda some: pressures(spots(cell, some, N), y).T, len(y)) / (2 * b / np.pi)
+    series = np.linalg.solve(_vander(_roots(count), count), rows.T)
 
     def looked_up(at):
         """:class:`_Largest` at ln b (B,)."""

@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...numerics.quadrature import gauss_legendre
-from .sums import LATTICES, neighbours, waves
+from .sums import LATTICES, lone_waves, neighbours, waves
 
-__all__ = ["Cell", "Spots", "alike", "panels_of", "pieces", "spots"]
+__all__ = ["Cell", "Spots", "panels_of", "pieces", "spots"]
 
 #: Points on a panel of the radius, least number of points, and the widest panel in h (tests/laws/cell/test_rows.py).
 POINTS, _LEAST, _WIDEST = 24, 48, 5.0
@@ -27,14 +27,12 @@ _DEGREE, _OF_H, _OF_D = 11, 0.5, 0.2
 #: Numbers of points of one panel, and the b/h up to which each serves where speed counts: 1e-10 at n = 1000, where
 #: rounding is as large, and 1e-11 of other layers (tests/laws/cell/test_family.py).
 FEW = ((16, 2.5), (24, 4.0), (32, 7.0))
-#: Radii are solved so many numbers of their matrices at a time.
-_AT_ONCE = 2**20
 
 
 class Cell(NamedTuple):
     """Cells of one lattice on one body.
 
-    lattice : "square", "hex", or "disc", whose layer has the waves of "hex"
+    lattice : "square", "hex", or "disc", whose layer has the waves of "hex"; "lone": of one spot alone, and no equation
     pitch : l/h
     L1 : function of u = kh (W,) : L(u) - 1 (W,) of the body, over 1 + m under an elastic punch; None without a layer
     """
@@ -98,9 +96,12 @@ def pieces(cell, reach):
     half = np.diff(edges) / 2
     middle = edges[:-1] + half
     x = middle + half * nodes[:, None]
-    N = np.zeros_like(x) if cell.lattice == "disc" else neighbours(cell.lattice, x)[0]
+    N = neighbours(cell.lattice, x)[0] if cell.lattice in LATTICES else np.zeros_like(x)
     if cell.L1 is not None:
-        k, c = waves("hex" if cell.lattice == "disc" else cell.lattice, cell.pitch, reach)
+        if cell.lattice == "lone":
+            k, c = lone_waves(cell.pitch, reach)
+        else:
+            k, c = waves("hex" if cell.lattice == "disc" else cell.lattice, cell.pitch, reach)
         if len(k):
             N = N + _summed(k, c * cell.L1(k / cell.pitch), middle, half, nodes)
     return _Pieces(edges, np.linalg.solve(np.vander(nodes, increasing=True), N))
@@ -137,35 +138,26 @@ def panels_of(count):
     return (1, count) if any(count == few for few, _ in FEW) else (count // POINTS, POINTS)
 
 
-def alike(cell, b):
-    """Yield indices of the radii b (S,) that are solved together, with as many points as the largest of them needs."""
-    beta = b * cell.pitch if cell.L1 is not None else 0 * b
-    order, ends = np.argsort(beta), [most for _, most in FEW]
-    while len(order):
-        first = beta[order[0]]
-        # those up to the next number of points; of more than one panel those up to a fifth wider
-        most = next((end for end in ends if first <= end), 1.2 * first)
-        count = np.count_nonzero(beta[order] <= most)
-        size = max(1.0, beta[order[count - 1]] / _WIDEST) * POINTS
-        count = min(count, max(1, int(_AT_ONCE / size**2)))
-        yield order[:count]
-        order = order[count:]
+def kernels(N, ends, t, w):
+    """2 N(t, s) and its derivative by t, each with the weight of s, at the ends (S, T + 1) and the points t (S, T), of
+    the weights w (S, T): (S, T + 1, T)."""
+    far, near = ends[:, :, None] + t[:, None, :], ends[:, :, None] - t[:, None, :]
+    (sum_, d_sum), (difference, d_difference) = N.at(far), N.at(np.abs(near))
+    return (sum_ + difference) * w[:, None, :], (d_sum + np.sign(near) * d_difference) * w[:, None, :]
 
 
-def spots(cell, b, N=None):
+def spots(cell, b, N=None, rule=None):
     """:class:`Spots` of a :class:`Cell` of the radii b (S,), in l, 0 < b < d/2.
 
     N : :func:`pieces` of the cell up to the largest radius and farther, where others are solved too: the radii then
         have as few points as serve the largest of them
+    rule : points and weights on [0, 1], if these are not to be chosen
     """
     b = np.asarray(b, dtype=float)
-    (x, weights), N = points(cell, b.max(), N is not None), N or pieces(cell, b.max())
+    (x, weights), N = rule or points(cell, b.max(), N is not None), N or pieces(cell, b.max())
     t, w = b[:, None] * x, b[:, None] * weights
     ends = np.concatenate([t, b[:, None]], axis=1)
-    far, near = ends[:, :, None] + t[:, None, :], ends[:, :, None] - t[:, None, :]
-    (sum_, d_sum), (difference, d_difference) = N.at(far), N.at(np.abs(near))
-    kernel = (sum_ + difference) * w[:, None, :]  # 2 N(t, s) with the weight of s
-    d_kernel = (d_sum + np.sign(near) * d_difference) * w[:, None, :]
+    kernel, d_kernel = kernels(N, ends, t, w)
     right = np.stack([np.ones_like(ends), ends**2], axis=2)
     slopes = np.stack([np.zeros_like(t), 2 * t], axis=2)
     if disc := cell.lattice == "disc":

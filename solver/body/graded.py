@@ -31,6 +31,19 @@ def graded_first(problem):
     return (getattr(problem, full_name(1, "profile")) != "uniform") & (problem.base == STACKED[1][0])
 
 
+def contrast(problem):
+    """(B,): logarithm of the largest over the smallest modulus within the first layer; 0 of a uniform one."""
+    logs = np.zeros(len(problem))
+    index = np.flatnonzero(graded_first(problem))
+    if len(index):
+        part = problem.take(index)
+        word, bottom = getattr(part, full_name(1, "profile")), getattr(part, full_name(1, "n_bottom"))
+        logs[index] = np.abs(np.log(np.where(np.isnan(bottom), 1.0, bottom / (part.n + (part.n == 0)))))
+        for name in set(word.tolist()) & set(TABLES):
+            logs[index[word == name]] = np.log(TABLES[name].n.max() / TABLES[name].n.min())
+    return logs
+
+
 def refined(layers, sublayers, octaves=_OCTAVES):
     """The `layers` of :func:`.stacked.layers_of` with each that is graded in some case cut into uniform ones, of the
     modulus in their middle. sublayers : (B,), one number for all cases; octaves : of the first layer.

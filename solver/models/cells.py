@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..body.graded import contrast
 from ..kernels.two_layers import layer_modulus
 from ..laws import LAWS
 from ..laws.cell.law import end
@@ -26,6 +27,9 @@ _ANGULAR = {"square_lattice": _SQUARE}
 #: The law that stands for one without a body of its own, as the power law is fitted to it, and for those that have no
 #: places of the neighbours; and the lattice with which it is compared.
 _DISC, _LATTICE = "disc_cell", "hex_lattice"
+#: A graded layer is cut in few sublayers below asperities: A, λ and p_max err by at most this times ln of the largest
+#: over the smallest modulus (tests/stacks/test_felt.py).
+_CUT = 5e-3
 #: An error is at most this: beyond, it says that the number means nothing.
 _MOST = 30.0
 
@@ -74,7 +78,7 @@ def _of_felt(part, solution):
     name = str(part.micro[0])
     factor, power = _ANGULAR.get(name, _HEX)
     lam = np.fmax.reduce(solution.lam, axis=1, initial=0.0)
-    error = factor * (2 * lam) ** power
+    error = factor * (2 * lam) ** power + _CUT * contrast(part)
     if not LAWS[name].smears:
         return error
     return error + _of_disc(part, lam, solution)
@@ -100,6 +104,7 @@ def _of_disc(part, lam, solution):
 @np.errstate(all="ignore")
 def _of_half_space(part, solution):
     """The error (B,) of asperities on a half-space though their pitch is above h, in units R = E2* = 1."""
+    part = part.but(asperities_on="half_space")
     if LAWS[str(part.micro[0])].on_body is None:
         part = part.but(micro=_DISC)
     on_body = law_of(part.but(asperities_on="layer"))

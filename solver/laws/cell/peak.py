@@ -18,8 +18,9 @@ import numpy as np
 from ...numerics.quadrature import gauss_legendre, lagrange
 from .family import in_groups
 from .spot import panels_of, pieces, spots
+from .summits import parts
 
-__all__ = ["NARROW", "U", "Peaks", "may_leave_the_middle", "peaks", "pressures"]
+__all__ = ["NARROW", "Peaks", "SummitPeaks", "U", "may_leave_the_middle", "peaks", "pressures", "summit_peaks"]
 
 #: The largest pressure stays in the middle where b/h is below NARROW, and wherever L - 1 nowhere exceeds _HARD: it
 #: leaves it from 1.04 on, as on a plate that nothing supports, and from 1.6 on, whatever the Poisson ratios and the
@@ -93,11 +94,9 @@ def peaks(cell, reach):
     """:class:`Peaks` of a :class:`~.spot.Cell` for radii up to `reach` (unit l)."""
     if reach * cell.pitch <= NARROW or not may_leave_the_middle(cell):
         return in_the_middle()
-    w, most = np.log([NARROW / cell.pitch, reach]), reach * cell.pitch
-    count = int(np.polynomial.polynomial.polyval(w[1] - w[0], _RADII))
-    b, N = np.exp(_on(*w, _roots(count))), pieces(cell, reach)
-    breaks = np.sqrt(1 - np.linspace(1, 0, 1 + int(np.ceil(most / _WIDEST))) ** 2)
-    y = _at_nodes(breaks)
+    w = np.log([NARROW / cell.pitch, reach])
+    count, breaks, N = _count(w), _breaks(reach * cell.pitch), pieces(cell, reach)
+    b, y = np.exp(_on(*w, _roots(count))), _at_nodes(breaks)
     rows = in_groups(cell, b, lambda some: pressures(spots(cell, some, N), y).T, len(y)) / (2 * b / np.pi)
     series = np.linalg.solve(_vander(_roots(count), count), rows.T)
 
@@ -106,6 +105,60 @@ def peaks(cell, reach):
         return largest(_vander((2 * at - w[0] - w[1]) / (w[1] - w[0]), count) @ series, breaks)
 
     return _table(looked_up, w)
+
+
+class SummitPeaks(NamedTuple):
+    """The pressures of spots of their own load under the pressure p of others, over 2 b/pi, at nodes of panels of s/b
+    between `breaks`: Chebyshev series (2, terms, nodes) in ln b between both `w`, of those without p and of those by p.
+    """
+
+    w: np.ndarray
+    breaks: np.ndarray
+    series: np.ndarray
+
+    def _values(self, b, p):
+        x = (2 * np.log(b) - self.w[0] - self.w[1]) / (self.w[1] - self.w[0])
+        T = _vander(np.clip(x, -1.0, 1.0), self.series.shape[1])
+        return T @ self.series[0] + p[:, None] * (T @ self.series[1])
+
+    def at(self, b, p_max, p):
+        """As of :class:`Peaks`, under the nominal pressures p (B,)."""
+        values, r, lone = np.array(p_max, dtype=float), np.zeros(len(b)), 2 * b / np.pi
+        some = np.flatnonzero(np.log(b) >= self.w[0]) if len(self.series[0]) else np.zeros(0, dtype=int)
+        if len(some):
+            found = largest(self._values(b[some], p[some]), self.breaks)
+            ring = found.ring & (found.value * lone[some] > values[some])
+            values[some] = np.where(ring, found.value * lone[some], values[some])
+            r[some] = np.where(ring, np.sqrt(found.square), 0.0)
+        return values, r
+
+
+def summit_peaks(cell, reach):
+    """:class:`SummitPeaks` of a :class:`~.spot.Cell` of disc cells, for radii up to `reach` (unit l)."""
+    w = np.log([NARROW / cell.pitch, reach])
+    if w[1] <= w[0] or not may_leave_the_middle(cell):
+        return SummitPeaks(w, np.zeros(0), np.zeros((2, 0, 0)))
+    count, breaks = _count(w), _breaks(reach * cell.pitch)
+    b, y = np.exp(_on(*w, _roots(count))), _at_nodes(breaks)
+    of_lattice, lone = pieces(cell, reach), pieces(cell._replace(lattice="lone"), reach)
+
+    def of(some):
+        both = parts(cell, some, of_lattice, lone)
+        without, under = (pressures(both.spots(np.full(len(some), p)), y).T for p in (0.0, 1.0))
+        return np.concatenate([without, under - without])
+
+    rows = (in_groups(cell, b, of, 2 * len(y)) / (2 * b / np.pi)).reshape(2, len(y), count)
+    return SummitPeaks(w, breaks, np.linalg.solve(_vander(_roots(count), count), rows.transpose(0, 2, 1)))
+
+
+def _count(w):
+    """How many radii are solved between both `w`, ln b."""
+    return int(np.polynomial.polynomial.polyval(w[1] - w[0], _RADII))
+
+
+def _breaks(most):
+    """Ends of the panels of s/b for spots of up to b/h = `most`."""
+    return np.sqrt(1 - np.linspace(1, 0, 1 + int(np.ceil(most / _WIDEST))) ** 2)
 
 
 class _Largest(NamedTuple):

@@ -27,6 +27,10 @@ _ANGULAR = {"square_lattice": _SQUARE}
 #: The law that stands for one without a body of its own, as the power law is fitted to it, and for those that have no
 #: places of the neighbours; and the lattice with which it is compared.
 _DISC, _LATTICE = "disc_cell", "hex_lattice"
+#: Random heights of the standard deviation _WIDE A* are deeper by _DEEPER A* than resolved ones, those of less by its
+#: square, without a layer and on one. λ and p_max err by up to _OF_LAMBDA from _LITTLE A* on (docs/validate.md, Random
+#: heights; tests/laws/heights/test_heights_on_body.py). _WIDE stands for that of a histogram.
+_WIDE, _DEEPER, _LITTLE, _OF_LAMBDA = 0.3, 0.04, 0.1, 0.08
 #: A graded layer is cut in few sublayers below asperities: A, λ and p_max err by at most this times ln of the largest
 #: over the smallest modulus (tests/stacks/test_felt.py).
 _CUT = 5e-3
@@ -81,7 +85,16 @@ def _of_felt(part, solution):
     error = factor * (2 * lam) ** power + _CUT * contrast(part)
     if not LAWS[name].smears:
         return error
-    return error + _of_disc(part, lam, solution)
+    error = error + _of_disc(part, lam, solution)
+    return error if LAWS[name].touching is None else error + LAWS[name].error + _of_heights(part, solution)
+
+
+def _of_heights(part, solution):
+    """The error (B,) because the neighbours of a summit are a mean: where one stands high they carry less than that."""
+    A_star = 1 / (np.pi * part.Nbar * part.Ra)
+    spread = np.nan_to_num(part.sigma / A_star, nan=_WIDE)
+    deeper = _DEEPER * np.minimum((spread / _WIDE) ** 2, spread / _WIDE) * A_star / solution.D
+    return np.maximum(deeper, _OF_LAMBDA * np.minimum(spread / _LITTLE, 1.0))
 
 
 def _of_disc(part, lam, solution):

@@ -41,7 +41,7 @@ def outside_law(problem, solution):
 
 
 def beyond_end(problem, solution):
-    """(B,) bool: cases with numbers of which p(0) or a pressure of the profile is beyond the end of the law of asperities
+    """(B,) bool: cases with numbers of which p(0) or a pressure of the profile is beyond the end of the law of spots
     that feel the body, and all cases whose law ends at once. `solution` is in the units of `problem`, whose bases have
     names."""
     beyond = np.zeros(len(problem), dtype=bool)

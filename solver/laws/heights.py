@@ -231,7 +231,7 @@ class _Body(NamedTuple):
         cells = [family(key, kernel, m, i) for key, i in keys]
         summits = [summit(key, disc, kernel, m, i) for (key, i), disc in zip(keys, cells, strict=True)]
         numbers = [(v * np.ones(np.shape(E)))[:, None] for v in (sigma, cut)]
-        return Bound(law, p_star, A_star, (*numbers, cell.stacked(cells)[index], cell.stacked(summits)[index]))
+        return Bound(law, p_star, A_star, (*numbers, cell.stacked(cells, index), cell.stacked(summits, index)))
 
     def tables(self, sigma, cut, rows, summits):
         """As :func:`_tables`, one for each family with each sigma and cut."""

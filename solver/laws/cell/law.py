@@ -36,13 +36,15 @@ def rows_of(lattice, kernel, m, h, Nbar):
     """
     with np.errstate(all="ignore"):
         members, index = families(lattice, 1 / (h * np.sqrt(Nbar)), kernel, m)
-    return stacked(members)[index]
+    return stacked(members, index)
 
 
-def stacked(members):
-    """The rows of families or summits, (G, K), as long as the longest."""
+def stacked(members, index):
+    """The rows (B, K) of families or summits, as long as the longest, by the index (B,) of each case; of one family a
+    view of one row."""
     terms = max(member.terms for member in members)
-    return np.array([member.row(terms) for member in members])
+    rows = np.array([member.row(terms) for member in members])
+    return rows[index] if len(members) > 1 else np.broadcast_to(rows, (len(index), rows.shape[1]))
 
 
 def of_spots(name, lattice, scales, **rest):

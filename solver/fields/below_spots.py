@@ -16,8 +16,9 @@ import numpy as np
 from ..kernels.transfer import Bodies, Kind, radial_sum, wave_state
 from ..laws.cell.axis import lone_on_axis, long_waves, transform
 from ..laws.cell.peak import pressures
-from ..laws.cell.spot import panels_of
-from ..laws.cell.sums import lattice_waves
+from ..laws.cell.spot import panels_of, pieces
+from ..laws.cell.summits import parts
+from ..laws.cell.sums import lattice_waves, lone_waves
 from ..numerics.mesh import Mesh, on_panels
 from ..numerics.quadrature import radau_nodes
 from . import normal
@@ -44,19 +45,46 @@ def below_spot(cell, spot, layers, r, z, body, last=EXACT):
     last : waves of u = kh up to this are taken
     """
     lattice, b, h = "hex" if cell.lattice == "disc" else cell.lattice, spot.b[0], 1 / cell.pitch
-    nu = float((layers.nu2 if body else layers.nu1)[0])
     k, c = lattice_waves(lattice, last * cell.pitch, b + r.max())
-    weights = c * transform(spot, k)
-    bodies, kind = Bodies.of(layers), Kind.BODY if body else Kind.DIFFERENCE
-    whole = np.zeros((4, len(z), len(r)))
+    whole = _of_layers(k, c * transform(spot, k), h, layers, r, z, body)
+    if not body:
+        whole += _in_half_space(lattice, spot, r, z, float(layers.nu1[0]))
+    return np.stack([*normal.components(whole).values()])
+
+
+def below_summit(cell, b, p, layers, r, z, body, last=EXACT):
+    """The same below a spot of its own load, of random heights: the waves of the cells of equal heights with its
+    radius b and the nominal pressure p, in units E = Ra = l = 1, and what it has beside these as a lone spot.
+
+    cell : of disc cells; the other arguments are those of :func:`below_spot`
+    """
+    of_lattice, lone = pieces(cell, b), pieces(cell._replace(lattice="lone"), b)
+    both = parts(cell, np.array([b]), of_lattice, lone)
+    own, share = both.spots(np.array([p])), p / both.equal.p[0]
+    equal = both.equal._replace(phi=share * both.equal.phi, fall=share * both.equal.fall)
+    rest = own._replace(phi=own.phi - equal.phi, fall=own.fall - equal.fall)
+    return below_spot(cell, equal, layers, r, z, body, last) + _below_lone(cell, rest, layers, r, z, body)
+
+
+def _below_lone(cell, spot, layers, r, z, body):
+    """sr, st, sz and trz (4, Z, R) below a lone spot, of waves to 1e-8 of their pressure."""
+    k, c = lone_waves(cell.pitch, (spot.b[0] + r.max()) / 2)
+    whole = _of_layers(k, c * k * transform(spot, k), 1 / cell.pitch, layers, r, z, body)
+    if not body:
+        whole += _lone(spot, r, z, float(layers.nu1[0]))
+    return np.stack([*normal.components(whole).values()])
+
+
+def _of_layers(k, weights, h, layers, r, z, body):
+    """The four integrals (4, Z, R) of waves k with weights (K,), in the body, or in the layer less a half-space."""
+    nu = float((layers.nu2 if body else layers.nu1)[0])
+    bodies, kind, whole = Bodies.of(layers), Kind.BODY if body else Kind.DIFFERENCE, np.zeros((4, len(z), len(r)))
     for thin in (True, False):
         some = np.flatnonzero((k * h < _THIN) == thin)
         for part in np.array_split(some, 1 + len(some) * len(z) // _AT_ONCE) if len(some) else ():
             state = wave_state(kind, bodies, k[part] * h, np.outer(z, k[part]), (-1.0, 0.0), thin)
             whole += _summed(state, nu, weights[part], bessel(k[part], r, 2))
-    if not body:
-        whole += _in_half_space(lattice, spot, r, z, nu)
-    return np.stack([*normal.components(whole).values()])
+    return whole
 
 
 def _summed(state, nu, weights, J):

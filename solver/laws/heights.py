@@ -244,7 +244,7 @@ class _Body(NamedTuple):
                 if len(_TABLES) >= _KEPT:
                     _TABLES.clear()
                 found[i] = _TABLES[key] = self._table(triples[i], rows[row], summits[row])
-        return np.array(found), group.ravel()
+        return np.array(found).reshape(len(found), 2, spread.KNOTS * self.density.fine), group.ravel()
 
     def _table(self, numbers, row, summit):
         sigma, cut = numbers[:2, None, None]

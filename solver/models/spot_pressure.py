@@ -29,7 +29,7 @@ def pressure_in_spots(problem, solution, lam0):
     p0, p_max = solution.p0 / problem.E2, solution.p_max / problem.E2
     for index, part, body in _of_one_law(problem, felt & _may_be_hard(problem)):
         law = LAWS[str(part.micro[0])]
-        b = _largest_radius(law, part, body, lam0[index], p0[index])
+        b = largest_radius(part, body, lam0[index], p0[index])
         for rows, member in _wide_spots(part, body, b):
             here, some, own = index[rows], part.take(rows), b[rows]
             unit, middle, ease = (body.E / (part.Ra * np.sqrt(part.Nbar)))[rows], p_max[here], 1.0
@@ -70,9 +70,10 @@ def _of_one_law(problem, some):
         yield index[rows], part, BODIES[str(part.base[0])](part)
 
 
-def _largest_radius(law, part, body, lam0, p0):
-    """Radius (B,) of the largest spot in the centre, in l."""
-    if law.cell != SUMMIT:
+def largest_radius(part, body, lam0, p0):
+    """Radius (B,) of the largest spot in the centre, in l, of cases of one law in units R = E2* = 1; body : theirs;
+    lam0, p0 : (B,), λ and p in the centre."""
+    if LAWS[str(part.micro[0])].cell != SUMMIT:
         return np.sqrt(lam0 / np.pi)
     bound = law_of(part, body)
     q = (p0 / bound.p_star)[:, None]

@@ -13,6 +13,7 @@ from ..status import Status
 from ..threads import one_blas_thread
 from .asperities import POINTS, hertz_part
 from .below import felt_spots
+from .below.felt_cells import felt_cells
 from .contact import alike
 from .peaks import between, chebyshev_nodes, in_patch
 
@@ -68,7 +69,7 @@ def with_elastic_spots(scaled, a, x):
 
 def _on_body(loaded, scaled, a, at_radii):
     """(3, B), as :func:`_largest`, of asperities that feel the coated body."""
-    return felt_spots.largest_stress(loaded, scaled, a, at_radii.lam, _RADII)
+    return felt_spots.largest_stress(loaded, felt_cells(scaled, a, at_radii.lam, at_radii.p0), _RADII)
 
 
 def _on_half_space(loaded, scaled, a, at_radii):

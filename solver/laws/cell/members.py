@@ -35,7 +35,7 @@ def members(lattice, pitch, kernel, m):
     made = []
     for key, i in first:
         own = family(key, kernel, m, i)
-        cell = Cell(lattice, key[1], of_kernel(kernel.take([i]), float(m[i])))
+        cell = Cell(lattice, key[2], of_kernel(kernel.take([i]), float(m[i])))
         made.append(Member((*key, alone), cell, own.reach, own.known, alone))
     return made, index
 

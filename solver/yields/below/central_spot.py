@@ -6,10 +6,8 @@ contact, which is the same. At the interface tension and shear are looked for up
 
 import numpy as np
 
-from ...fields.below_spots import below_spot
 from ...fields.contact import have_fields, pressures_of
 from ...fields.invariants import mises
-from ...laws.cell.spot import spots
 from ...laws.cell.sums import LATTICES
 from ...scaling import dimensionless
 from ...threads import one_blas_thread
@@ -17,7 +15,7 @@ from ..contact import alike
 from ..extremes import farthest_of
 from ..peaks import chebyshev_nodes, in_patch
 from ..spots import with_elastic_spots
-from .felt_spots import felt_cells, units_of
+from .felt_cells import felt_cells
 
 #: Name -> the function of sr, st, sz, trz whose largest value it is, and where: on the axis in the layer or in the
 #: body, on the axis at the interface in the layer, or at the interface.
@@ -56,26 +54,25 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0):
         part, ended = problem.take(index), solution.take(index)
         scaled, a = dimensionless(part), ended.a / part.R
         elastic = with_elastic_spots(scaled, a, np.zeros(1))
+        cells = felt_cells(scaled, a, elastic.lam, elastic.p0)
         for rows, pressure, _ in pressures_of(scaled, ended, a):
             for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]]):
                 here = rows[some]
-                for name, values in _largest(loaded, scaled.take(here), a[here], elastic.take(here)).items():
+                for name, values in _largest(loaded, [cells[j] for j in here], elastic.p_max[here]).items():
                     made[name][:, index[here]] = values
         for values in made.values():
             values[0, index] *= part.E2
     return made
 
 
-def _largest(loaded, scaled, a, elastic):
-    """The same (2, B) in units of the pressure. loaded : :class:`~..loaded.Loaded`"""
-    lam0, p_max = elastic.lam[:, 0], elastic.p_max
-    different, index = felt_cells(scaled)
-    pitch, unit = units_of(scaled, a)
-    made = {name: np.full((2, len(a)), np.nan) for name in SPOT_EXTREMES}
-    for i, member in enumerate(different[j] for j in index):
-        if not (member.known and lam0[i] > 0):
+def _largest(loaded, cells, p_max):
+    """The same (2, B) in units of the pressure. loaded : :class:`~..loaded.Loaded`; cells : of
+    :func:`~.felt_cells.felt_cells`; p_max : (B,)"""
+    made = {name: np.full((2, len(cells)), np.nan) for name in SPOT_EXTREMES}
+    for i, cell in enumerate(cells):
+        if cell is None:
             continue
-        case = _Case(loaded.take([i]), member, np.sqrt(lam0[i] / np.pi), pitch[i], unit[i])
+        case = _Case(loaded.take([i]), cell)
         for where in dict.fromkeys(place for _, place in SPOT_EXTREMES.values()):
             panels = case.panels(where)
             for name in [name for name, (_, place) in SPOT_EXTREMES.items() if place == where] if panels else ():
@@ -98,14 +95,13 @@ def _best(panels, value):
 class _Case:
     """One case: the stresses of its cell and of its nominal pressure, at places in a."""
 
-    def __init__(self, loaded, member, b, pitch, unit):
-        self.loaded, self.cell, self.pitch, self.unit = loaded, member.cell, pitch, unit
-        self.spot, self.h = spots(member.cell, [b]), loaded.h[0]
+    def __init__(self, loaded, cell):
+        self.loaded, self.cell, self.h = loaded, cell, loaded.h[0]
 
     def panels(self, where):
         """(low, high, depth, stresses (4, nodes)) of each panel, of depths, and of radii at the depth z of the
         interface; none of a body that is rigid."""
-        least = _FIRST * min(self.spot.b[0] * self.pitch, self.h, 1.0)
+        least = _FIRST * min(self.cell.b[0] * self.cell.pitch, self.h, 1.0)
         if where == "above":
             return [(self.h, self.h, None, self._on_axis(np.array([self.h]), False))]
         if where == "layer":
@@ -115,7 +111,7 @@ class _Case:
                 return []
             edges = _doubling(self.h, least, self.h + farthest_of(self.loaded))
         else:
-            edges = _doubling(0.0, least, self._beside() * self.pitch)
+            edges = _doubling(0.0, least, self._beside() * self.cell.pitch)
         at = edges[:-1, None] + np.diff(edges)[:, None] * (1 + chebyshev_nodes(_NODES)) / 2
         if where == "interface":
             stresses, depth = self._at_interface(at.ravel()), self.h
@@ -126,22 +122,22 @@ class _Case:
 
     def _beside(self):
         """Half of the distance of neighbours, in l."""
-        return LATTICES["hex" if self.cell.lattice == "disc" else self.cell.lattice] / 2
+        lattice = self.cell.member.cell.lattice
+        return LATTICES["hex" if lattice == "disc" else lattice] / 2
 
     def _on_axis(self, z, body):
         """Stresses (4, Z) on the axis at depths z (Z,)."""
-        whole, zero = self.loaded.stresses(np.zeros(1), z, body)[:, 0, 0, :, 0], np.zeros(1)
-        near = z <= self.h + _DEPTH * self.pitch
-        at = np.clip(z[near] / self.pitch, *((1 / self.cell.pitch, None) if body else (None, 1 / self.cell.pitch)))
-        whole[:, near] += self.unit * below_spot(self.cell, self.spot, self.loaded.layers, zero, at, body)[..., 0]
+        cell, whole = self.cell, self.loaded.stresses(np.zeros(1), z, body)[:, 0, 0, :, 0]
+        near = z <= self.h + _DEPTH * cell.pitch
+        at = np.clip(z[near] / cell.pitch, *((cell.h, None) if body else (None, cell.h)))
+        whole[:, near] += cell.unit * cell.stresses(cell.b[0], np.zeros(1), at, body)[..., 0]
         return whole
 
     def _at_interface(self, r):
         """Stresses (4, R) at the interface at radii r (R,)."""
-        whole, at = self.loaded.stresses(r, np.array([self.h]), False)[:, 0, 0, 0], np.array([1 / self.cell.pitch])
-        layers, radii = self.loaded.layers, r / self.pitch
-        # in the body alone are sz and trz, which are continuous, right of a rigid one
-        return whole + self.unit * below_spot(self.cell, self.spot, layers, radii, at, True)[:, 0]
+        cell, whole = self.cell, self.loaded.stresses(r, np.array([self.h]), False)[:, 0, 0, 0]
+        # those in the body: sz and trz, which alone are looked at, are continuous, and take fewer waves there
+        return whole + cell.unit * cell.stresses(cell.b[0], r / cell.pitch, np.array([cell.h]), True)[:, 0]
 
 
 def _doubling(start, first, last):

@@ -11,9 +11,6 @@ from itertools import product
 import numpy as np
 
 from ...fields.invariants import mises
-from ...kernels.two_layers import TwoLayers, layer_modulus
-from ...laws import LAWS
-from ...laws.cell.members import members
 from ..peaks import between, chebyshev_nodes
 from .spot_table import deepest, table_of
 
@@ -23,51 +20,24 @@ _NODES = 8
 _POINTS, _ROUNDS = 17, 5
 
 
-def felt_cells(scaled):
-    """The different :class:`~solver.laws.cell.members.Member` of cases that feel their layers, and the index (B,) of
-    that of each; `scaled` : in units R = E2* = 1, of any laws."""
-    made, index = [], np.zeros(len(scaled), dtype=int)
-    for micro in dict.fromkeys(scaled.micro.tolist()):
-        rows = np.flatnonzero(scaled.micro == micro)
-        part = scaled.take(rows)
-        pitch = 1 / (part.h * np.sqrt(part.Nbar))
-        some, own = members(LAWS[micro].cell, pitch, TwoLayers.of(part), part.m)
-        index[rows] = own + len(made)
-        made += some
-    return made, index
-
-
-def units_of(scaled, a):
-    """The pitch l in a, and the stress E l/Ra that is 1 for a cell, in E2*, (B,) each."""
-    E, pitch = layer_modulus(scaled.n) / (1 + scaled.m), 1 / np.sqrt(scaled.Nbar)
-    return pitch / a, E * pitch / scaled.Ra
-
-
-def largest_stress(loaded, scaled, a, lam, radii):
+def largest_stress(loaded, cells, radii):
     """(3, B): the largest von Mises stress below spots, in units of the pressure, and the radius of the axis of the
-    spot (signed if mu > 0) and the depth in a of its place.
+    spot (signed if mu > 0) and the depth in a of its place; NaN of a cell that is None.
 
-    loaded : :class:`~..loaded.Loaded` of the cases; lam : (B, R), contact fractions at `radii` (R,) in a, which are
-        nodes of the angle arcsin(r/a), the first 0; NaN beyond the centre: not known
+    loaded : :class:`~..loaded.Loaded` of the cases; cells : their :class:`~.felt_cells.FeltCell`, with spots at `radii`
+        (R,) in a, which are nodes of the angle arcsin(r/a), the first 0, or in the centre alone
     """
-    different, index = felt_cells(scaled)
-    pitch, unit = units_of(scaled, a)
-    made = np.full((3, len(a)), np.nan)
-    for i, member in enumerate(different[j] for j in index):
-        known = np.isfinite(lam[i])
-        if not (member.known and known[0]):
+    made = np.full((3, len(cells)), np.nan)
+    for i, cell in enumerate(cells):
+        if cell is None:
             continue
-        spots = slice(None) if known.all() else slice(1)
-        b = np.sqrt(np.maximum(lam[i, spots], _LEAST) / np.pi)
-        alone = loaded.take([i])
-        cells = table_of(member.key, member.cell, alone.layers, member.reach)
-        below = _Below(cells, b, 1 / member.cell.pitch, pitch[i], unit[i], alone, radii[spots])
+        below = _Below(cell, loaded.take([i]), radii[: len(cell.b)])
         for sign, side in product(range(len(loaded.signs)), (1.0, -1.0)[: 2 if below.shape[2] > 1 else 1]):
             value, (u, v, _) = _in_box(partial(below.mises, sign=sign, side=side), below.shape)
             if not value <= made[0, i]:
-                r = np.sin(np.pi / 4 * (1 + u)) if len(b) > 1 else 0.0
-                depth = (1 + v) / 2 * deepest(below.radius(np.array([u])), below.h)[0]
-                made[:, i] = value, loaded.signs[sign] * r + 0.0, depth * pitch[i]
+                r = np.sin(np.pi / 4 * (1 + u)) if len(cell.b) > 1 else 0.0
+                depth = (1 + v) / 2 * deepest(below.radius(np.array([u])), cell.h)[0]
+                made[:, i] = value, loaded.signs[sign] * r + 0.0, depth * cell.pitch
     return made
 
 
@@ -75,32 +45,28 @@ class _Below:
     """The stresses of one case below spots, as polynomials of the place of their axis, the depth and the radius from
     the axis, each in [-1, 1]: u of arcsin(r/a), v of z over the deepest, w of arcsin(r/b)."""
 
-    def __init__(self, cells, b, h, pitch, unit, loaded, radii):
-        self.cells, self.b, self.h, self.unit = cells, b, h, unit
-        self.deep = deepest(b, h).max()
-        z = pitch * self.deep * (1 + chebyshev_nodes(_NODES)) / 2
+    def __init__(self, cell, loaded, radii):
+        self.cell, self.table = cell, table_of(cell)
+        self.deep = deepest(cell.b, cell.h).max()
+        z = cell.pitch * self.deep * (1 + chebyshev_nodes(_NODES)) / 2
         self.whole = loaded.stresses(radii, z, False)[:, 0]  # (4, S, nodes, R)
-        self.shape = (len(b), *cells.small.shape[2:])
+        self.shape = (len(cell.b), *self.table.shape)
 
     def radius(self, u):
         """b (U,) of the spots at u (U,)."""
-        return np.maximum(_on_nodes(u, len(self.b)) @ self.b, 0.0)
+        return np.maximum(_on_nodes(u, len(self.cell.b)) @ self.cell.b, 0.0)
 
     def mises(self, u, v, w, sign, side):
         """von Mises' stress (U, V, W). sign : which side of the contact; side : of the spot, 1 or -1, where 1 is away
         from the axis of the contact"""
         b = self.radius(u)
-        cell = np.tensordot(self.cells.at(b), _on_nodes(v, self.shape[1]), (2, 1))
-        cell = self.unit * np.tensordot(cell, _on_nodes(w, self.shape[2]), (2, 1))  # (U, 4, V, W)
-        cell[:, 3] *= side
-        z = deepest(b, self.h)[:, None] * (1 + v) / self.deep - 1
+        own = np.tensordot(self.table.at(b), _on_nodes(v, self.shape[1]), (2, 1))
+        own = self.cell.unit * np.tensordot(own, _on_nodes(w, self.shape[2]), (2, 1))  # (U, 4, V, W)
+        own[:, 3] *= side
+        z = deepest(b, self.cell.h)[:, None] * (1 + v) / self.deep - 1
         over = between(z.ravel(), _NODES).reshape(*z.shape, _NODES)
-        nominal = np.einsum("fnr,ur,uvn->ufv", self.whole[:, sign], _on_nodes(u, len(self.b)), over)
-        return mises(*(cell + nominal[..., None]).swapaxes(0, 1))
-
-
-#: A spot at the edge has no size; it is taken for one of this contact fraction.
-_LEAST = 1e-12
+        nominal = np.einsum("fnr,ur,uvn->ufv", self.whole[:, sign], _on_nodes(u, self.shape[0]), over)
+        return mises(*(own + nominal[..., None]).swapaxes(0, 1))
 
 
 def _on_nodes(points, count):

@@ -38,6 +38,11 @@ class Table(NamedTuple):
     small: np.ndarray
     large: np.ndarray
 
+    @property
+    def shape(self):
+        """Numbers of depths and of radii."""
+        return self.small.shape[2:]
+
     def at(self, b):
         """The stresses (B, 4, Z, R) at radii b (B,) up to the reach, E = Ra = l = 1."""
         few, b = b <= self.limit, np.minimum(b, self.reach)
@@ -49,20 +54,43 @@ class Table(NamedTuple):
         return out * (2 * b / np.pi)[:, None, None, None]
 
 
+class One(NamedTuple):
+    """The `stresses` (4, Z, R) below one spot, in place of a table."""
+
+    stresses: np.ndarray
+
+    @property
+    def shape(self):
+        return self.stresses.shape[1:]
+
+    def at(self, b):
+        return np.repeat(self.stresses[None], len(b), axis=0)
+
+
 def deepest(b, h):
     """The depth down to which stresses are looked at, of any unit: 1.5 b, or h where that is less."""
     return np.minimum(_DEEP * b, h)
 
 
-def table_of(key, cell, layers, reach):
-    """The :class:`Table` of a :class:`~solver.laws.cell.spot.Cell`, kept for its `key`."""
-    return _kept.get(key, lambda: _made(cell, layers, reach))
+def table_of(felt):
+    """The :class:`Table` of the family of a :class:`~.felt_cells.FeltCell`, kept for the next time; or :class:`One`, of
+    its spot, if that has a load of its own."""
+    member = felt.member
+    if member.alone:
+        rho, z = _places(member.cell, felt.b[0])
+        return One(felt.stresses(felt.b[0], felt.b[0] * rho, z, False, ROUGH))
+    return _kept.get(member.key, lambda: _made(member.cell, felt.layers, member.reach))
+
+
+def _places(cell, b):
+    """Radii from the axis in b, and depths in l, at which a table has the stresses below a spot of radius b."""
+    beside = may_leave_the_middle(cell)
+    rho = np.sin(np.pi / 4 * (1 + chebyshev_nodes(_RADII))) if beside else np.zeros(1)
+    return rho, deepest(b, 1 / cell.pitch) * (1 + chebyshev_nodes(_DEPTHS)) / 2
 
 
 def _made(cell, layers, reach):
     limit, N = min(_SMALL / cell.pitch, reach), pieces(cell, reach)
-    beside = may_leave_the_middle(cell)
-    rho = np.sin(np.pi / 4 * (1 + chebyshev_nodes(_RADII))) if beside else np.zeros(1)
     count = int(np.polynomial.polynomial.polyval(np.log(reach / limit), _MORE)) if reach > limit else 1
     nodes = [-np.cos(np.pi * (np.arange(terms) + 0.5) / terms) for terms in (_FEW, count)]
     radii = limit * (1 + nodes[0]) / 2, limit * (reach / limit) ** ((1 + nodes[1]) / 2)
@@ -70,8 +98,7 @@ def _made(cell, layers, reach):
     for x, b in zip(nodes, radii, strict=True):
         values = []
         for radius in b:
-            spot = spots(cell, [radius], N)
-            z = deepest(radius, 1 / cell.pitch) * (1 + chebyshev_nodes(_DEPTHS)) / 2
+            spot, (rho, z) = spots(cell, [radius], N), _places(cell, radius)
             values.append(below_spot(cell, spot, layers, radius * rho, z, False, ROUGH) / (2 * radius / np.pi))
         matrix = np.linalg.inv(chebvander(x, len(x) - 1))
         series.append(np.tensordot(matrix, np.array(values), 1))

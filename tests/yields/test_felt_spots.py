@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from yielding import first_yield
 
 import study
 from solver import Problem, solve
@@ -113,7 +114,7 @@ def test_beside_the_axis_there_may_be_more():
 def test_the_first_load_at_which_they_yield():
     """There the stress is the strength; a layer of the body's own material is felt as none of any thickness."""
     own = {"n": 1.0, "nu1": 0.3, "nu2": 0.3, "bonding": "bonded", "base": "layered", "Ra": 0.2, "Nbar": far_apart(3.0)}
-    found = study.first_yield(yield_strength=0.02, h=[H, H / 2], asperities_on="layer", **own)
+    found = first_yield("asperities", yield_strength=0.02, h=[H, H / 2], asperities_on="layer", **own)
     assert_allclose(found.P_Ya[0], found.P_Ya[1], rtol=1e-5)
     at = Problem.of(a=found.a_Ya.values, h=[H, H / 2], **own)
     assert_allclose(spots.of_contacts(at, solve(at))[0], 0.02, rtol=1e-6)

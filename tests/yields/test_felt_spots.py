@@ -14,12 +14,14 @@ from solver.fields.contact import of_contacts as fields_of
 from solver.fields.invariants import mises
 from solver.kernels.two_layers import TwoLayers
 from solver.laws import cell_axis
+from solver.laws.cell.members import Member
 from solver.laws.cell.rows import of_kernel
 from solver.laws.cell.spot import Cell
 from solver.laws.cell.spot import spots as spots_of
 from solver.numerics.kept import Kept
 from solver.yields import spots
 from solver.yields.below import felt_spots, spot_table
+from solver.yields.below.felt_cells import FeltCell
 from solver.yields.peaks import chebyshev_nodes
 
 REFERENCES = Path(__file__).parents[1] / "fields" / "references" / "micro_axis.csv"
@@ -99,7 +101,8 @@ def test_beside_the_axis_there_may_be_more():
     layers = TwoLayers(*(np.array([value]) for value in (n, 0.25, 0.3, True)))
     cell = Cell("hex", pitch, of_kernel(layers, 0.0))
     b = np.sqrt(lam / np.pi)
-    cells = spot_table.table_of("test", cell, layers, np.sqrt(0.55 / np.pi))
+    member = Member(("of a test",), cell, np.sqrt(0.55 / np.pi), True)
+    cells = spot_table.table_of(FeltCell(member, np.array([b]), 0.0, layers, 1.0, 1.0))
     assert cells.small.shape[1:] == (4, 14, 17)
     depths = spot_table.deepest(b, 1 / pitch) * (1 + chebyshev_nodes(14)) / 2
     field = below_spot(

@@ -48,21 +48,59 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0):
         unit of E2
     """
     made = {name: np.full((2, len(problem)), np.nan) for name in SPOT_EXTREMES}
-    index = np.flatnonzero(problem.feels_layer() & have_fields(problem, solution))
-    residual = np.broadcast_to(residual, len(problem)) / problem.E2
-    if len(index):
-        part, ended = problem.take(index), solution.take(index)
-        scaled, a = dimensionless(part), ended.a / part.R
-        elastic = with_elastic_spots(scaled, a, np.zeros(1))
-        cells = felt_cells(scaled, a, elastic.lam, elastic.p0)
-        for rows, pressure, _ in pressures_of(scaled, ended, a):
-            for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]]):
-                here = rows[some]
-                for name, values in _largest(loaded, [cells[j] for j in here], elastic.p_max[here]).items():
-                    made[name][:, index[here]] = values
-        for values in made.values():
-            values[0, index] *= part.E2
+    for cells, loaded, (index, p_max) in _cells(problem, solution, mu, residual):
+        for name, values in _largest(loaded, cells, p_max).items():
+            made[name][:, index] = values
+    for values in made.values():
+        values[0] *= problem.E2
     return made
+
+
+@one_blas_thread()
+@np.errstate(all="ignore")
+def section(problem, solution, r, z, body, residual=0.0):
+    """sr, st, sz and trz (4, Z, R) below the central spot of one contact, in the unit of E2, the nominal stresses on
+    the axis of the contact and about it included; None where its asperities do not feel the layer.
+
+    r : (R,), radii from the axis in the pitch l, less than the distance of neighbours less b; z : (Z,), depths in l
+    body : bool, in the body; residual : biaxial stress of the layer, in the unit of E2
+    """
+    for cells, loaded, _ in _cells(problem, solution, 0.0, residual):
+        cell = cells[0]
+        whole = loaded.stresses(r * cell.pitch, z * cell.pitch, body)[:, 0, 0]
+        return (whole + cell.unit * cell.stresses(cell.b[0], r, z, body)) * problem.E2[0] if cell else None
+    return None
+
+
+def spot_of(problem, solution):
+    """Radius of the central spot, the pitch and the thickness of the layer of one contact, in units of a: (3,), NaN
+    where its asperities do not feel the layer; and half of the distance of neighbours over the pitch."""
+    for cells, loaded, _ in _cells(problem, solution, 0.0, 0.0):
+        if cells[0]:
+            return np.array([cells[0].b[0] * cells[0].pitch, cells[0].pitch, loaded.h[0]]), beside(cells[0])
+    return np.full(3, np.nan), np.nan
+
+
+def _cells(problem, solution, mu, residual):
+    """Yield the cells of contacts, their :class:`~..loaded.Loaded`, and their indices and largest pressures in E2*."""
+    index = np.flatnonzero(problem.feels_layer() & have_fields(problem, solution))
+    if not len(index):
+        return
+    residual = np.broadcast_to(residual, len(problem)) / problem.E2
+    part, ended = problem.take(index), solution.take(index)
+    scaled, a = dimensionless(part), ended.a / part.R
+    elastic = with_elastic_spots(scaled, a, np.zeros(1))
+    cells = felt_cells(scaled, a, elastic.lam, elastic.p0)
+    for rows, pressure, _ in pressures_of(scaled, ended, a):
+        for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]]):
+            here = rows[some]
+            yield [cells[j] for j in here], loaded, (index[here], elastic.p_max[here])
+
+
+def beside(cell):
+    """Half of the distance of neighbours, in l."""
+    lattice = cell.member.cell.lattice
+    return LATTICES["hex" if lattice == "disc" else lattice] / 2
 
 
 def _largest(loaded, cells, p_max):
@@ -111,7 +149,7 @@ class _Case:
                 return []
             edges = _doubling(self.h, least, self.h + farthest_of(self.loaded))
         else:
-            edges = _doubling(0.0, least, self._beside() * self.cell.pitch)
+            edges = _doubling(0.0, least, beside(self.cell) * self.cell.pitch)
         at = edges[:-1, None] + np.diff(edges)[:, None] * (1 + chebyshev_nodes(_NODES)) / 2
         if where == "interface":
             stresses, depth = self._at_interface(at.ravel()), self.h
@@ -119,11 +157,6 @@ class _Case:
             stresses, depth = self._on_axis(at.ravel(), where == "body"), None
         stresses = stresses.reshape(4, len(at), _NODES)
         return [(*ends, depth, stresses[:, j]) for j, ends in enumerate(zip(edges[:-1], edges[1:], strict=True))]
-
-    def _beside(self):
-        """Half of the distance of neighbours, in l."""
-        lattice = self.cell.member.cell.lattice
-        return LATTICES["hex" if lattice == "disc" else lattice] / 2
 
     def _on_axis(self, z, body):
         """Stresses (4, Z) on the axis at depths z (Z,)."""

@@ -11,7 +11,7 @@ from study.figures.stresses.spots import of_central_spot
 from study.inputs.definition import StudyError
 
 H, PITCH = 0.001, 6.0
-GIVEN = {"P": 2e-4, "h": H, "n": 10.0, "nu1": 0.25, "bonding": "bonded", "base": "layered", "Ra": 0.2, "x": 3}
+GIVEN = {"P": 5e-5, "h": H, "n": 10.0, "nu1": 0.25, "bonding": "bonded", "base": "layered", "Ra": 0.01, "x": 3}
 GIVEN |= {"Nbar": 1 / (PITCH * H) ** 2}
 
 

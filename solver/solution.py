@@ -64,6 +64,8 @@ class Solution:
     a, P, D : > 0; radius of the nominal contact area (unit R), load (E2 R²), indentation depth (14) (R)
     p0, p_max : > 0; nominal pressure p(0), and real pressure in the middle of the central spot (13), which is p(0) of a
         smooth punch (E2)
+    p_spot, r_spot : where asperities feel the coated body, the largest pressure in the central spot (E2), which is
+        p_max where it is in the middle, and its radius over that of the spot, in [0, 1); else NaN
     Ar_An : in (0, 1]; real over nominal contact area (12), 1 for a smooth punch
     plastic_share : in [0, 1]; share of the nominal contact area whose spots have yielded, NaN of a law without yield
     A0 : >= 0; additional displacement A[p(0)] of the asperities (6) (R)
@@ -90,6 +92,8 @@ class Solution:
     D: np.ndarray
     p0: np.ndarray
     p_max: np.ndarray
+    p_spot: np.ndarray
+    r_spot: np.ndarray
     Ar_An: np.ndarray
     plastic_share: np.ndarray
     A0: np.ndarray

@@ -13,6 +13,7 @@ from .models.model_error import judged
 from .models.named import model_of, solve_named
 from .models.plastic_share import has_yield, plastic_share
 from .models.range_of_law import beyond_end, radii_of, without_family
+from .models.spot_pressure import pressure_in_spots
 from .models.table_ends import beyond_table
 from .problem import Problem
 from .scaling import dimensionless, refused
@@ -98,6 +99,9 @@ def _solved(problem, x, extrapolate):
     solution = replace(solution, model_error=solution.model_error + left_out(problem, solution))
     if yields:
         solution = replace(solution, plastic_share=plastic_share(problem, solution.lam[:, len(x) :]))
+    if problem.feels_layer().any():  # their radii end in the centre
+        p_spot, r_spot = pressure_in_spots(problem, solution, solution.lam[:, -1])
+        solution = replace(solution, p_spot=p_spot, r_spot=r_spot)
     profiles = {name: getattr(solution, name)[:, : len(x)] for name in ("p", "lam")}
     value = problem.value * 1.0  # exactly as given, also where a case is refused
     return replace(solution, **profiles, **{problem.control: value})

@@ -13,6 +13,7 @@ from solver.fields.contact import of_contacts as fields_of
 from solver.fields.invariants import invariants
 from solver.fields.sliding import in_plane
 from solver.fields.waves import farthest
+from solver.yields.below.central_spot import of_contacts as below_spots
 from solver.yields.contact import of_contacts as extremes_of
 from solver.yields.extremes import EXTREMES
 
@@ -157,7 +158,9 @@ def extremes(
         sr_interface1 (which cracks a layer that bends), tau_interface, sz_interface_max, sz_interface_min; each with
         its place NAME_r and NAME_z in units of a, where NAME_r is x, and behind the contact < 0, if mu > 0. Tension or
         shear that is not there is 0 at the place NaN. NaN of cases that have not converged and of bodies that are
-        rigid or not there
+        rigid or not there. Where asperities feel the layer besides: mises1_spot, mises2_spot and sr_interface1_spot
+        below the middle of the central spot, sz_interface_spot_max and tau_interface_spot up to half of the pitch
+        beside it, each with its depth NAME_z; the stresses of the nominal pressure are in them
 
     Raises
     ------
@@ -176,8 +179,8 @@ def extremes(
     refuse_without_stresses(again, "extremes")
     unit, _ = units_of(again)
     residual = residual_stress(sigma_res, again) / unit
-    values = extremes_of(again.problem, _solved(again, contact), mu, residual)
-    variables = {}
+    solution = _solved(again, contact)
+    values, variables = extremes_of(again.problem, solution, mu, residual), {}
     for name in EXTREMES:
         long_name = VOCABULARY[name].long_name
         value, r, z = values[name]
@@ -185,6 +188,11 @@ def extremes(
         variables[name] = _labelled(again, value * unit, (), _about(again, long_name, "Pa"))
         variables[f"{name}_r"] = _labelled(again, r, (), place)
         variables[f"{name}_z"] = _labelled(again, z, (), {"long_name": f"{long_name}: its depth over a"})
+    if again.problem.feels_layer().any():
+        for name, (value, z) in below_spots(again.problem, solution, mu, residual).items():
+            long_name = VOCABULARY[name].long_name
+            variables[name] = _labelled(again, value * unit, (), _about(again, long_name, "Pa"))
+            variables[f"{name}_z"] = _labelled(again, z, (), {"long_name": f"{long_name}: its depth over a"})
     return carried(contact, variables)
 
 

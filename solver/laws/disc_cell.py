@@ -128,6 +128,7 @@ LAW = Law(
     from_displacement=spot_from_displacement,
     guess=spot_guess,
     on_body=of_spots("disc_cell", "disc", scales, parameters=PARAMETERS, rise=1.1),
+    cell="disc",
 )
 
 #: No asperities: A = 0, and the equation is linear in y = q, with p* = E.

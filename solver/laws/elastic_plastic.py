@@ -180,6 +180,13 @@ def _body_peak(y, q, rows, X, x_y, yields):
     return neighbours + mean + (spot - mean) / (1 + tau)
 
 
+def in_the_middle(y, rows, X, x_y, yields):
+    """Of spots on the body at y (B, 1): the elastic p_max/p*, (B,), and the part that yielding leaves of differences of
+    pressure in a spot, (B,)."""
+    _, tau, f, _, _ = _flow(_mean(y, rows, X)[0], x_y)
+    return cell.spot_peak(y, None, rows)[:, 0], (f / (1 + tau))[:, 0]
+
+
 def _body_guess(q, rows, X, x_y, yields):
     """As :func:`_guess`: the law of flowing spots is that of any body."""
     y, flows = cell.spot_guess(q, rows), np.sqrt(np.pi / 2 * X * q) + 2 * X * q
@@ -231,5 +238,6 @@ LAW = Law(
     from_pressure=_from_pressure,
     guess=_guess,
     on_body=_on_body,
+    cell="disc",
     **_REST,
 )

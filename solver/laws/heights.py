@@ -25,7 +25,7 @@ from . import disc_cell, spread
 from .cell import heights as on_body
 from .cell import law as cell
 from .cell.family import different, family
-from .cell.summits import Lookup, summit
+from .cell.summits import SUMMIT, Lookup, summit
 from .law import Bound, Curve, Law, where_positive
 
 #: For σ/A* below this the power law of small pressures (`edge`) is that of equal heights.
@@ -301,6 +301,12 @@ class _Body(NamedTuple):
         delta = spread.depth(y, q, _relief(self.density, sigma, cut))[0]
         return np.where(sigma > 0, on_body.peak(summits, q, delta), cell.spot_peak(y, q, rows))
 
+    def spot(self, y, q, *own):
+        """b/Bbar of the spot of the highest summit."""
+        sigma, cut, _, summits = own
+        delta = spread.depth(y, q, _relief(self.density, sigma, cut))[0]
+        return np.where(sigma > 0, on_body.highest(summits, q, delta), y)
+
     def edge(self, sigma, cut, *_):
         return _edge(self.density, 1.0, sigma, cut)
 
@@ -316,7 +322,7 @@ class _Body(NamedTuple):
 def _of_heights(name, density, **rest):
     """`on_body` of :class:`~solver.laws.law.Law`."""
     body = _Body(density)
-    parts = {part: getattr(body, part) for part in ("curve", "area", "peak", "edge", "guess", "end")}
+    parts = {part: getattr(body, part) for part in ("curve", "area", "peak", "edge", "guess", "end", "spot")}
     return partial(body.bound, Law(name=f"{name}_on_body", scales=partial(_scales, density, 1.0), **parts, **rest))
 
 
@@ -326,7 +332,8 @@ def law(name, density, field=1.0, **rest):
     parts = {key: partial(part, density, field) for key, part in parts.items()}
     rest = {"error": ERROR, "touching": partial(_touching, density), "rise": 1.1, "corners": True} | rest
     rest["parameters"] = disc_cell.PARAMETERS | density.parameters
-    return Law(name=name, on_body=_of_heights(name, density, **rest) if field else None, **parts, **rest)
+    felt = {"on_body": _of_heights(name, density, **rest), "cell": SUMMIT} if field else {}
+    return Law(name=name, **felt, **parts, **rest)
 
 
 def histogram(name, z, share, version):

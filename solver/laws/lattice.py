@@ -78,7 +78,8 @@ def _quantity(t, q, X, power, rate, limit, first):
 def _law(name):
     words = {"name": f"{name}_lattice", "scales": disc_cell.scales}
     rest = {"parameters": disc_cell.PARAMETERS, "smears": False, "rise": 1.1}
-    return law_of(_table(name), **words, **rest, error=ERROR, on_body=of_spots(lattice=name, **words, **rest))
+    on_body = of_spots(lattice=name, **words, **rest)
+    return law_of(_table(name), **words, **rest, error=ERROR, cell=name, on_body=on_body)
 
 
 SQUARE, HEX = _law("square"), _law("hex")

@@ -84,6 +84,9 @@ class Law:
     on_body : (kernel, m, h, E, **parameters) -> :class:`Bound` of a law of asperities that feel the coated body itself,
         not the half-space of its layer's material: `kernel`, a :class:`~solver.kernels.kernel.Kernel` of B cases, m and
         h (B,), thickness of the first layer; E (B,), as that of `scales`. None: the law does not know the body
+    cell : the lattice of the cell of a spot on the body, "square", "hex" or "disc", or "summit" of spots of their own
+        loads; None where `on_body` is
+    spot : (y, q, *own) -> b/Bbar of the largest spot; None: sqrt(λ)
     end : (*own) -> largest p/p* that the law knows, which depends on the case; None: there is none
     """
 
@@ -110,6 +113,8 @@ class Law:
     from_displacement: Callable | None = None
     guess: Callable | None = None
     on_body: Callable | None = None
+    cell: str | None = None
+    spot: Callable | None = None
     end: Callable | None = None
 
     @property

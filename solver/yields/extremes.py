@@ -118,12 +118,18 @@ def _on_coarse_grids(loaded, names):
     return made, wanted, grids, coarse
 
 
+def farthest_of(loaded):
+    """How far from the centre, in a, places are looked at."""
+    stiff = 1.0 if loaded.bare else max(1.0, np.cbrt(loaded.layers.n.max()))
+    return _FARTHEST * (1 + (0.0 if loaded.bare else stiff * loaded.h.max()))
+
+
 def regions(loaded):
     """Name -> :class:`Grid` of each region that the cases have."""
     h, B = loaded.h, len(loaded.h)
     octave = 2.0 ** np.floor(np.log2(h[0]))
     stiff = 1.0 if loaded.bare else max(1.0, np.cbrt(loaded.layers.n.max()))
-    far = _FARTHEST * (1 + (0.0 if loaded.bare else stiff * h.max()))
+    far = farthest_of(loaded)
     bending = 0.5 if loaded.bare else octave * stiff
     beyond = np.minimum(1 + bending * _BEYOND, far)
     lengths = _lengths(octave, bending)

@@ -3,7 +3,7 @@ as tensors on the axis of each spot (docs/stresses.md, Asperities)."""
 
 import numpy as np
 
-from ..fields.contact import pressures_of
+from ..fields.contact import have_fields, pressures_of
 from ..fields.invariants import mises
 from ..kernels.two_layers import layer_modulus
 from ..numerics.quadrature import gauss_legendre
@@ -12,6 +12,8 @@ from ..solve import solve
 from ..status import Status
 from ..threads import one_blas_thread
 from .asperities import POINTS, hertz_part
+from .below import felt_spots
+from .below.felt_cells import felt_cells
 from .contact import alike
 from .peaks import between, chebyshev_nodes, in_patch
 
@@ -42,33 +44,49 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0):
     mu : >= 0, friction; residual : (B,) or a number, biaxial stress of the layer, in the unit of E2
     """
     made = np.full((3, len(problem)), np.nan)
-    rough = np.isfinite(problem.Nbar) & np.isfinite(problem.Ra) & (problem.micro != "smooth")
-    index = np.flatnonzero((solution.status == Status.CONVERGED) & rough)
+    rough = np.isfinite(problem.Nbar) & np.isfinite(problem.Ra) & problem.rough()
+    there, felt = (solution.status == Status.CONVERGED) & rough, problem.feels_layer()
     residual = np.broadcast_to(residual, len(problem)) / problem.E2
-    if len(index):
-        part, ended = problem.take(index), solution.take(index)
-        scaled, a = dimensionless(part), ended.a / part.R
-        c, p0s = _of_spots(scaled, a)
-        for rows, pressure, _ in pressures_of(scaled, ended, a):
-            for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]]):
-                here = rows[some]
-                b = c[here] / np.sqrt(np.pi * scaled.Nbar[here, None]) / a[here, None]
-                nu = np.where(loaded.bare, scaled.nu2, scaled.nu1)[here]
-                values = _largest(loaded, nu, c[here], p0s[here], b)
-                values[0] *= part.E2[here]
-                made[:, index[here]] = values
+    for some, stress in (there & ~felt, _on_half_space), (there & felt & have_fields(problem, solution), _on_body):
+        index = np.flatnonzero(some)
+        if len(index):
+            part, ended = problem.take(index), solution.take(index)
+            scaled, a = dimensionless(part), ended.a / part.R
+            at_radii = with_elastic_spots(scaled, a, _RADII)
+            for rows, pressure, _ in pressures_of(scaled, ended, a):
+                for few, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]]):
+                    here = rows[few]
+                    made[:, index[here]] = stress(loaded, scaled.take(here), a[here], at_radii.take(here))
+            made[0, index] *= part.E2
     return made
 
 
-def _of_spots(scaled, a):
+def with_elastic_spots(scaled, a, x):
+    """The :class:`~solver.solution.Solution` with profiles at x of contacts of radius a, of spots that stay elastic."""
+    at_a = scaled.but(micro=np.where(scaled.micro == "elastic_plastic", "disc_cell", scaled.micro))
+    return solve(type(at_a)("a", a, at_a.parameters), x)
+
+
+def _on_body(loaded, scaled, a, at_radii):
+    """(3, B), as :func:`_largest`, of asperities that feel the coated body."""
+    return felt_spots.largest_stress(loaded, felt_cells(scaled, a, at_radii.lam, at_radii.p0), _RADII)
+
+
+def _on_half_space(loaded, scaled, a, at_radii):
+    """(3, B), as :func:`_largest`, of asperities on a half-space."""
+    c, p0s = _of_spots(scaled, at_radii)
+    b = c / np.sqrt(np.pi * scaled.Nbar[:, None]) / a[:, None]
+    return _largest(loaded, np.where(loaded.bare, scaled.nu2, scaled.nu1), c, p0s, b)
+
+
+def _of_spots(scaled, at_radii):
     """b/B̄ and Hertz's part of the largest pressure of the spots at :data:`_RADII`, (B, R) each; NaN where no spot is
     known."""
-    at_a = scaled.but(micro=np.where(scaled.micro == "elastic_plastic", "disc_cell", scaled.micro))
-    found = solve(type(at_a)("a", a, at_a.parameters), _RADII)
     E = np.where(scaled.base == "half_space", 1.0, layer_modulus(scaled.n)) / (1 + scaled.m)
-    c = np.where(np.isin(scaled.micro, _CELLS)[:, None], np.maximum(np.sqrt(found.lam), _LEAST), np.nan)
+    c = np.where(np.isin(scaled.micro, _CELLS)[:, None], np.maximum(np.sqrt(at_radii.lam), _LEAST), np.nan)
     p0s = 2 * E[:, None] * c / (np.pi * np.sqrt(np.pi * scaled.Nbar) * scaled.Ra)[:, None]
-    p0s[:, :1], c[:, :1] = (values[:, None] for values in hertz_part(found.p_max, found.p0, E, scaled.Nbar, scaled.Ra))
+    central = hertz_part(at_radii.p_max, at_radii.p0, E, scaled.Nbar, scaled.Ra)
+    p0s[:, :1], c[:, :1] = (values[:, None] for values in central)
     return c, p0s
 
 
@@ -76,12 +94,13 @@ def _largest(loaded, nu, c, p0s, b):
     """(3, B): the largest stress, its radius and depth in a. b : (B, R), in a."""
     cell = _cell(nu[:, None], c, p0s, loaded.pressure.at(_RADII))
     count = _FEW if np.nanmax(b) < _SMALL else _MANY
-    deepest = _ENDS[1] * np.nanmax(b, axis=1)
+    # deeper than the layer there is none of its stress; spots that large have that at the interface
+    deepest = np.minimum(_ENDS[1] * np.nanmax(b, axis=1), np.inf if loaded.bare else loaded.h)
     whole = loaded.stresses(_RADII, deepest[:, None] * (1 + chebyshev_nodes(count)) / 2, loaded.bare)
     made = np.full((3, len(c)), np.nan)
     for i in range(len(c)):
         spots = slice(None) if np.isfinite(c[i]).all() else slice(1)  # at all radii, or in the centre
-        share = b[i, spots, None] * _Z / deepest[i]  # (R, Z)
+        share = np.minimum(b[i, spots, None] * _Z / deepest[i], 1.0)  # (R, Z)
         matrix = between((2 * share - 1).ravel(), count).reshape(*share.shape, count)
         for side, sign in enumerate(loaded.signs):
             stresses = np.einsum("rdz,fzr->fdr", matrix, whole[:, i, side, :, spots])

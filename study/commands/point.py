@@ -151,6 +151,8 @@ def as_numbers(contact: xr.Dataset) -> dict:
     }
     yields = "plastic_share" in contact and np.isfinite(contact["plastic_share"])
     shown |= {"plastic_share": described(contact, "plastic_share")} if yields else {}
+    felt = "p_spot" in contact and np.isfinite(contact["p_spot"])
+    shown |= {name: described(contact, name) for name in ("p_spot", "r_spot") if felt}
     shown |= {"stable": bool(contact["stable"])} if "stable" in contact and contact["status"] == 0 else {}
     shown |= {name: number(contact[name]) for name in ("error", "model_error")}
     flags = [name for name in ("status", "model_used", "asperities_used") if name in contact]

@@ -67,6 +67,14 @@ def ring_text(case: xr.Dataset, place: int) -> str:
     return f"{pressure} at r = {in_its_unit(case, 'a', float(case['a'] * case['x'][place]))}"
 
 
+def spot_text(case: xr.Dataset) -> str:
+    """The largest real pressure in the central spot, and its place there: "1.32 ± 0.01 GPa at 0.7 of its radius"."""
+    relative = spread_of(case, "p_max") / float(case["p_max"]) if "p_max_spread" in case else 0.0
+    pressure = float(case["p_spot"])
+    place = f"{float(case['r_spot']):.2g}"
+    return f"{_with_spread(case, 'p_spot', pressure, relative * pressure, 'error')} at {place} of its radius"
+
+
 def peak_text(case: xr.Dataset, pressure: float) -> str:
     """The largest real pressure, in a ring, with ± where inputs have spreads."""
     if "p_max_spread" not in case:

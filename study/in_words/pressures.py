@@ -58,4 +58,6 @@ def largest_of_all(contact: xr.Dataset | OneCase) -> dict[str, xr.Variable]:
         except ValueError:  # the moduli are not known, as of a mean
             peak = top
         nominal, real = top.where(ring, nominal), peak.where(ring & (peak > real), real)
+    if "p_spot" in v:
+        real = np.fmax(real, as_xarray(v["p_spot"]))  # the middle of a spot may have less
     return {"p_ring": nominal, "p_peak": real}

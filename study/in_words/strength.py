@@ -12,6 +12,8 @@ from solver.closed_forms import yield_pressure
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS
 from solver.yields import spots
+from solver.yields.below import central_spot
+from solver.yields.below.central_spot import SPOT_EXTREMES
 from solver.yields.contact import of_contacts
 from solver.yields.extremes import EXTREMES
 
@@ -75,7 +77,7 @@ class _Limit(NamedTuple):
 
     @property
     def plural(self) -> bool:
-        return self.who.endswith("ies")
+        return self.who == "the asperities"
 
 
 class Strength(NamedTuple):
@@ -169,6 +171,9 @@ def _stresses(limits: list[_Limit], problem: Problem, solution: Any, case: xr.Da
     """(limit, stress, r, z) of each, r and z in a: those of the bodies are searched for together."""
     names = tuple(limit.stress for limit in limits if limit.stress in EXTREMES)
     found = of_contacts(problem, solution, names=names) if names else {}
+    if any(limit.stress in SPOT_EXTREMES for limit in limits):
+        below = central_spot.of_contacts(problem, solution)
+        found |= {name: np.stack([value, 0 * value, z]) for name, (value, z) in below.items()}
     if any(limit.stress == _PUNCH for limit in limits):
         nu = float(case["nu_punch"]) if "nu_punch" in case else 0.3
         found[_PUNCH] = of_contacts(problem, solution, names=("mises2",), punch=np.array([nu]))["mises2"]
@@ -178,13 +183,14 @@ def _stresses(limits: list[_Limit], problem: Problem, solution: Any, case: xr.Da
 
 
 def _of_spots(problem: Problem, solution: Any) -> np.ndarray:
-    """(3, 1): the stress below a spot, at most that of one asperity that bears the whole load, and its place; of a law
-    without a radius of asperities that of a sphere under the same pressure, on the surface."""
+    """(3, 1): the stress below a spot, and its place; of a law without a radius of asperities that of a sphere under
+    the same pressure, on the surface. On a half-space it is at most that of one asperity that bears the whole load."""
     found, E, nu = spots.of_contacts(problem, solution), *_below(problem)
     below = stress_below_one(solution.P, E, problem.Ra, nu)
     if np.isnan(found[0, 0]):
-        found[:, 0] = (solution.p_max[0] - solution.p0[0]) / yield_pressure(nu)[0], 0.0, 0.0
-    elif below[0] < found[0, 0]:
+        largest = np.fmax(solution.p_max[0], solution.p_spot[0])
+        found[:, 0] = (largest - solution.p0[0]) / yield_pressure(nu)[0], 0.0, 0.0
+    elif below[0] < found[0, 0] and not problem.feels_layer()[0]:
         b = np.cbrt(3 * solution.P[0] * problem.Ra[0] / (4 * E[0]))
         found[:, 0] = below[0], 0.0, _DEEP * b / solution.a[0]
     return found
@@ -244,19 +250,26 @@ def _limits(case: xr.Dataset, again: Again, known: dict[str, list]) -> list[_Lim
         value, spread, hard = known[body]
         return _Limit(who, "yield", "yielding", what, Y, stress, float(value), float(spread), needs, bool(hard))
 
+    felt, below = bool(problem.feels_layer()[0]), "below the asperities"
     if coated:
         limits.append(yields("the layer", "mises1", "layer", "Y1"))
         coating, unit = _material(case, "layer"), float(again.scene.unit) if again.scene else 1.0
-        for who, stress, what, of in (
+        places = [
             ("the layer", "s1_layer", "largest tension", "fracture"),
             ("the interface", "tau_interface", "largest shear stress", "interface"),
-        ):
+        ]
+        if felt:
+            limits.append(yields(f"the layer {below}", "mises1_spot", "layer", ""))
+            places.append((f"the layer {below}", "sr_interface1_spot", "radial tension", "fracture"))
+            places.append((f"the interface {below}", "tau_interface_spot", "largest shear stress", "interface"))
+        for who, stress, what, of in places:
             if strength := getattr(coating, f"{of}_strength", None):
                 verb, name = ("crack", "fracture strength") if of == "fracture" else ("fail", "strength")
                 spread = getattr(coating, f"{of}_strength_spread") / unit
                 limits.append(_Limit(who, verb, f"{verb}ing", what, name, stress, strength / unit, spread, ""))
     if not is_rigid(case, "base"):
         limits.append(yields("the body", "mises2", "body", "Y2"))
+        limits += [yields(f"the body {below}", "mises2_spot", "body", "")] * felt
     if problem.m[0] > 0:
         limits.append(yields("the punch", _PUNCH, "punch", "Y_punch"))
     law = LAWS[str(problem.micro[0])]

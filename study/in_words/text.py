@@ -12,7 +12,7 @@ from ..specimen.pictures import curve, with_picture
 from .fits import of_fit
 from .inputs import given, is_rigid
 from .notes.punch import OF_PULL_OFF
-from .numbers import given_text, peak_text, result_text, ring_text
+from .numbers import given_text, peak_text, result_text, ring_text, spot_text
 from .pressures import largest
 from .sentences import sentences
 from .stresses import of_stresses
@@ -24,6 +24,7 @@ _JUDGED = tuple(name for name in SHOWN if name != "dP_dD")  # what `error` is th
 OF_ASPERITIES = ("p_max", "Ar_An")
 #: What stands behind "indentation depth" where the punch yields too, or may.
 OF_BOTH = " (approach of both bodies)"
+SPOT_LABEL = "largest real pressure in the central spot"
 RING_LABEL, PEAK_LABEL = "largest nominal pressure, in a ring", "largest real pressure, in the ring"
 
 
@@ -146,6 +147,8 @@ def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:
         rows.append((label, VOCABULARY[name].symbol, result_text(case, name)))
         if name == "p0" and top.place is not None:
             rows.append((RING_LABEL, VOCABULARY["p_ring"].symbol, ring_text(case, top.place)))
+        if name == "p_max" and "p_spot" in case and case["r_spot"] > 0:
+            rows.append((SPOT_LABEL, VOCABULARY["p_spot"].symbol, spot_text(case)))
         if name == "p_max" and top.place is not None and np.isfinite(top.real):
             rows.append((PEAK_LABEL, VOCABULARY["p_peak"].symbol, peak_text(case, top.real)))
     return rows

@@ -89,11 +89,16 @@ def is_parameter(name: str) -> bool:
     return name in PARAMETERS
 
 
-def results_of(micro: np.ndarray, sticking: bool = False) -> tuple[str, ...]:
+#: Results that only asperities which feel the layer have.
+_OF_FELT = ("p_spot", "r_spot")
+
+
+def results_of(micro: np.ndarray, sticking: bool = False, felt: bool = False) -> tuple[str, ...]:
     """Names of the results of these laws; plastic_share only if the spots of some law yield, those of pull-off only of
-    contacts that may be `sticking`."""
+    contacts that may be `sticking`, those of spots only where some asperities feel the layer (`felt`)."""
     yields = one_of(micro, [name for name, law in laws.LAWS.items() if law.yielded]).any()
-    of_laws = tuple(name for name in names("result") if yields or name != "plastic_share")
+    left_out = ("plastic_share",) * (not yields) + _OF_FELT * (not felt)
+    of_laws = tuple(name for name in names("result") if name not in left_out)
     return of_laws + (names("pull_off") if sticking else ())
 
 

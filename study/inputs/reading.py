@@ -20,14 +20,14 @@ from ..terminal import on_one_line, shown
 from . import asperities
 from .definition import LARGE, MOST_VALUES, Definition, StudyError, refusal, settings
 from .draft import Draft
-from .grid import usual_block
+from .grid import felt, usual_block
 from .identity import digest_of, law_versions
 from .laws import results_of
 from .punch import sticking
 from .punch.stresses import none_in
 from .request import MOST_MESSAGES, Request
 from .scene.layers import axes_in, in_layers
-from .vocabulary import NUMERICS, absent, suggest
+from .vocabulary import NUMERICS, absent, names, suggest
 
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
 KEYS = {
@@ -106,7 +106,9 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
-    results = results_of(grid.values["micro"][1] if "micro" in grid.values else (), "w_adhesion" in grid.values)
+    micro, some_feel = grid.values["micro"][1] if "micro" in grid.values else (), not errors and bool(felt(grid).any())
+    results = results_of(micro, "w_adhesion" in grid.values, some_feel)
+    stresses += names("spot_stress") if stresses and some_feel else ()
     definition = Definition(
         *(name, title, text, grid, x, profiles, dtype, block, ""),
         scene=scene,

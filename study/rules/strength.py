@@ -5,6 +5,7 @@ import numpy as np
 from solver import Problem, Status, solve
 from solver.laws import LAWS
 from solver.laws.elastic_plastic import TABOR
+from solver.models.spot_pressure import lifts_off
 from solver.parameters import one_of
 from solver.yields import spots
 from solver.yields.contact import of_contacts
@@ -41,12 +42,23 @@ def body_yields(v, times):
 
 @rule(1024, "asperities would yield", "0.65")
 def asperities_yield(v, times):
-    """The asperities would yield: on the axis of a spot the stress exceeds the yield strength. The real area is then
-    larger than this one, and pmax smaller (micro = "elastic_plastic")."""
+    """The asperities would yield: below a spot the stress exceeds the yield strength. The real area is then larger than
+    this one, and pmax smaller (micro = "elastic_plastic")."""
     limit = _limit(v, times * of_asperities(v)[0])
     if not np.isfinite(limit).any():
         return np.False_
     return _exceeded(limit, *yield_bounds.of_asperities(v), lambda index, _: _stress_of_spots(v, index))
+
+
+@rule(16384, "spots lift off", "0.59")
+def spot_lifts_off(v, times):
+    """The pressure in the middle of a spot turns negative: the layer, far harder than the body, lifts off there, and
+    what touches is a ring, which the law of the asperities leaves out."""
+    lifted = np.zeros(v["status"].shape, dtype=bool)
+    index = np.flatnonzero(np.isfinite(v["p_spot"])) if "p_spot" in v else ()
+    if len(index):
+        lifted.flat[index] = lifts_off(problem_of(v, index), np.broadcast_to(v["lam0"], lifted.shape).flat[index])
+    return lifted
 
 
 def of_body(v, name):
@@ -145,12 +157,17 @@ def _stress_of_spots(v, index):
     return np.fmin(np.where(np.isnan(value), alone, value), least)
 
 
-def again(v, index, x=(0.0, 1.0)):
-    """The problem of some of the cases, given by their radii, and what it was solved with; profiles at the radii x."""
+def problem_of(v, index):
+    """The problem of some of the cases, given by their radii."""
     shape = v["status"].shape
     own = {name: v[name] for name in parameters_of(v) if name in v and name not in (*NUMERICS, *CONTROLS)}
     own = {name: np.broadcast_to(values, shape).ravel()[index] for name, values in {"a": v["a"], **own}.items()}
-    problem = Problem.of(**own)
+    return Problem.of(**own)
+
+
+def again(v, index, x=(0.0, 1.0)):
+    """The problem of some of the cases, given by their radii, and what it was solved with; profiles at the radii x."""
+    problem = problem_of(v, index)
     solution, solved = solve(problem, x), v["status"].ravel()[index] == Status.CONVERGED
     solution.status[~solved] = Status.INVALID_INPUT
     return problem, solution

@@ -27,6 +27,10 @@ _BODY = 1.25
 #: At least this part of the pressure: in a layer thicker than a (0.39 was seen); in a thinner soft one this times
 #: (1 - 2 nu)/(1 - nu), its stress where it cannot give way sideways (0.59); in a hard one times 1 - 2 nu (0.6).
 _THICK, _SOFT, _HARD = 0.3, 0.5, 0.4
+#: Below asperities that feel the layer, of the cell alone, over the largest pressure of the spot: below spots narrower
+#: than _WIDE h the stress is between these (0.40 and 0.82 of 1,400 cells were seen), below others at most
+#: _LAYER max(n, 1)^(2/3) times this pressure (1.15).
+_WIDE, _OF_SPOT = 0.6, (0.35, 0.95)
 #: Largest pressure of a hard layer, in a ring, over that of the centre (2.6 over the larger of p(0) and the mean).
 _RING = 4.0
 
@@ -73,13 +77,27 @@ def of_asperities(v) -> Bounds:
     high = np.where(2 * p0 < pressure, np.inf, high)  # of a ring the centre says little
     small = ~layered | (v["b"] < v["h"])  # else the spot is deeper than the layer
     bounds, alone = _where(_known(v) & small & (nu >= 0), Bounds(low, high)), one_asperity(v)
-    return Bounds(np.fmin(bounds.low, alone), np.fmin(bounds.high, alone))
+    bounds = Bounds(np.fmin(bounds.low, alone), np.fmin(bounds.high, alone))
+    return _on_body(v, bounds, whole["mises1"].high) if "p_spot" in v else bounds
+
+
+def _on_body(v, others: Bounds, further) -> Bounds:
+    """Those of asperities that feel the layer, where p_spot is known; else those of `others`. further : of the nominal
+    pressure"""
+    p_spot, narrow = v["p_spot"], v["b"] < _WIDE * v["h"]
+    low = np.where(narrow, _OF_SPOT[0] * p_spot, 0.0)
+    high = np.where(narrow, _OF_SPOT[1], _LAYER * np.maximum(v["n"], 1.0) ** (2 / 3)) * p_spot
+    known = _where(_known(v) & (_nu(v) >= 0), Bounds(low - further, high + further))
+    felt = np.isfinite(p_spot)
+    return Bounds(*(np.where(felt, *pair) for pair in zip(known, others, strict=True)))
 
 
 def one_asperity(v) -> np.ndarray:
-    """The stress below an asperity that bears the whole load: none bears more; NaN without its radius Ra."""
+    """The stress below an asperity that bears the whole load: none bears more; NaN without its radius Ra, and of
+    asperities that feel the layer, which bends below them."""
     E = np.where(v["layered"], v["E1*"], 1.0) / (1 + v["m"])  # of asperities and of what they touch in series
-    return stress_below_one(v["P"], E, v.get("Ra", np.nan), _nu(v))
+    alone = stress_below_one(v["P"], E, v.get("Ra", np.nan), _nu(v))
+    return np.where(np.isfinite(v["p_spot"]), np.nan, alone) if "p_spot" in v else alone
 
 
 @np.errstate(all="ignore")
@@ -91,7 +109,7 @@ def stress_below_one(P, E, Ra, nu):
 @np.errstate(all="ignore")
 def spot_alone(v) -> np.ndarray:
     """The stress below the central spot as of a sphere: its largest pressure, less the nominal one, over q."""
-    return (v["p_max"] - v["p0"]) / yield_pressure(_nu(v))
+    return (np.fmax(v["p_max"], v.get("p_spot", np.nan)) - v["p0"]) / yield_pressure(_nu(v))
 
 
 def _nu(v) -> np.ndarray:

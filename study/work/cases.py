@@ -97,7 +97,7 @@ def compute(task: Parcel) -> dict[str, np.ndarray]:
         problem = Problem.of(**task.parameters)
         solution = solve(problem, task.x)
         arrays = arrays_of(solution, task.results, task.profiles)
-        arrays |= stresses_of(problem, solution) if task.stresses else {}
+        arrays |= stresses_of(problem, solution, task.stresses) if task.stresses else {}
         return arrays | (derivatives_of(problem, solution, task) if task.inputs else {})
 
 
@@ -110,13 +110,18 @@ def arrays_of(solution: Solution, results: tuple[str, ...], profiles: tuple[str,
     return {name: np.asarray(array, dtype=(INTEGERS | TRUTHS).get(name, np.float64)) for name, array in arrays.items()}
 
 
-def stresses_of(problem: Problem, solution: Solution) -> dict[str, np.ndarray]:
-    """The largest stresses and their places: NAME, NAME_r, NAME_z -> (B,)."""
+def stresses_of(problem: Problem, solution: Solution, names: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """The largest stresses and their places: those of the `names` NAME, NAME_r, NAME_z -> (B,)."""
+    from solver.yields.below import central_spot
     from solver.yields.contact import of_contacts  # most studies want none
 
-    stresses = of_contacts(problem, solution)
-    ends = ("", "_r", "_z")
-    return {f"{name}{end}": part for name, parts in stresses.items() for end, part in zip(ends, parts, strict=True)}
+    places, made = {("", "_r", "_z"): of_contacts(problem, solution)}, {}
+    if {*central_spot.SPOT_EXTREMES} & {*names}:
+        places["", "_z"] = central_spot.of_contacts(problem, solution)
+    for ends, stresses in places.items():
+        for name, parts in stresses.items():
+            made |= {f"{name}{end}": part for end, part in zip(ends, parts, strict=True)}
+    return made
 
 
 def derivatives_of(problem: Problem, solution: Solution, task: Parcel) -> dict[str, np.ndarray]:

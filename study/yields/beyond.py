@@ -28,8 +28,9 @@ def validity_at(again: Again, crossing: Crossing) -> np.ndarray:
     # without strengths, whose masks say that something yields: at these loads it does
     numbers = {name: value for name, value in problem.parameters.items() if name not in STRENGTHS}
     radii = again.scene.radii() if again.scene else {}
+    results = results_of(problem.micro, felt=bool(problem.feels_layer().any()))
     numbers |= {name: of_all_cases(value.to_xarray(), again.dims, again.shape)[rows] for name, value in radii.items()}
-    flags[rows] = validity_of_rows(numbers | arrays_of(solution, results_of(problem.micro), ())).values
+    flags[rows] = validity_of_rows(numbers | arrays_of(solution, results, ())).values
     return flags
 
 

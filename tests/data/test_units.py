@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 import study
+from solver.yields.below.central_spot import SPOT_EXTREMES
 from solver.yields.extremes import EXTREMES
 from study.data import derived
 from study.data.units import factor
@@ -32,7 +33,9 @@ FACTORS = {
             "Y2",
             "Y_punch",
             "sigma0",
+            "p_spot",
             *EXTREMES,
+            *SPOT_EXTREMES,
         ),
         2e11,
     ),  # Pa

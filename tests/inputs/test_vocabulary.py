@@ -10,6 +10,7 @@ from study.inputs.vocabulary import PARAMETERS, VOCABULARY, attributes, check, n
 # The largest stresses, each with its place.
 STRESSES = ("mises1", "mises2", "tresca1", "tresca2", "s1_surface", "s1_layer", "sr_interface1", "tau_interface")
 STRESSES += ("sz_interface_max", "sz_interface_min")
+SPOTS = ("mises1_spot", "mises2_spot", "sr_interface1_spot", "sz_interface_spot_max", "tau_interface_spot")
 # Dimension in powers of kg, m, s and the printed unit of every quantity that has one.
 FORCE, LENGTH, PRESSURE = (1, 1, -2), (0, 1, 0), (1, -1, -2)
 STIFFNESS, AREA, PER_AREA = (1, 0, -2), (0, 2, 0), (0, -2, 0)
@@ -36,7 +37,7 @@ DIMENSIONS = {
     "p_peak": (PRESSURE, "Pa"),
     "D_body": (LENGTH, "m"),
     "E_eff": (PRESSURE, "Pa"),
-    **dict.fromkeys(STRESSES, (PRESSURE, "Pa")),
+    **dict.fromkeys((*STRESSES, *SPOTS, "p_spot"), (PRESSURE, "Pa")),
     **dict.fromkeys(("flat_radius", "tip_radius", "edge_radius", "z0", "D_off", "a_off", "a_in"), (LENGTH, "m")),
     **dict.fromkeys(("P_off", "P_in"), (FORCE, "N")),
     "sigma0": (PRESSURE, "Pa"),
@@ -59,7 +60,7 @@ PURE = {
     "model_check", "nodes", "max_iterations", "Ar_An", "plastic_share", "lam0", "lam", "status", "error",
     "profile_error", "model_error", "model_used", "residual", "iterations", "nodes_used", "validity", "An_ratio",
     "spots", "x", "case", "label", "shape", "half_angle", "tip", "shape_power", "shape_coefficient", "adhesion",
-    "branch", "stable", "asperities_on", "asperities_used",
+    "branch", "stable", "asperities_on", "asperities_used", "r_spot", *(f"{name}_z" for name in SPOTS),
 } | {f"{name}_{axis}" for name in STRESSES for axis in "rz"}
 # fmt: on
 

@@ -18,10 +18,10 @@ from ...kernels.two_layers import TwoLayers
 from ...numerics import special
 from ...numerics.quadrature import gauss_legendre, lagrange
 from .rows import of_kernel, refuse_cells, refuse_layers
-from .spot import POINTS, Cell, Spots, spots
+from .spot import Cell, Spots, panels_of, spots
 from .sums import LATTICES, lattice_waves
 
-__all__ = ["axis_stresses", "cell_axis"]
+__all__ = ["axis_stresses", "cell_axis", "lone_on_axis", "long_waves", "transform"]
 
 #: Waves above u = kh = _CUT reach the interface with less than 1e-15 of their pressure.
 _CUT = 38.0
@@ -31,6 +31,9 @@ _AT = 1e-9
 _THIN = 1.0
 #: Points on each panel of t. The panels are halved so often towards t = 0, where those of a small depth are needed.
 _POINTS, _HALVINGS = 20, 48
+#: Points of a transform on a panel, beyond half of those of phi and half of the radians of its waves, and how many
+#: waves have the same (tests/laws/cell/test_rows.py).
+_MORE, _WAVES = 14, 200
 
 
 def cell_axis(
@@ -107,31 +110,32 @@ def axis_stresses(cell: Cell, spot: Spots, layers: TwoLayers, z: np.ndarray, sid
 def _half_space(spot, lattice, z, nu):
     """sr and sz (Z,) of the waves G != 0 in a half-space of the layer's material."""
     b = spot.b[0]
-    low, weights, between, lows = _long_waves(lattice, b)
+    low, weights, between, lows = long_waves(lattice, b)
     of_low, of_between = weights * transform(spot, low), lows * transform(spot, between)
 
     def less(shape):
         """Sum less integral of the long waves, of a function of kz, (Z,)."""
         return shape(np.outer(z, low)) @ of_low - shape(np.outer(z, between)) @ of_between
 
-    E, F = _whole(spot, z)
+    E, F = lone_on_axis(spot, z)
     sz = less(lambda x: -(1 + x) * np.exp(-x)) - (E + F)
     sr = less(lambda x: (x - 1 - 2 * nu) * np.exp(-x)) + F - (1 + 2 * nu) * E
     return sr / 2, sz
 
 
-def _long_waves(lattice, b):
-    """Waves of the lattice (W,) with their weights c w, and points k (K,) with the weights of ∫ w k dk."""
-    D = 12 / (LATTICES[lattice] - b)
-    k, c = lattice_waves(lattice, 0.0, b)
+def long_waves(lattice, b, r=0.0):
+    """Waves of the lattice (W,) with their weights c w, and points k (K,) with the weights of ∫ w k dk, of the field of
+    a spot of radius b at radii up to r from its axis."""
+    D = 12 / (LATTICES[lattice] - b - r)
+    k, c = lattice_waves(lattice, 0.0, b + r)
     nodes, weights = gauss_legendre(16)
-    panels = max(12, int(np.ceil(12 * D * b / 4)))
+    panels = max(12, int(np.ceil(12 * D * (b + r) / 4)))
     between = ((np.arange(panels)[:, None] + nodes) / panels * 12 * D).ravel()
     lows = np.tile(weights / panels * 12 * D, panels) * between * special.erfc((between - 6 * D) / D) / 2
     return k, c, between, lows
 
 
-def _whole(spot, z):
+def lone_on_axis(spot, z):
     """E = ∫ q^ k e^(-kz) dk and F = ∫ q^ k (kz) e^(-kz) dk (Z,) of one spot, by -phi'(t)/t at points that are halved
     towards t = 0."""
     edges = np.append(0.0, spot.b[0] * 0.5 ** np.arange(_HALVINGS, -1, -1.0))
@@ -144,8 +148,7 @@ def _whole(spot, z):
 
 def _between(spot, values, t):
     """A function with `values` at the points of a spot, at t (T,): the polynomial through the points of its panel."""
-    b, size = spot.b[0], POINTS
-    panels = len(values) // size
+    b, (panels, size) = spot.b[0], panels_of(len(values))
     index = np.clip((t / b * panels).astype(int), 0, panels - 1)
     out = np.empty_like(t)
     for j in range(panels):
@@ -155,19 +158,12 @@ def _between(spot, values, t):
 
 
 def transform(spot, k):
-    """q^(k) = ∫ phi cos kt dt (K,) of one spot, exact for the polynomial of each panel whatever k: by Legendre
-    polynomials and spherical Bessel functions."""
-    b, size = spot.b[0], POINTS
-    panels = len(spot.phi[0]) // size
-    half, x, w = b / panels / 2, *gauss_legendre(size)
-    P = np.polynomial.legendre.legvander(2 * x - 1, size - 1)
-    series = (2 * np.arange(size) + 1)[:, None] * (P * w[:, None]).T @ spot.phi[0].reshape(panels, size).T
-    order = np.arange(size)
-    waves = special.spherical_jn(order[:, None], k * half)  # (size, K)
-    out = np.zeros_like(k)
-    for j in range(panels):
-        even = (series[:, j] * np.where(order % 4 == 0, 1.0, np.where(order % 4 == 2, -1.0, 0.0))) @ waves
-        odd = (series[:, j] * np.where(order % 4 == 1, -1.0, np.where(order % 4 == 3, 1.0, 0.0))) @ waves
-        middle = (2 * j + 1) * half * k
-        out += 2 * half * (np.cos(middle) * even + np.sin(middle) * odd)
+    """q^(k) = ∫ phi cos kt dt (K,) of one spot, to rounding: of shorter waves with more points."""
+    b, (panels, size) = spot.b[0], panels_of(len(spot.phi[0]))
+    order, out = np.argsort(k), np.empty_like(k)
+    for some in np.array_split(order, 1 + len(k) // _WAVES) if len(k) else ():
+        x, w = gauss_legendre(_MORE + size // 2 + int(np.ceil(k[some[-1]] * b / panels / 2)))
+        t = ((np.arange(panels)[:, None] + x) * (b / panels)).ravel()
+        phi = _between(spot, spot.phi[0], t) * np.tile(w * (b / panels), panels)
+        out[some] = np.cos(np.outer(k[some], t)) @ phi
     return out

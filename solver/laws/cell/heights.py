@@ -13,7 +13,7 @@ from ...numerics.quadrature import gauss_legendre
 from .. import spread
 from .summits import at
 
-__all__ = ["angle", "means", "peak", "table"]
+__all__ = ["angle", "highest", "means", "peak", "table"]
 
 #: Gauss points on each of both parts of a piece of the density, of spots; and of filled cells. With them the means
 #: without a layer are those of :mod:`..spread` to 1e-9 (tests/laws/heights/test_heights_on_body.py).
@@ -204,15 +204,23 @@ def table(lookup, density, at_x, sigma, relief, lam):
     return np.log([np.append(q[: last + 1], beyond), lams])
 
 
-def peak(rows, q, delta):
-    """p_max/p* (B, m) under the highest summit, of summits of the rows (B, K), at q and δ (B, m)."""
-    k = (2 / 3) * q
+def highest(rows, q, delta):
+    """c = b/Bbar (B, m) of the spot of the highest summit, of summits of the rows (B, K), at q and δ (B, m)."""
+    return np.sin(_angle_of_highest(rows, q, delta))
+
+
+def _angle_of_highest(rows, q, delta):
 
     def series(c):  # the approach has no P and no F
         (G, dG), (B, dB), none = at(rows, 0, c), at(rows, 3, c), np.zeros_like(c)
         return (G, none, B, none), (dG, none, dB, none)
 
-    theta = angle(delta, k, series)
+    return angle(delta, (2 / 3) * q, series)
+
+
+def peak(rows, q, delta):
+    """p_max/p* (B, m) under the highest summit, of summits of the rows (B, K), at q and δ (B, m)."""
+    k, theta = (2 / 3) * q, _angle_of_highest(rows, q, delta)
     (G, _), (B, _) = (at(rows, which, np.ones_like(q)) for which in (0, 3))
     c, filled = np.sin(theta), np.exp(G) - 2 * k * B
     (Q, _), (D, _) = (at(rows, which, c) for which in (2, 5))

@@ -17,7 +17,7 @@ import numpy as np
 from ...numerics.quadrature import gauss_legendre
 from .sums import LATTICES, lone_waves, neighbours, waves
 
-__all__ = ["Cell", "Spots", "spots"]
+__all__ = ["Cell", "Spots", "panels_of", "pieces", "spots"]
 
 #: Points on a panel of the radius, least number of points, and the widest panel in h (tests/laws/cell/test_rows.py).
 POINTS, _LEAST, _WIDEST = 24, 48, 5.0
@@ -131,6 +131,11 @@ def points(cell, reach, sparing=False):
         n = max(n, int(np.ceil(reach * cell.pitch / _WIDEST)))
     x, w = gauss_legendre(POINTS)
     return ((np.arange(n)[:, None] + x) / n).ravel(), np.tile(w / n, n)
+
+
+def panels_of(count):
+    """How many panels `count` points of a spot are on, and how many are on each."""
+    return (1, count) if any(count == few for few, _ in FEW) else (count // POINTS, POINTS)
 
 
 def kernels(N, ends, t, w):

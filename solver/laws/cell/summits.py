@@ -25,9 +25,9 @@ import numpy as np
 from ...numerics.kept import Kept
 from .family import REACH, chebyshev_series, in_groups
 from .rows import of_kernel
-from .spot import Cell, kernels, pieces, points, spots
+from .spot import Cell, Spots, kernels, pieces, points, spots
 
-__all__ = ["SUMMIT_NUMBERS", "Lookup", "Summit", "at", "clenshaw", "summit"]
+__all__ = ["SUMMIT", "SUMMIT_NUMBERS", "Lookup", "Parts", "Summit", "at", "clenshaw", "parts", "summit"]
 
 #: The numbers of a summit before its series: b/h over c, 1/asinh and the largest c of the series: that of the family of
 #: disc cells; and whether they go on beyond as straight lines in ln c, 1, or constant, 0, where that family ends early.
@@ -38,6 +38,8 @@ _TERMS, _MORE, _ENOUGH, _SMALL = ((2.0, 16), (24.0, 28), (np.inf, 56)), 1.5, 130
 #: Polynomials of a lookup: their number for each term of the series, and their degree: right to 1e-9.
 _PIECES, _DEGREE = 6, 5
 _kept = Kept(2e7)
+SUMMIT = "summit"
+"""`cell` of the :class:`~solver.laws.law.Law` of random heights."""
 
 
 class Summit(NamedTuple):
@@ -83,8 +85,33 @@ def _made(disc, kernel, m):
     return series if np.isfinite(series).all() else none
 
 
-def _corrections(cell, b, of_lattice, lone):
-    """G, P, Q, B, F and D (6, S) at radii b (S,), by the equation of the module."""
+class Parts(NamedTuple):
+    """Spots of radii b (S,) of their own load: phi and -phi'(t)/t (S, T, 3) of A, of the shape and of p, each alone, at
+    points t with weights w (S, T); their load and pressure in the middle (S, 3), and phi at b (S, 3); and the
+    :class:`~.spot.Spots` of equal heights."""
+
+    t: np.ndarray
+    w: np.ndarray
+    phi: np.ndarray
+    fall: np.ndarray
+    load: np.ndarray
+    middle: np.ndarray
+    at_b: np.ndarray
+    equal: Spots
+
+    def spots(self, p):
+        """:class:`~.spot.Spots` under the nominal pressures p (S,)."""
+        of_shape, of_others = self.at_b[:, 1] / self.at_b[:, 0], self.at_b[:, 2] / self.at_b[:, 0]
+        A = of_shape - p * of_others
+        factors = np.stack([A, -np.ones_like(A), p], axis=1)
+        phi, fall = ((values * factors[:, None]).sum(axis=2) for values in (self.phi, self.fall))
+        load, middle = ((values * factors).sum(axis=1) for values in (self.load, self.middle))
+        return Spots(self.equal.b, load, A, middle, self.t, self.w, phi, fall)
+
+
+def parts(cell, b, of_lattice, lone):
+    """:class:`Parts` of radii b (S,) by the equation of the module. cell : of disc cells; of_lattice, lone :
+    :func:`~.spot.pieces` of it and of a lone spot"""
     rule = points(cell, b.max(), sparing=True)
     t, w = (b[:, None] * values for values in rule)
     equal = spots(cell, b, of_lattice, rule)
@@ -100,6 +127,12 @@ def _corrections(cell, b, of_lattice, lone):
     load = 2 * np.pi * (w[:, None] @ phi)[:, 0]
     fall = (d_own[:, :-1] @ phi - np.stack(slopes, axis=2)) / (np.pi * t[..., None])
     middle = (w[:, None] @ fall)[:, 0]
+    return Parts(t, w, phi, fall, load, middle, at_b, equal)
+
+
+def _corrections(cell, b, of_lattice, lone):
+    """G, P, Q, B, F and D (6, S) at radii b (S,)."""
+    _, _, _, _, load, middle, at_b, _ = parts(cell, b, of_lattice, lone)
     # phi(b) = 0 gives A = (part of the shape) - p (part of the others)
     of_shape, of_others = at_b[:, 1] / at_b[:, 0], at_b[:, 2] / at_b[:, 0]
     logs = np.log([

@@ -101,7 +101,7 @@ def along(axes, name: str, values: dict[str, np.ndarray], shown: Stresses, units
         where = {"sr_above": ", layer", "sr_below": ", body"}.get(key, "")
         look = {"color": colour, "linestyle": _BELOW if side == "below" else dashes}
         axes.plot(shown.r * units.a, stress / units.one, label=symbols[units.sliding] + where, **look)
-    for extreme, key in _RINGS[name].items():
+    for extreme, key in {extreme: key for extreme, key in _RINGS[name].items() if extreme in shown.largest}.items():
         r, value = float(shown.largest[f"{extreme}_r"]), float(shown.largest[extreme])
         sign = np.sign(np.interp(r, shown.r, values[key])) if extreme == "tau_interface" else 1.0
         colour = _CURVES[key.partition("_")[0]][2]

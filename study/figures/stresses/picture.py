@@ -9,22 +9,30 @@ from matplotlib.figure import Figure
 
 from ...fields import contact_of, friction
 from ...in_words.inputs import is_rigid
+from ...inputs.definition import StudyError
 from ...rules.rule import RULES, broken
+from ...terminal import shown as shown_text
 from ..labels import stated, value_text, wrapped
 from ..registry import TWO_COLUMNS
 from ..style import StyledFigure, style
 from .panels import NAMES, Units, along, mark, outline, section
 from .places import DEPTH, Stresses, of_one_contact
+from .spots import of_central_spot
 
 #: Layer and body have one scale of colours if their largest stresses differ by less than this factor.
 _ONE_SCALE = 2.0
 _BOTH, _MAPS = "viridis", {"layer": "Oranges", "body": "Blues"}  # of one scale, of two
 _SHARE = 0.3, 0.6  # of the height: the layer has no less, and no more
 _LETTERS = 130  # on a line above the figure
+_BELOW = ("contact", "spot")
 
 
 def plot_stresses(
-    contact: xr.Dataset | None = None, mu: float = 0.0, sigma_res: float | str = 0.0, **parameters: Any
+    contact: xr.Dataset | None = None,
+    mu: float = 0.0,
+    sigma_res: float | str = 0.0,
+    below: str = "contact",
+    **parameters: Any,
 ) -> Figure:
     """A figure of the stresses of one contact: docs/stresses.md.
 
@@ -38,6 +46,8 @@ def plot_stresses(
     ----------
     contact : one contact of `study.solve` or of a results file: a dataset without dimensions, but for `x`
     mu, sigma_res : as of `study.stresses`; with mu > 0 the section is the plane y = 0, and the punch moves to the right
+    below : "contact"; or "spot", the central spot of asperities that feel the layer, up to half of the pitch beside its
+        axis, where mu is 0. The stresses are then means over the angle, those of the nominal pressure included
     parameters : those of `study.solve` of one contact, in place of it
 
     Returns
@@ -46,7 +56,8 @@ def plot_stresses(
 
     Raises
     ------
-    StudyError : several contacts, one without a solution, or as `study.stresses`
+    StudyError : several contacts, one without a solution, a spot of asperities that do not feel the layer, or as
+        `study.stresses`
 
     Examples
     --------
@@ -57,12 +68,23 @@ def plot_stresses(
     mu = friction(mu)
     contact = contact_of("plot_stresses", contact, parameters)
     with style():
-        return drawn(contact, mu, sigma_res, StyledFigure)
+        return drawn(contact, mu, sigma_res, StyledFigure, _checked(below, mu))
 
 
-def drawn(contact: xr.Dataset, mu: float, sigma_res: float | str, new: Callable[..., Figure]) -> Figure:
+def _checked(below: str, mu: float) -> str:
+    if below not in _BELOW:
+        raise StudyError([f'plot_stresses: below = {shown_text(below)}: must be "contact" or "spot"'])
+    if below == "spot" and mu > 0:
+        raise StudyError(['plot_stresses: below = "spot" is drawn without friction: leave out mu'])
+    return below
+
+
+def drawn(
+    contact: xr.Dataset, mu: float, sigma_res: float | str, new: Callable[..., Figure], below: str = "contact"
+) -> Figure:
     """The figure of `plot_stresses`. `new` makes an empty figure."""
-    contact, shown = of_one_contact(contact, mu, sigma_res)
+    spot = below == "spot"
+    contact, shown = of_central_spot(contact, sigma_res) if spot else of_one_contact(contact, mu, sigma_res)
     largest = {name: _shown_most(shown, name) for name in NAMES if getattr(shown, name)}
     lines = {"surface": shown.surface} | ({"interface": shown.interface} if shown.interface else {})
     figure = new(figsize=(TWO_COLUMNS, 3.0 if len(lines) == 1 else 5.0), layout="constrained")
@@ -70,19 +92,19 @@ def drawn(contact: xr.Dataset, mu: float, sigma_res: float | str, new: Callable[
     heights = _heights(shown)
     sections = left.subgridspec(len(heights), 1, height_ratios=heights).subplots(sharex=True, squeeze=False)[:, 0]
     curves = right.subgridspec(len(lines), 1).subplots(sharex=True, squeeze=False)[:, 0]
-    _draw_sections(sections, contact, shown, largest)
+    _draw_sections(sections, contact, shown, largest, mu > 0)
     for axes, (name, values) in zip(curves, lines.items(), strict=True):
         finite = [np.abs(stress[np.isfinite(stress)]).max() for stress in values.values()]
         units = Units.of(contact, max(finite), mu > 0)
         along(axes, name, values, shown, units)
     for letter, axes in zip("abcd", (*sections, *curves), strict=False):
         axes.set_title(f"({letter}) {axes.get_title(loc='left')}", loc="left", fontsize=8)
-        axes.axvline(units.a, color="0.5", linewidth=0.6, zorder=2)
-        if mu > 0:
-            axes.axvline(-units.a, color="0.5", linewidth=0.6, zorder=2)
+        for side in (1, -1) if mu > 0 or spot else (1,):
+            axes.axvline(side * shown.edge * units.a, color="0.5", linewidth=0.6, zorder=2)
     for axes in (sections[-1], curves[-1]):
         axes.set_xlabel(units.length("x" if mu > 0 else "r"))
-    figure.suptitle("\n".join(_above(contact, mu, sigma_res)), fontsize=7)
+    above = [*["Below the central spot; means over the angle"] * spot, *_above(contact, mu, sigma_res)]
+    figure.suptitle("\n".join(above), fontsize=7)
     return figure
 
 
@@ -92,13 +114,13 @@ def _shown_most(shown: Stresses, name: str) -> float:
     return largest if np.isfinite(largest) else float(getattr(shown, name).mises.max())
 
 
-def _draw_sections(panels, contact: xr.Dataset, shown: Stresses, largest: dict[str, float]) -> None:
+def _draw_sections(panels, contact: xr.Dataset, shown: Stresses, largest: dict[str, float], sliding: bool) -> None:
     """Layer and body, with one scale of colours or with two. largest : von Mises stress of each"""
     top = max(largest.values())
     one_scale = len(largest) == 2 and top < _ONE_SCALE * min(largest.values())
     for axes, (name, own_top) in zip(panels, largest.items(), strict=True):
         region, Y = getattr(shown, name), shown.Y[name]
-        units = Units.of(contact, top if one_scale else own_top, shown.r[0] < 0)
+        units = Units.of(contact, top if one_scale else own_top, sliding)
         filled = section(axes, region, top if one_scale else own_top, _BOTH if one_scale else _MAPS[name], units)
         limit = f"largest {units.text(own_top)}" if np.isfinite(shown.largest[NAMES[name]]) else "infinite at the cross"
         said = [f"{name}: {limit}"]
@@ -123,7 +145,8 @@ def _heights(shown: Stresses) -> list[float]:
     """Of the panels of layer and body: to scale, where the layer is neither very thin nor very thick."""
     if not (shown.layer and shown.body):
         return [1.0]
-    share = np.clip(shown.h / (shown.h + DEPTH), *_SHARE)
+    depth = DEPTH if shown.edge == 1 else shown.body.z[-1] - shown.h  # of a spot in pitches
+    share = np.clip(shown.h / (shown.h + depth), *_SHARE)
     return [share, 1 - share]
 
 

@@ -37,6 +37,7 @@ class Stresses(NamedTuple):
     largest : of `study.extremes`
     Y : yield strength of "layer" and "body", that of the call or of the named material; NaN where it is not known
     h : in a, None without a layer
+    edge : radius in a up to which there is contact: of the contact, or of a spot
     """
 
     layer: Region | None
@@ -44,14 +45,15 @@ class Stresses(NamedTuple):
     surface: dict[str, np.ndarray]
     interface: dict[str, np.ndarray]
     r: np.ndarray
-    largest: xr.Dataset
+    largest: xr.Dataset | dict[str, float]
     Y: dict[str, float]
     h: float | None
+    edge: float = 1.0
 
 
 def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tuple[xr.Dataset, Stresses]:
     """The contact without dimensions, and its stresses. Raises StudyError for several contacts, or one not solved."""
-    contact = _one(contact)
+    contact = one_contact(contact)
     refuse_without_stresses(Again.of(contact, "plot_stresses"), "plot_stresses")
     largest = extremes(contact, mu, sigma_res)
     bare, rigid = str(contact["base"].values) == "half_space", is_rigid(contact, "base")
@@ -73,18 +75,20 @@ def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tu
     return contact, Stresses(
         Region(r, within, layer) if h else None,
         Region(r, below, body) if len(below) else None,
-        *(surface, interface, r, largest, _yield_strengths(contact), h),
+        *(surface, interface, r, largest, yield_strengths(contact), h),
     )
 
 
-def _yield_strengths(contact: xr.Dataset) -> dict[str, float]:
+def yield_strengths(contact: xr.Dataset) -> dict[str, float]:
+    """Yield strengths of layer and body, in Pa or in units of the solver; NaN where they are not known."""
     again = Again.of(contact, "plot_stresses")
     unit = float(again.scene.unit) if again.scene else 1.0
     known = strengths(contact, again, {})
     return {body: known[body].item() * unit for body in ("layer", "body")}
 
 
-def _one(contact: xr.Dataset) -> xr.Dataset:
+def one_contact(contact: xr.Dataset) -> xr.Dataset:
+    """A contact without dimensions. Raises StudyError for several, and for one that has no solution."""
     if not isinstance(contact, xr.Dataset) or "status" not in contact:
         raise StudyError(["plot_stresses takes a dataset of study.solve or of a results file, with its status"])
     several = {dim: contact.sizes[dim] for dim in contact["status"].dims if contact.sizes[dim] != 1}

@@ -1,0 +1,94 @@
+"""The pressure in the spots of asperities that feel their bodies: where it is largest, and whether it is below 0."""
+
+import numpy as np
+
+from ..body import BODIES
+from ..laws import LAWS, elastic_plastic
+from ..laws.cell.members import members, peaks_of
+from ..laws.cell.peak import NARROW, U
+from ..laws.cell.summits import SUMMIT
+from ..scaling import dimensionless, law_of, of_one_law
+
+#: Of one layer the largest pressure stays in the middle where n is at most this: L - 1 is nowhere above 1.2 there, and
+#: it leaves at 1.6 (solver/laws/cell/peak.py).
+_HARD = 2.0
+#: The pressure in the middle of a spot falls below 0 where n is about 1e5, in no case yet where it is 1e4
+#: (tests/laws/cell/test_peak.py).
+_LIFTS = 1e4
+
+
+def pressure_in_spots(problem, solution, lam0):
+    """p_spot and r_spot (2, B): the largest pressure in the central spot, and its radius over that of the spot; NaN
+    where asperities do not feel the body. `solution` is in the units of `problem`; lam0 : (B,), λ in the centre.
+
+    Of random heights the spot is that of the highest summit. Where spots yield the pressure in the ring exceeds that of
+    the middle by as much less as the middle does its mean.
+    """
+    felt = problem.feels_layer() & np.isfinite(solution.p_max)
+    made = np.where(felt, [solution.p_max, np.zeros(len(problem))], np.nan)
+    p0, p_max = solution.p0 / problem.E2, solution.p_max / problem.E2
+    for index, part, body in _of_one_law(problem, felt & _may_be_hard(problem)):
+        law = LAWS[str(part.micro[0])]
+        b = largest_radius(part, body, lam0[index], p0[index])
+        for rows, member in _wide_spots(part, body, b):
+            here, some, own = index[rows], part.take(rows), b[rows]
+            unit, middle, ease = (body.E / (part.Ra * np.sqrt(part.Nbar)))[rows], p_max[here], 1.0
+            if law.yielded:
+                bound = law_of(some, BODIES[str(some.base[0])](some))
+                middle, ease = elastic_plastic.in_the_middle(np.sqrt(np.pi) * own[:, None], *bound.own)
+                middle = bound.p_star * middle
+            others = (p0[here] / unit,) * member.alone
+            largest, made[1, here] = peaks_of(member).at(np.minimum(own, member.reach), middle / unit, *others)
+            made[0, here] += ease * (largest * unit - middle) * problem.E2[here]
+    return made
+
+
+def lifts_off(problem, lam):
+    """(B,) bool: the pressure is below 0 inside of a spot; lam : (B,), the largest λ of the contact. Of random heights
+    it is not looked for."""
+    lifted, felt = np.zeros(len(problem), dtype=bool), problem.feels_layer()
+    problem = problem.but(base=np.where(problem.base == "auto", "layered", problem.base))
+    for index, part, body in _of_one_law(problem, felt & _may_be_hard(problem, _LIFTS)):
+        b = np.sqrt(lam[index] / np.pi)
+        for rows, member in _wide_spots(part, body, b, _LIFTS):
+            if not member.alone:
+                lifted[index[rows]] = peaks_of(member).lifts_off(np.minimum(b[rows], member.reach))
+    return lifted
+
+
+def _may_be_hard(problem, hard=_HARD):
+    return (problem.base == "stack") | (problem.n > hard)
+
+
+def _of_one_law(problem, some):
+    """Yield indices of `some` (B,) of the cases that have one law and base, these in units R = E2* = 1, and their
+    bodies."""
+    index = np.flatnonzero(some)
+    scaled = dimensionless(problem.take(index))
+    for rows in of_one_law(scaled):
+        part = scaled.take(rows)
+        yield index[rows], part, BODIES[str(part.base[0])](part)
+
+
+def largest_radius(part, body, lam0, p0):
+    """Radius (B,) of the largest spot in the centre, in l, of cases of one law in units R = E2* = 1; body : theirs;
+    lam0, p0 : (B,), λ and p in the centre."""
+    if LAWS[str(part.micro[0])].cell != SUMMIT:
+        return np.sqrt(lam0 / np.pi)
+    bound = law_of(part, body)
+    q = (p0 / bound.p_star)[:, None]
+    y = bound.from_pressure(q)
+    return bound.law.spot(y, q, *bound.own)[:, 0] / np.sqrt(np.pi)
+
+
+def _wide_spots(part, body, b, hard=_HARD):
+    """Yield rows of cases of one family whose pressure may be largest beside the middle, and the
+    :class:`~solver.laws.cell.members.Member`. b : (B,), in l."""
+    pitch = 1 / (body.h * np.sqrt(part.Nbar))
+    wide = np.flatnonzero(b * pitch > NARROW)
+    if not len(wide):
+        return
+    different, which = members(LAWS[str(part.micro[0])].cell, pitch[wide], body.kernel.take(wide), body.m[wide])
+    for j, member in enumerate(different):
+        if member.cell.L1(U).max() > hard - 1:
+            yield wide[which == j], member

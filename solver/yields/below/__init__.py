@@ -1,0 +1,1 @@
+"""Stresses below asperities that feel the coated body (docs/stresses.md, Below a spot)."""

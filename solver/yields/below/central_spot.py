@@ -1,0 +1,179 @@
+"""The largest stresses below the central spot of asperities that feel the coated body: docs/stresses.md, Below a spot.
+
+They are those of the waves of the cell on the axis of the spot and those of the nominal pressure on the axis of the
+contact, which is the same. At the interface tension and shear are looked for up to half of the pitch beside the axis.
+"""
+
+import numpy as np
+
+from ...fields.contact import have_fields, pressures_of
+from ...fields.invariants import mises
+from ...laws.cell.sums import LATTICES
+from ...scaling import dimensionless
+from ...threads import one_blas_thread
+from ..contact import alike
+from ..extremes import farthest_of
+from ..peaks import chebyshev_nodes, in_patch
+from ..spots import with_elastic_spots
+from .felt_cells import felt_cells
+
+#: Name -> the function of sr, st, sz, trz whose largest value it is, and where: on the axis in the layer or in the
+#: body, on the axis at the interface in the layer, or at the interface.
+SPOT_EXTREMES = {
+    "mises1_spot": (mises, "layer"),
+    "mises2_spot": (mises, "body"),
+    "sr_interface1_spot": (lambda sr, st, sz, trz: sr, "above"),
+    "sz_interface_spot_max": (lambda sr, st, sz, trz: sz, "interface"),
+    "tau_interface_spot": (lambda sr, st, sz, trz: np.abs(trz), "interface"),
+}
+#: Those that may not exist: below _NOTHING of the largest pressure they are rounding, and 0.
+_MAY_LACK, _NOTHING = ("sz_interface_spot_max", "tau_interface_spot"), 1e-11
+#: Nodes of the polynomials on each panel. The first panel is this part of the least length over which stresses change,
+#: and each next one twice as wide (tests/yields/test_central_spot.py has twice as many nodes).
+_NODES, _FIRST = 10, 0.5
+#: Farther below the interface than this many pitches the waves of the cell are rounding.
+_DEPTH = 6.0
+
+
+@one_blas_thread()
+@np.errstate(all="ignore")  # a number that goes wrong is a NaN
+def of_contacts(problem, solution, mu=0.0, residual=0.0):
+    """Name of :data:`SPOT_EXTREMES` -> (2, B): the largest value in the unit of E2, and its depth in a. NaN where the
+    asperities do not feel the layer, where the contact is not solved and of bodies that are rigid; the depth is NaN of
+    what is not there.
+
+    problem, solution : B cases and their :class:`~solver.solution.Solution`, of which a, status and model_used count.
+        Below spots that yield the stress is that of spots which do not
+    mu : >= 0, friction, of the nominal pressure alone; residual : (B,) or a number, biaxial stress of the layer, in the
+        unit of E2
+    """
+    made = {name: np.full((2, len(problem)), np.nan) for name in SPOT_EXTREMES}
+    for cells, loaded, (index, p_max) in _cells(problem, solution, mu, residual):
+        for name, values in _largest(loaded, cells, p_max).items():
+            made[name][:, index] = values
+    for values in made.values():
+        values[0] *= problem.E2
+    return made
+
+
+@one_blas_thread()
+@np.errstate(all="ignore")
+def section(problem, solution, r, z, body, residual=0.0):
+    """sr, st, sz and trz (4, Z, R) below the central spot of one contact, in the unit of E2, the nominal stresses on
+    the axis of the contact and about it included; None where its asperities do not feel the layer.
+
+    r : (R,), radii from the axis in the pitch l, less than the distance of neighbours less b; z : (Z,), depths in l
+    body : bool, in the body; residual : biaxial stress of the layer, in the unit of E2
+    """
+    for cells, loaded, _ in _cells(problem, solution, 0.0, residual):
+        cell = cells[0]
+        whole = loaded.stresses(r * cell.pitch, z * cell.pitch, body)[:, 0, 0]
+        return (whole + cell.unit * cell.stresses(cell.b[0], r, z, body)) * problem.E2[0] if cell else None
+    return None
+
+
+def spot_of(problem, solution):
+    """Radius of the central spot, the pitch and the thickness of the layer of one contact, in units of a: (3,), NaN
+    where its asperities do not feel the layer; and half of the distance of neighbours over the pitch."""
+    for cells, loaded, _ in _cells(problem, solution, 0.0, 0.0):
+        if cells[0]:
+            return np.array([cells[0].b[0] * cells[0].pitch, cells[0].pitch, loaded.h[0]]), beside(cells[0])
+    return np.full(3, np.nan), np.nan
+
+
+def _cells(problem, solution, mu, residual):
+    """Yield the cells of contacts, their :class:`~..loaded.Loaded`, and their indices and largest pressures in E2*."""
+    index = np.flatnonzero(problem.feels_layer() & have_fields(problem, solution))
+    if not len(index):
+        return
+    residual = np.broadcast_to(residual, len(problem)) / problem.E2
+    part, ended = problem.take(index), solution.take(index)
+    scaled, a = dimensionless(part), ended.a / part.R
+    elastic = with_elastic_spots(scaled, a, np.zeros(1))
+    cells = felt_cells(scaled, a, elastic.lam, elastic.p0)
+    for rows, pressure, _ in pressures_of(scaled, ended, a):
+        for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]]):
+            here = rows[some]
+            yield [cells[j] for j in here], loaded, (index[here], elastic.p_max[here])
+
+
+def beside(cell):
+    """Half of the distance of neighbours, in l."""
+    lattice = cell.member.cell.lattice
+    return LATTICES["hex" if lattice == "disc" else lattice] / 2
+
+
+def _largest(loaded, cells, p_max):
+    """The same (2, B) in units of the pressure. loaded : :class:`~..loaded.Loaded`; cells : of
+    :func:`~.felt_cells.felt_cells`; p_max : (B,)"""
+    made = {name: np.full((2, len(cells)), np.nan) for name in SPOT_EXTREMES}
+    for i, cell in enumerate(cells):
+        if cell is None:
+            continue
+        case = _Case(loaded.take([i]), cell)
+        for where in dict.fromkeys(place for _, place in SPOT_EXTREMES.values()):
+            panels = case.panels(where)
+            for name in [name for name, (_, place) in SPOT_EXTREMES.items() if place == where] if panels else ():
+                value, z = _best(panels, SPOT_EXTREMES[name][0])
+                lacks = name in _MAY_LACK and value <= _NOTHING * p_max[i]
+                made[name][:, i] = (0.0, np.nan) if lacks else (value, z)
+    return made
+
+
+def _best(panels, value):
+    """The largest value of a function of stresses, polynomials on panels of depths or radii, and its depth."""
+    best = -np.inf, np.nan
+    for low, high, z, stresses in panels:
+        largest, (_, v) = in_patch(stresses[..., None], value)
+        if not largest <= best[0]:
+            best = largest, low + (high - low) * (1 + v) / 2 if z is None else z
+    return best
+
+
+class _Case:
+    """One case: the stresses of its cell and of its nominal pressure, at places in a."""
+
+    def __init__(self, loaded, cell):
+        self.loaded, self.cell, self.h = loaded, cell, loaded.h[0]
+
+    def panels(self, where):
+        """(low, high, depth, stresses (4, nodes)) of each panel, of depths, and of radii at the depth z of the
+        interface; none of a body that is rigid."""
+        least = _FIRST * min(self.cell.b[0] * self.cell.pitch, self.h, 1.0)
+        if where == "above":
+            return [(self.h, self.h, None, self._on_axis(np.array([self.h]), False))]
+        if where == "layer":
+            edges = _doubling(0.0, least, self.h)
+        elif where == "body":
+            if self.loaded.layers.n[0] == 0:
+                return []
+            edges = _doubling(self.h, least, self.h + farthest_of(self.loaded))
+        else:
+            edges = _doubling(0.0, least, beside(self.cell) * self.cell.pitch)
+        at = edges[:-1, None] + np.diff(edges)[:, None] * (1 + chebyshev_nodes(_NODES)) / 2
+        if where == "interface":
+            stresses, depth = self._at_interface(at.ravel()), self.h
+        else:
+            stresses, depth = self._on_axis(at.ravel(), where == "body"), None
+        stresses = stresses.reshape(4, len(at), _NODES)
+        return [(*ends, depth, stresses[:, j]) for j, ends in enumerate(zip(edges[:-1], edges[1:], strict=True))]
+
+    def _on_axis(self, z, body):
+        """Stresses (4, Z) on the axis at depths z (Z,)."""
+        cell, whole = self.cell, self.loaded.stresses(np.zeros(1), z, body)[:, 0, 0, :, 0]
+        near = z <= self.h + _DEPTH * cell.pitch
+        at = np.clip(z[near] / cell.pitch, *((cell.h, None) if body else (None, cell.h)))
+        whole[:, near] += cell.unit * cell.stresses(cell.b[0], np.zeros(1), at, body)[..., 0]
+        return whole
+
+    def _at_interface(self, r):
+        """Stresses (4, R) at the interface at radii r (R,)."""
+        cell, whole = self.cell, self.loaded.stresses(r, np.array([self.h]), False)[:, 0, 0, 0]
+        # those in the body: sz and trz, which alone are looked at, are continuous, and take fewer waves there
+        return whole + cell.unit * cell.stresses(cell.b[0], r / cell.pitch, np.array([cell.h]), True)[:, 0]
+
+
+def _doubling(start, first, last):
+    """Edges from `start` to `last`, the first panel `first` wide, each next one twice as wide."""
+    count = max(int(np.ceil(np.log2(1 + (last - start) / first))), 1)
+    return np.minimum(start + first * (2.0 ** np.arange(count + 1) - 1), last)

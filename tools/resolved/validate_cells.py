@@ -57,10 +57,12 @@ MATERIALS = {
     "n = 20, bonded": Layer(1.0, 20.0, bonded=True),
     "n = 5, bonded": Layer(1.0, 5.0, bonded=True),
     "n = 0.5, frictionless": Layer(1.0, 0.5),
-    "n = 0.1, frictionless": Layer(1.0, 0.1),
-    "n = 0.1, bonded, ν1 = 0.45": Layer(1.0, 0.1, nu1=0.45, bonded=True),
+    "n = 0.2, frictionless": Layer(1.0, 0.2),
+    "n = 0.2, bonded, ν1 = 0.45": Layer(1.0, 0.2, nu1=0.45, bonded=True),
 }
 PITCHES, LAMS, POINTS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 10.0, 16.0), (0.03, 0.12, 0.4), 128
+#: Pitches over h of the curves of the law, and the contact fraction that is drawn.
+FINE, SHOWN = np.geomspace(1, 16, 29), 0.12
 #: Stiffness of bonded layers, and contact fractions of spots of b = 0.1 h.
 STIFF, SPARSE = (0.2, 2.0, 5.0, 20.0), (1e-4, 1e-3, 3e-3, 1e-2, 3e-2)
 
@@ -129,17 +131,23 @@ def cells(folder: Path) -> xr.Dataset:
 
 
 def films() -> xr.Dataset:
-    """Over (material, λ, pitch/h): A and p_max of resolved cells over those on a half-space, and what both laws err."""
+    """Over (material, λ, pitch/h): A, λ and p_max of resolved cells over those on a half-space, less 1, and what both
+    laws err; over (material, λ, fine): A by the law over that on a half-space, less 1."""
     shape = (len(MATERIALS), len(LAMS), len(PITCHES))
-    change, error = np.empty((*shape, 3)), np.empty((*shape, 2, 3))
-    for place in np.ndindex(shape):
-        cell = Cell("square", LAMS[place[1]], PITCHES[place[2]], [*MATERIALS.values()][place[0]])
-        p, known = laws(cell)
-        exact = resolved(cell, p, POINTS)[:3]
-        change[place], error[place] = exact / known[0] - 1, known / exact - 1
+    change, error, law = np.empty((*shape, 3)), np.empty((*shape, 2, 3)), np.empty((*shape[:2], len(FINE)))
+    for i, layer in enumerate(MATERIALS.values()):
+        for j, lam in enumerate(LAMS):
+            for k, pitch in enumerate(PITCHES):
+                cell = Cell("square", lam, pitch, layer)
+                p, known = laws(cell)
+                exact = resolved(cell, p, POINTS)[:3]
+                change[i, j, k], error[i, j, k] = exact / known[0] - 1, known / exact - 1
+            A = np.array([laws(Cell("square", lam, pitch, layer))[1][:, 0] for pitch in FINE.tolist()])
+            law[i, j] = A[:, 1] / A[:, 0] - 1
     dims = ("material", "lam", "pitch_over_h")
     data = {"change": ((*dims, "quantity"), change), "error": ((*dims, "on", "quantity"), error)}
-    where = {"material": list(MATERIALS), "lam": list(LAMS), "pitch_over_h": list(PITCHES)}
+    data["law"] = (*dims[:2], "fine"), law
+    where = {"material": list(MATERIALS), "lam": list(LAMS), "pitch_over_h": list(PITCHES), "fine": FINE}
     return xr.Dataset(data, where | {"on": ["half_space", "layer"], "quantity": list(QUANTITIES)})
 
 

@@ -15,12 +15,14 @@ def estimate(problem):
     """Name -> (B,) of a, D, p0, p_max, lam0, A0 in units R = E2* = 1, as they are where the iteration begins. D is the
     least that it can be, the height of the punch at r = a.
 
-    problem : :class:`~solver.problem.Problem` with R = E2 = 1; all bases count as "layered"
+    problem : :class:`~solver.problem.Problem` with R = E2 = 1; all bases count as "layered", and asperities as if they
+        stood on a half-space
 
     NaN of cases that the solver refuses, of flat punches, and of micro laws that are not of this package. Under given
     loads a of 97 % of 300 random contacts is right to a factor of 2 (tests/physical/words/test_far_outside.py).
     """
-    scaled = dimensionless(problem.but(base=np.where(np.isin(problem.base, STACKED[1]), "stack", "layered")))
+    base = np.where(np.isin(problem.base, STACKED[1]), "stack", "layered")
+    scaled = dimensionless(problem.but(base=base, asperities_on="half_space"))
     usable, estimates = ~refused(problem, scaled), {name: np.full(len(problem), np.nan) for name in _QUANTITIES}
     for law in BUILT_IN:
         of_law = usable & (problem.micro == law.name)

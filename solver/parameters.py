@@ -16,6 +16,9 @@ BASES = ("half_space", "thin_layer", "layered", "auto", "stack", "thin_stack")
 MODEL_CHECKS = ("closed_form", "first_order")
 #: How attraction acts, and which of two states is meant that have the same load or depth.
 ADHESIONS, BRANCHES = ("jkr", "dmt", "maugis"), ("stable", "unstable")
+#: What asperities press on: the coated body itself, a half-space of the layer's material, or the body where their pitch
+#: is above the thickness of the layer.
+ASPERITIES_ON = ("auto", "layer", "half_space")
 #: The condition that every case meets, of `needed_by` and `used_by` below.
 EVERY = ("", ())
 
@@ -138,6 +141,7 @@ PARAMETERS = Register(
         "accuracy": Parameter(1e-2, interval="(0, 1)", needed_by=("base", ("auto",))),
         "model_check": Parameter("closed_form", MODEL_CHECKS, needed_by=("base", ("thin_layer",))),
         "micro": Parameter("disc_cell"),
+        "asperities_on": Parameter("auto", ASPERITIES_ON, needed_by=LAYERED),
         "shape": Parameter("paraboloid", ("paraboloid",)),
         "w_adhesion": Parameter(0.0, interval="[0, 1e3]", powers=(1, 1)),
         "adhesion": Parameter("jkr", ADHESIONS),

@@ -9,6 +9,10 @@ from numpy.typing import ArrayLike
 from . import laws, layers, shapes
 from .parameters import CONTROL, PARAMETERS, STACKED, Parameter, allowed, among, one_of
 
+#: Bases on which asperities can feel what lies below the surface; of "auto" these cases take the exact layer.
+FELT = ("layered", "stack", "auto")
+#: A pitch that differs from h by less than rounding is not above it, whatever the units.
+_ABOVE = 1 - 1e-9
 #: Largest |P| or |D| under adhesion, in units R = E2* = 1: that of the bounds in solver/parameters.py.
 _PULL = 1e3
 
@@ -44,6 +48,9 @@ class Problem:
         without a layer); "square_lattice", "hex_lattice"; "normal_heights", "uniform_heights"; "elastic_plastic", the
         first with asperities that yield while the load rises; or the name of a registered law, or a
         `solver.Law` itself
+    asperities_on = "auto" : what asperities press on: "layer", the coated body itself; "half_space", one of the layer's
+        material; "auto", the coated body where their pitch 1/sqrt(Nbar) is above h. Thin layers, "power_law" and tables
+        have the half-space alone
     hardness, yield_strength : of the softer of asperity and what it presses on, of "elastic_plastic". One of both is
         enough: the hardness is then 2.84 times the yield strength
     B, beta : coefficient, without unit, and exponent, of the "power_law"
@@ -193,6 +200,24 @@ class Problem:
         """
         return np.all([self.micro != name for name, law in laws.LAWS.items() if not law.rough], axis=0)
 
+    def can_feel(self) -> np.ndarray:
+        """Which cases have asperities that can feel what lies below the surface.
+
+        Returns
+        -------
+        numpy.ndarray : (B,) bool: the base is an exact layer or stack, or "auto", and the micro law takes its kernel
+        """
+        return can_feel(self.base, self.micro)
+
+    def feels_layer(self) -> np.ndarray:
+        """Which cases have asperities that feel what lies below the surface.
+
+        Returns
+        -------
+        numpy.ndarray : (B,) bool: they can, and `asperities_on` is "layer", or it is "auto" and their pitch is above h
+        """
+        return feels(self.base, self.micro, self.asperities_on, self.Nbar, self.h)
+
     def may_pull(self) -> np.ndarray:
         """Which cases may have a control that is 0 or negative.
 
@@ -217,9 +242,10 @@ class Problem:
         Returns
         -------
         numpy.ndarray : (B,) bool: a number that the case needs is not finite or out of bounds, or those of its micro
-            law do not go together
+            law do not go together; or `asperities_on` is "layer" where they cannot feel it
         """
         bad = ~(allowed(CONTROL[self.control], self.value) | self.may_pull() & (np.abs(self.value) <= _PULL))
+        bad |= (self.asperities_on == "layer") & ~self.can_feel()
         having = {}
         for name, own in layers.table(layers.numbers_of(self.parameters)).items():
             if own.interval:
@@ -235,6 +261,51 @@ class Problem:
             if len(index):
                 bad[index] |= ~law.allows(**{name: getattr(self, name)[index] for name in law.arguments})
         return bad
+
+
+def far_apart(Nbar: ArrayLike, h: ArrayLike) -> np.ndarray:
+    """Whether the pitch 1/sqrt(Nbar) of asperities is above the thickness of the layer.
+
+    Parameters
+    ----------
+    Nbar, h : of any one unit of length; they broadcast. NaN: it is not
+
+    Returns
+    -------
+    numpy.ndarray of bool
+    """
+    with np.errstate(invalid="ignore", over="ignore"):
+        return np.asarray(Nbar) * np.asarray(h) ** 2 < _ABOVE
+
+
+def can_feel(base: ArrayLike, micro: ArrayLike) -> np.ndarray:
+    """Whether asperities can feel what lies below the surface.
+
+    Parameters
+    ----------
+    base, micro : words; they broadcast
+
+    Returns
+    -------
+    numpy.ndarray of bool : the base is an exact layer or stack, or "auto", and the micro law takes its kernel
+    """
+    return one_of(base, FELT) & one_of(micro, [name for name, law in laws.LAWS.items() if law.on_body])
+
+
+def feels(base: ArrayLike, micro: ArrayLike, asperities_on: ArrayLike, Nbar: ArrayLike, h: ArrayLike) -> np.ndarray:
+    """Whether asperities feel what lies below the surface.
+
+    Parameters
+    ----------
+    base, micro, asperities_on : words
+    Nbar, h : of any one unit of length; all broadcast
+
+    Returns
+    -------
+    numpy.ndarray of bool : they can, and `asperities_on` is "layer", or it is "auto" and their pitch is above h
+    """
+    words = np.asarray(asperities_on)
+    return can_feel(base, micro) & ((words == "layer") | (words == "auto") & far_apart(Nbar, h))
 
 
 def _array(name, value):

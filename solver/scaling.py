@@ -99,16 +99,33 @@ def without_springs(scaled):
 def as_cases(part):
     """:class:`~solver.contact.equation.Cases` of a problem whose cases have one law, one base and one shape."""
     punch = PARABOLOID if part.shape[0] == shapes.PARABOLOID else Shaped(shapes.shape_of(part))
-    return Cases(part.control, law_of(part), BODIES[str(part.base[0])](part), part.value, punch)
+    body = BODIES[str(part.base[0])](part)
+    return Cases(part.control, law_of(part, body), body, part.value, punch)
 
 
-def law_of(part):
-    """The one law of the cases with their numbers, :class:`~solver.laws.Bound`. ValueError where
-    :func:`~solver.laws.try_out` finds a slip in a law of somebody else's."""
+def law_of(part, body=None):
+    """The one law of the cases with their numbers, :class:`~solver.laws.Bound`: on their bodies if the asperities feel
+    these, which is so of all cases or of none. ValueError where :func:`~solver.laws.try_out` finds a slip in a law of
+    somebody else's.
+
+    body : of the cases, if it is at hand
+    """
     law = LAWS[str(part.micro[0])]
-    E, given = layer_modulus(part.n) / (1 + part.m), {name: getattr(part, name) for name in law.arguments}
-    try_out(law, E, given)
-    return law.bind(E, **given)
+    values = {name: getattr(part, name) for name in law.arguments}
+    if len(part) and part.feels_layer()[0]:
+        body = BODIES[str(part.base[0])](part) if body is None else body
+        return law.on_body(body.kernel, body.m, body.h, body.E, **values)
+    E = layer_modulus(part.n) / (1 + part.m)
+    try_out(law, E, values)
+    return law.bind(E, **values)
+
+
+def of_one_law(problem):
+    """Yield the indices of the cases that have one law on one kind of body, which :func:`law_of` can bind together."""
+    felt = problem.feels_layer()
+    bodies = np.where(felt, problem.base, "")
+    for micro, base in dict.fromkeys(zip(problem.micro.tolist(), bodies.tolist(), strict=True)):
+        yield np.flatnonzero((problem.micro == micro) & (bodies == base))
 
 
 def restore(solution, problem):

@@ -7,12 +7,12 @@ from numpy.typing import ArrayLike
 
 from .body.graded import is_graded
 from .models.auto import cheapest
-from .models.cell_error import cell_error
+from .models.cells import left_out
 from .models.graded import solve_graded
 from .models.model_error import judged
 from .models.named import model_of, solve_named
 from .models.plastic_share import has_yield, plastic_share
-from .models.range_of_law import RADII, has_range
+from .models.range_of_law import radii_of
 from .models.table_ends import beyond_table
 from .problem import Problem
 from .scaling import dimensionless, refused
@@ -58,8 +58,8 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
     if x.ndim != 1 or not np.all((x >= 0) & (x <= 1)):
         raise ValueError("x must be one-dimensional and within [0, 1]")
     yields = has_yield(problem).any()
-    radii = np.append(x, RADII) if yields or has_range(problem) else x
-    scaled, special = dimensionless(problem), shaped(problem) | (problem.w_adhesion > 0)
+    radii = np.append(x, radii_of(problem, yields))
+    scaled, special = dimensionless(problem), shaped(problem) | (problem.w_adhesion > 0) | problem.feels_layer()
     invalid = refused(problem, scaled) | problem.without_scheme() | unfit(scaled)
     if np.any(exact := special & (problem.base == "auto")):
         problem = problem.but(base=np.where(exact, "layered", problem.base))
@@ -79,7 +79,7 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
     if shaped(problem).any():
         beyond = ~invalid & beyond_table(scaled, solution)
         solution = solution.refused(beyond, Status.OUTSIDE_LAW)
-    solution = replace(solution, model_error=solution.model_error + cell_error(problem, solution))
+    solution = replace(solution, model_error=solution.model_error + left_out(problem, solution))
     if yields:
         solution = replace(solution, plastic_share=plastic_share(problem, solution.lam[:, len(x) :]))
     profiles = {name: getattr(solution, name)[:, : len(x)] for name in ("p", "lam")}

@@ -71,6 +71,8 @@ def solve(
         Nbar and Ra, as the paper's is
     sigma, cut : of micro = "normal_heights", standard deviation of the heights, and the largest above the mean over it;
         "uniform_heights" has sigma alone
+    asperities_on : what asperities press on: "layer", the coated body itself; "half_space", one of the layer's material;
+        "auto", the coated body where their pitch 1/sqrt(Nbar) is above h (docs/model.md)
     hardness, yield_strength : of micro = "elastic_plastic", of the softer of asperity and what it presses on. One of
         both is enough: the hardness is then 2.84 times the yield strength. Beside
         other rough laws they set `validity`

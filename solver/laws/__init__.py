@@ -110,6 +110,8 @@ def _declare(laws):
         PARAMETERS.pop(name, None)  # of a law that has been replaced
     PARAMETERS.update({name: own._replace(needed_by=("micro", names)) for name, (own, names) in declared.items()})
     PARAMETERS["micro"] = PARAMETERS["micro"]._replace(choices=tuple(laws))
+    of_laws = "micro", tuple(law.name for law in laws.values() if law.on_body)
+    PARAMETERS["asperities_on"] = PARAMETERS["asperities_on"]._replace(used_by=of_laws)
     of_laws = "micro", tuple(law.name for law in laws.values() if law.poisson)
     PARAMETERS["nu1"] = PARAMETERS["nu1"]._replace(used_by=(*COUPLED, *of_laws))
     PARAMETERS["nu2"] = PARAMETERS["nu2"]._replace(needed_by=(*LAYERED, *of_laws), used_by=(*COUPLED, *of_laws))

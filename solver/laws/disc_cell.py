@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..parameters import Parameter
+from .cell.law import EDGE, of_spots
 from .law import Curve, Law, inverse, log_step, where_positive
 
 __all__ = ["LAW", "PARAMETERS", "SMOOTH", "contact_fraction", "displacement", "largest_pressure"]
@@ -121,11 +122,12 @@ LAW = Law(
     curve=spot_curve,
     area=lambda y, q: spot_area(y),
     peak=spot_peak,
-    edge=lambda: ((np.pi / 2) ** (2 / 3), 2 / 3),
+    edge=lambda: EDGE,
     rise=1.1,
     from_pressure=spot_from_pressure,
     from_displacement=spot_from_displacement,
     guess=spot_guess,
+    on_body=of_spots("disc_cell", "disc", scales, parameters=PARAMETERS, rise=1.1),
 )
 
 #: No asperities: A = 0, and the equation is linear in y = q, with p* = E.

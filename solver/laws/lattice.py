@@ -17,6 +17,7 @@ from importlib.resources import files
 import numpy as np
 
 from . import disc_cell
+from .cell.law import of_spots
 from .tabulated import LawTable, fitted, law_of, t_of
 
 FILE = files(__package__) / "lattices.csv"  # which may be in a zip file
@@ -75,8 +76,9 @@ def _quantity(t, q, X, power, rate, limit, first):
 
 
 def _law(name):
-    words = {"name": f"{name}_lattice", "parameters": disc_cell.PARAMETERS, "scales": disc_cell.scales}
-    return law_of(_table(name), **words, error=ERROR, smears=False, rise=1.1)
+    words = {"name": f"{name}_lattice", "scales": disc_cell.scales}
+    rest = {"parameters": disc_cell.PARAMETERS, "smears": False, "rise": 1.1}
+    return law_of(_table(name), **words, **rest, error=ERROR, on_body=of_spots(lattice=name, **words, **rest))
 
 
 SQUARE, HEX = _law("square"), _law("hex")

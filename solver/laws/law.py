@@ -81,6 +81,10 @@ class Law:
         `curve` and `edge`, which takes more time
     from_displacement : (g, *own) -> y with g(y) = g >= 0; NaN where g is larger than the law's limit
     guess : (q, *own) -> y with q(y) = q, roughly
+    on_body : (kernel, m, h, E, **parameters) -> :class:`Bound` of a law of asperities that feel the coated body itself,
+        not the half-space of its layer's material: `kernel`, a :class:`~solver.kernels.kernel.Kernel` of B cases, m and
+        h (B,), thickness of the first layer; E (B,), as that of `scales`. None: the law does not know the body
+    end : (*own) -> largest p/p* that the law knows, which depends on the case; None: there is none
     """
 
     name: str
@@ -105,6 +109,8 @@ class Law:
     from_pressure: Callable | None = None
     from_displacement: Callable | None = None
     guess: Callable | None = None
+    on_body: Callable | None = None
+    end: Callable | None = None
 
     @property
     def arguments(self) -> tuple[str, ...]:

@@ -28,15 +28,16 @@ def judged(problem, x):
     problem : all of base "thin_layer" or "thin_stack"; x : (m,) radii
     """
     pieces, scaled = [], dimensionless(problem)
-    for micro, base in {*zip(problem.micro.tolist(), problem.base.tolist(), strict=True)}:
-        index = np.flatnonzero((problem.micro == micro) & (problem.base == base))
+    exact = scaled.but(base=np.where(scaled.base == "thin_stack", "stack", "layered"), asperities_on="auto")
+    kinds = problem.micro, problem.base, exact.feels_layer()
+    for kind in dict.fromkeys(zip(*(words.tolist() for words in kinds), strict=True)):
+        index = np.flatnonzero(np.all([words == word for words, word in zip(kinds, kind, strict=True)], axis=0))
         part = scaled.take(index).but(model_check="closed_form")
         cheap = solve_named(part, np.concatenate([x, mesh_of(NODES).x]))
         solved, error = np.flatnonzero(np.isfinite(cheap.a)), np.full(len(index), np.nan)
         if len(solved):
             part, start, p = part.take(solved), cheap.take(solved), cheap.p[solved, len(x) :]
-            exact = np.where(part.base == "thin_stack", "stack", "layered")
-            both = as_cases(part.but(base=exact)), as_cases(part)
+            both = as_cases(exact.take(index[solved])), as_cases(part)
             error[solved] = sum(distance(cases, start, p) for cases in both) + error_of_law(part)
         shown = {"p": cheap.p[:, : len(x)], "lam": cheap.lam[:, : len(x)]}
         pieces.append((index, replace(cheap, **shown, model_error=error)))

@@ -97,11 +97,11 @@ def _ways(problem, solvable):
     yield solvable & is_smooth & half_space, _smooth_half_space
     yield solvable & is_smooth & thin, _smooth_layer
     iterated = solvable & ~(is_smooth & (half_space | thin))
-    kinds = problem.micro, problem.base, problem.scheme, problem.shape
+    kinds = problem.micro, problem.base, problem.scheme, problem.shape, problem.feels_layer()
     # of each kind the words that occur, and the cases that have them
     present = ([(word, words == word) for word in dict.fromkeys(words.tolist())] for words in kinds)
-    for (_, of_law), (_, on_body), (scheme, by_scheme), (_, of_shape) in product(*present):
-        chosen = iterated & of_law & on_body & by_scheme & of_shape
+    for (_, of_law), (_, on_body), (scheme, by_scheme), (_, of_shape), (_, felt) in product(*present):
+        chosen = iterated & of_law & on_body & by_scheme & of_shape & felt
         for limit in np.unique(problem.max_iterations[chosen]):
             yield chosen & (problem.max_iterations == limit), SCHEMES[scheme]
 

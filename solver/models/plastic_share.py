@@ -4,7 +4,7 @@ import numpy as np
 
 from ..laws import LAWS
 from ..parameters import one_of
-from ..scaling import dimensionless, law_of
+from ..scaling import dimensionless, law_of, of_one_law
 from .range_of_law import RADII
 
 #: The places s² = 1 - (r/a)² of the profile, ascending from the edge.
@@ -26,8 +26,9 @@ def plastic_share(problem, lam):
         have yielded, those on the axis have
     """
     share = np.full(len(problem), np.nan)
-    for name in np.unique(problem.micro[has_yield(problem)]):
-        index = np.flatnonzero(problem.micro == name)
+    yielding = np.flatnonzero(has_yield(problem))
+    for some in of_one_law(problem.take(yielding)):
+        index = yielding[some]
         law = law_of(dimensionless(problem.take(index)))
         level = np.log(lam[index] / law.law.yielded(*law.own))
         level[:, -1] = np.where(np.isnan(level[:, -1]) & (level[:, -2] > 0), level[:, -2], level[:, -1])

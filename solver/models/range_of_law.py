@@ -4,30 +4,45 @@ import numpy as np
 
 from ..kernels.two_layers import layer_modulus
 from ..laws import LAWS
+from ..laws.cell.law import end
+from ..scaling import dimensionless, law_of, of_one_law
 
 #: Radii r/a at which the pressure is compared with the range, whatever profile is asked for. They are denser near the
 #: edge, where a hard film presses most.
 _S = np.append(np.geomspace(1e-5, 0.09, 40), np.linspace(0.1, 1, 41))
 RADII = np.sqrt((1 - _S) * (1 + _S))
+#: Each of so many of these is enough for the largest pressure, of asperities that feel the body.
+_FEW = 4
 #: Near the edge p is below the first row of a table, p1, and A and λ are guesses. That changes a, P, D, p(0), p_max and
 #: Ar/An by at most _GUESSED (p1/p(0))^_STEEPNESS. Random tables (`python tools/errors/own_tables.py`) need at most
 #: 0.205 for _GUESSED; a table of random heights needs more than 0.25 (tests/laws/test_own_table_range.py).
 _GUESSED, _STEEPNESS = 0.4, 1.2
 
 
-def has_range(problem):
-    """Whether the problem has a micro law that does not know all pressures."""
-    return bool(_laws(problem))
+def radii_of(problem, all_of_them=False):
+    """Radii r/a (m,) at which the pressure is compared with the range of the laws of a problem. There are none where
+    these know all pressures, and few where they end at full spots alone; `all_of_them`: all RADII, whatever they
+    know."""
+    if all_of_them or _laws(problem):
+        return RADII
+    return RADII[::_FEW] if problem.feels_layer().any() else RADII[:0]
 
 
 def outside_law(problem, solution):
     """(B,) bool: p(0) is below the range of the law, or p(0) or a pressure of the profile is above it; NaN is within.
-    `solution` is in the units of `problem`."""
+    Asperities that feel the body have a law that ends, on some bodies at once. `solution` is in the units of
+    `problem`."""
     outside = np.zeros(len(problem), dtype=bool)
     for law in _laws(problem):
         index, p0, E = _of_law(problem, solution, law)
         largest = np.maximum(p0, np.fmax.reduce(solution.p[index], axis=1, initial=0.0))
         outside[index] = (p0 < law.least * E) | (largest > law.most * E)
+    felt = np.flatnonzero(problem.feels_layer())
+    scaled = dimensionless(problem.take(felt))
+    for rows in of_one_law(scaled):
+        index, most = felt[rows], end(law_of(scaled.take(rows)))
+        largest = np.fmax(solution.p0[index], np.fmax.reduce(solution.p[index], axis=1, initial=0.0))
+        outside[index] = (largest > most * problem.E2[index]) | ~(most > 0)
     return outside
 
 

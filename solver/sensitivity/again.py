@@ -32,9 +32,9 @@ def without_state(problem):
 def stacks(problem, nodes, a, most):
     """Yield the indices of cases of one law, base, shape and mesh, and their number of nodes; 0: of one case on panels.
     No stack has more than `most` unknowns."""
-    kinds = np.stack([problem.micro, problem.base, problem.shape, nodes.astype(str)])
+    kinds = np.stack([problem.micro, problem.base, problem.shape, nodes.astype(str), problem.feels_layer().astype(str)])
     for kind in np.unique(kinds, axis=1).T:
-        index, count = np.flatnonzero(np.all(kinds == kind[:, None], axis=0)), int(kind[-1])
+        index, count = np.flatnonzero(np.all(kinds == kind[:, None], axis=0)), int(kind[3])
         order = as_cases(problem.take(index)).body.order(a[index])
         index = index if order is None else index[order]
         yield from ((part, count) for part in np.array_split(index, -(-len(index) * count // most) or len(index)))

@@ -2,7 +2,8 @@
 
 It takes 2 k solutions, which have errors. It is for cases whose equation is not found again, such as those on panels
 that would be chosen otherwise a second time, and for those that :mod:`.state` does not know: smooth punches of other
-shapes than a paraboloid, what sticks, and flat punches.
+shapes than a paraboloid, what sticks, flat punches, and asperities that feel the coated body: each input that changes
+the kernel there changes the whole law.
 """
 
 import numpy as np

@@ -138,10 +138,12 @@ def _of_solved(scaled, solution, inputs, x):
     logs = {name: np.full((k, size), np.nan) for name in QUANTITIES}
     slopes = {name: np.full((k, size), np.nan) for name in SIGNED}
     shapes, left = np.full((2, k, size, len(x)), np.nan), np.ones(size, dtype=bool)
+    felt = scaled.feels_layer()
+    scaled = scaled.but(asperities_on=np.where(felt, "layer", "half_space"))  # also where a moved h is below the pitch
     now, above = held(scaled, solution.model_used), moved(scaled, inputs)
     beside = held(above, np.tile(solution.model_used, 2 * k))
     stateless = without_state(scaled)
-    again = np.flatnonzero(~stateless)
+    again = np.flatnonzero(~stateless & ~felt)
     for rows, nodes in stacks(now.written.take(again), meshes(solution, scaled)[again], solution.a[again], _STACK):
         index = again[rows]
         rows = (np.arange(2 * k)[:, None] * size + index).ravel()

@@ -40,7 +40,7 @@ def protection(problem, strength, mu=0.0):
         value, r, z = of_contacts(part, solution, mu, names=("mises2",), coarse=coarse)["mises2"]
         return value / strength[index], r, z, solution
 
-    bare, _, _, alone = largest(problem.but(base="half_space"), slice(None), False)
+    bare, _, _, alone = largest(problem.but(base="half_space", asperities_on="auto"), slice(None), False)
     thick = _THICK * (1 + mu) * np.sqrt(problem.value / strength)
     thin = np.clip(_THIN / problem.n, _THINNEST, _THICKEST) * alone.a
     some = ~np.isnan(bare) & (thin < thick)  # infinite under a sharp tip, until there is a layer

@@ -12,6 +12,7 @@ from solver.status import NO_SOLUTION
 
 from ..arrays import xarray_later as xr
 from ..arrays.labelled import Labelled, as_xarray
+from ..inputs.asperities import USED, used
 from ..inputs.definition import Definition
 from ..inputs.grid import along, unflatten
 from ..inputs.identity import law_versions
@@ -108,6 +109,9 @@ def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -
     variables = made.variables
     variables["status"].attrs |= status_attributes()
     variables["model_used"].attrs |= model_attributes()
+    if definition.says_what_is_felt:
+        flags = attributes("asperities_used") | asperities_attributes()
+        variables["asperities_used"] = Labelled(tuple(definition.grid.sizes), used(definition.grid), flags)
     radii = definition.scene.radii() if definition.scene else {}
     strengths = _strengths(definition) if definition.scene else {}
     variables["validity"] = validity_of(strengths | variables | made.coords | radii)
@@ -182,12 +186,22 @@ def model_attributes() -> dict:
     return {"flag_values": values, "flag_meanings": " ".join(model.name.lower() for model in Model)}
 
 
+def asperities_attributes() -> dict:
+    """CF flags of `asperities_used`."""
+    return {"flag_values": np.arange(len(USED), dtype=np.int8), "flag_meanings": " ".join(USED)}
+
+
 #: Flags that a dataset may have, and what makes their attributes.
-_FLAGS = {"status": status_attributes, "model_used": model_attributes, "validity": validity_attributes}
+_FLAGS = {
+    "status": status_attributes,
+    "model_used": model_attributes,
+    "validity": validity_attributes,
+    "asperities_used": asperities_attributes,
+}
 
 
 def decode(flags: xr.DataArray) -> xr.DataArray:
-    """The names of `status`, `model_used` or `validity`.
+    """The names of `status`, `model_used`, `validity` or `asperities_used`.
 
     Several assumptions that a case violates are separated by blanks; the text is empty if it violates none. A number
     without a name stays a number. `where`, `reindex` and `concat` of xarray leave NaN where there is no case: there
@@ -195,7 +209,7 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
 
     Parameters
     ----------
-    flags : one of these three arrays of a dataset of contacts
+    flags : one of these arrays of a dataset of contacts
 
     Returns
     -------

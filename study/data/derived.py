@@ -6,18 +6,21 @@ Every function takes an opened dataset. The attributes of what it returns come f
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import wraps
+from functools import partial, wraps
 from inspect import cleandoc
 
 import numpy as np
 
-from solver import Model
+from solver import Model, Problem
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS, identity, name_in
+from solver.problem import feels
+from solver.scaling import law_of, of_one_law
 
 from ..arrays import xarray_later as xr
+from ..inputs.asperities import USED
 from ..inputs.scene.scales import without_unit
-from ..inputs.vocabulary import ROWS, VOCABULARY, attributes
+from ..inputs.vocabulary import CONTROLS, NUMERICS, ROWS, VOCABULARY, attributes, parameters_of
 from ..rules import rule
 from ..rules.assumptions import (  # noqa: F401 - names of study.derived
     COMPRESSED,
@@ -156,7 +159,7 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     pressures = _profile(dataset, "p_peak")
     unit, R = _scales(dataset, "p_peak")
     E1 = _surface_modulus(dataset) / (1 + dataset.get("m", 0.0))  # of layer and punch in series
-    peaks = xr.full_like(pressures, np.nan)
+    peaks, felt = xr.full_like(pressures, np.nan), _feel_layer(dataset)
     stated = {name_in(line): line for line in dataset.attrs.get("micro_laws", "").splitlines()}
     for law in [law for name, law in LAWS.items() if (dataset["micro"] == name).any()]:
         if stated.get(law.name, identity(law.name)) != identity(law.name):
@@ -167,7 +170,41 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
         arguments = [pressures / unit, E1, *arguments, *[nu] * law.poisson]
         at_spots = xr.apply_ufunc(_largest(law), *arguments, dask="parallelized", output_dtypes=[float])
         peaks = xr.where(dataset["micro"] == law.name, at_spots, peaks)
+    if felt.any():
+        peaks = xr.where(felt, _peaks_on_bodies(dataset, pressures / unit, unit, R), peaks)
     return unit * peaks.max("x", skipna=False)
+
+
+def _feel_layer(dataset: xr.Dataset) -> xr.DataArray:
+    """Where the asperities feel what lies below the surface: as the results say, else as their inputs do."""
+    if "asperities_used" in dataset:
+        return dataset["asperities_used"] == USED.index("layer")
+    names = {"base": "layered", "micro": "", "asperities_on": "auto", "Nbar": np.nan, "h": np.nan}
+    return xr.apply_ufunc(feels, *(dataset.get(name, default) for name, default in names.items()))
+
+
+def _peaks_on_bodies(dataset: xr.Dataset, p: xr.DataArray, unit, R) -> xr.DataArray:
+    """p_max in E2* of asperities that feel the body, at nominal pressures p in E2*."""
+    left_out = {*CONTROLS, *NUMERICS, "asperities_on"}
+    names = [name for name in parameters_of(map(str, dataset.variables)) if name in dataset and name not in left_out]
+    values = [dataset[name] for name in names]
+    values = [v if v.dtype.kind not in "fi" else without_unit(v, VOCABULARY[name].powers, unit, R)
+              for name, v in zip(names, values, strict=True)]  # fmt: skip
+    dims = [["x"], *[[]] * len(values)]
+    options = {"input_core_dims": dims, "output_core_dims": [["x"]], "dask": "parallelized", "output_dtypes": [float]}
+    return xr.apply_ufunc(partial(_at_bodies, names), p, *values, **options)
+
+
+def _at_bodies(names: list[str], p: np.ndarray, *values: np.ndarray) -> np.ndarray:
+    """p_max at p (..., m), of parameters by name (...)."""
+    flat = {name: np.broadcast_to(v, p.shape[:-1]).ravel() for name, v in zip(names, values, strict=True)}
+    problem, pressures = Problem.of(a=1.0, **flat, asperities_on="layer"), p.reshape(-1, p.shape[-1])
+    peaks = np.full(pressures.shape, np.nan)
+    index = np.flatnonzero(problem.can_feel())
+    for rows in of_one_law(problem.take(index)):
+        some = index[rows]
+        peaks[some] = law_of(problem.take(some)).at(pressures[some]).p_max
+    return peaks.reshape(p.shape)
 
 
 @quantity("D_body")

@@ -44,6 +44,7 @@ class Definition:
     scene : of a study with units, a `study.inputs.scene.scene.Scene`; its grid is dimensionless, its results are in SI
     inputs : names of those inputs of the solver that change with some spread; results have derivatives by them
     stresses : names of the largest stresses and their places, if the study wants them
+    says_what_is_felt : whether the results have `asperities_used`
     """
 
     name: str
@@ -60,6 +61,7 @@ class Definition:
     results: tuple[str, ...] = names("result")
     inputs: tuple[str, ...] = ()
     stresses: tuple[str, ...] = ()
+    says_what_is_felt: bool = False
 
     def __repr__(self) -> str:
         return f'Definition("{self.name}", {self.cases})'

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from . import asperities
 from .checks import (
     dimensions_that_differ,
     equal_cases,
@@ -102,7 +103,7 @@ class Draft:
         for name in [name for name in parameters if name not in request.sections]:
             parameter = VOCABULARY[name].parameter  # those of a law or a shape that no case has stay away
             selector, owners, *_ = parameter.needed_by
-            if name.rpartition(".")[2] in ("cn", "ct", "profile"):
+            if name.rpartition(".")[2] in ("cn", "ct", "profile") or name == "asperities_on":
                 continue
             if shapes.left_out(name, request.sections) or sticking.left_out(name, request.sections):
                 continue
@@ -148,6 +149,7 @@ class Draft:
             grid = replace(self._grid(), fitted=True)
         if not self.errors:
             self.errors += missing_in_cases(grid) + picard_for_nothing(grid) + heights_that_yield(grid)
+            self.errors += asperities.mistakes(grid, self.request.sections)
             self.errors += [] if self.request.physical else mixed_units(grid)
             self.errors += shapes.mistakes(grid, self.request.sections, self.request.physical)
             self.errors += sticking.mistakes(grid, self.request.sections)

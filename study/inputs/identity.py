@@ -21,6 +21,7 @@ from solver.numerics.profiles import identity as profile_identity
 from solver.parameters import uses
 from solver.shapes.table import identity as shape_identity
 
+from .asperities import stand_apart
 from .grid import Grid, along
 from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY, parameters_of_layers
 
@@ -28,8 +29,8 @@ from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY, parameters_of_layers
 STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
 #: In the digests of studies with strengths, also of named materials: raised when the masks that compare with them do.
 _OF_STRENGTHS = "2"
-#: In the keys of rough cases on layers thinner than the pitch: raised when their `model_error` changes.
-_OF_CELLS = "asperities far apart on a layer, 1"
+#: In the keys of rough cases on layers thinner than the pitch: raised when numbers of these alone change.
+_OF_CELLS = "asperities far apart on a layer, 2"
 #: Stresses depend on these even where the contact does not, as on nu2 of a body on which the layer slides.
 RATIOS = ("nu1", "nu2")
 #: In the keys and digests of stored stresses: raised when the search for the largest ones finds others.
@@ -49,15 +50,6 @@ def counts(grid: Grid, name: str) -> np.ndarray:
     value, default = along(grid, name), VOCABULARY[name].parameter.default
     changed = ~np.isnan(value) if default is None else value != default
     return changed & acts(grid, name)
-
-
-def _far_apart(grid: Grid) -> np.ndarray:
-    """Where asperities stand on a layer that is thinner than their pitch; shape as of `acts`."""
-    if not {"h", "Nbar"} <= {*grid.values}:
-        return np.False_
-    on_layer = np.isin(along(grid, "base"), ("layered", "stack"))
-    far = along(grid, "Nbar") * along(grid, "h") ** 2 < 1
-    return on_layer & far & acts(grid, "Nbar") & acts(grid, "h")
 
 
 def law_versions(grid: Grid) -> list[str]:
@@ -91,7 +83,7 @@ def digest_of(definition) -> str:
     content |= {"strengths": strengths | {"masks": _OF_STRENGTHS}} if compared else {}
     content |= {"stresses": [_OF_STRESSES, *_digest_of_ratios(grid)]} if definition.stresses else {}
     content |= {"laws": law_versions(grid)} if law_versions(grid) else {}
-    content |= {"cells": _OF_CELLS} if _far_apart(grid).any() else {}
+    content |= {"cells": _OF_CELLS} if stand_apart(grid).any() else {}
     digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
     if definition.scene is None:
         return digest
@@ -151,7 +143,7 @@ def case_keys(grid: Grid, stresses: bool = False) -> np.ndarray:
         counted = counts(grid, name)
         if counted.any():
             lanes += np.where(counted, _hashed(name, along(grid, name)), np.uint64(0))
-    if (far := _far_apart(grid)).any():
+    if (far := stand_apart(grid)).any():
         lanes += np.where(far, _hashed("cells", np.array(_OF_CELLS).reshape((1,) * len(grid.shape))), np.uint64(0))
     for name in RATIOS if stresses else ():
         lanes += _hashed(f"{name} of stresses {_OF_STRESSES}", along(grid, name))

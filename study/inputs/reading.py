@@ -17,6 +17,7 @@ from typing import Any
 from solver.numerics.userfile import NoFile, opened
 
 from ..terminal import on_one_line, shown
+from . import asperities
 from .definition import LARGE, MOST_VALUES, Definition, StudyError, refusal, settings
 from .draft import Draft
 from .grid import usual_block
@@ -112,6 +113,7 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
         results=results,
         inputs=inputs,
         stresses=stresses,
+        says_what_is_felt=not errors and asperities.is_said(grid),
     )
     if (numbers := definition.numbers) > most:
         limit = f"at most {most:.0e} (fewer points, or profiles = false)"

@@ -11,10 +11,10 @@ from .rule import have, rule
 FEW_SPOTS = 100.0
 """Fewest asperities in touch: the model spreads them evenly, so they must be many. Of equal heights N̄πa² touch."""
 SPOT_OVER_LAYER = 0.1
-"""The micro law takes the layer for a half-space: the central spot must be small against it, b <= 0.1 h."""
+"""On a half-space of the layer's material the central spot must be small against the layer, b <= 0.1 h."""
 PITCH_OVER_LAYER = 2.0
-"""A layer bends between asperities whose pitch 1/sqrt(N̄) is larger than this times h. A[p] then errs: by up to 2.4 %
-where the pitch is 2 h, by up to 11 % where it is 3 h (`make validate`, docs/validate.md)."""
+"""A layer bends between asperities whose pitch 1/sqrt(N̄) is larger than this times h. On a half-space of its material
+A[p] then errs: by up to 2.4 % where the pitch is 2 h, by up to 11 % where it is 3 h (`make validate`, docs/validate.md)."""
 NOT_THIN = 0.1  # largest model error of a thin layer: `make validity` prints and draws where it reaches these 10 %
 MERGING = 0.4
 """Largest λ(0) of spots that do not merge: the disc cell then overestimates A[p] by 10 % against a square lattice of
@@ -33,6 +33,8 @@ equations; tests/data/test_validity_stretched.py). Of another shape f(r) it is E
 STEEP_SPOT = 0.5
 """Largest b(0)/Ra: the strain under an asperity, 0.2 b/Ra, is then 10 %, the sphere is 6 % deeper than the paraboloid,
 and p_max = 0.32 E1* is above the hardness of any metal."""
+OTHERWISE = 'asperities_on = "auto", on an exact base, has the coated body itself'
+"""The way out for asperities that press on a half-space."""
 #: Pitch over h -> largest error in % of A and of p_max in the resolved cells of docs/validate.md, of n from 0.1 to
 #: HARDEST. By its first-order sums a harder layer errs more.
 HARDEST = 5
@@ -72,9 +74,9 @@ def few_spots(v, times):
 
 @rule(4, rf"spots not small, $b > {SPOT_OVER_LAYER:g}\,h$", "0.8", size=by_pitch)
 def spot_not_small_against_h(v, times):
-    """The contact spots are not small against the layer (b > {SPOT_OVER_LAYER:g} h), which the law of the asperities
-    takes for a half-space."""
-    return v["layered"] & v["rough"] & (v["b"] > times * SPOT_OVER_LAYER * v["h"])
+    """The contact spots are not small against the layer (b > {SPOT_OVER_LAYER:g} h), and press on a half-space of its
+    material ({OTHERWISE})."""
+    return v["layered"] & v["rough"] & v["on_half_space"] & (v["b"] > times * SPOT_OVER_LAYER * v["h"])
 
 
 @rule(8, r"layer not soft, $n \geq 1$", "0.93")
@@ -115,8 +117,8 @@ def asperity_strain_not_small(v, times):
 @rule(128, rf"asperities far apart, pitch $> {PITCH_OVER_LAYER:g}\,h$", "0.71", size=by_pitch)
 def pitch_not_small_against_h(v, times):
     """The asperities are far apart against the layer (1/sqrt(Nbar) > {PITCH_OVER_LAYER:g} h): it bends between them,
-    which the law of the asperities leaves out."""
-    return v["layered"] & v["rough"] & (v["Nbar"] * (times * PITCH_OVER_LAYER * v["h"]) ** 2 < 1)
+    which a half-space of its material leaves out ({OTHERWISE})."""
+    return v["layered"] & v["rough"] & v["on_half_space"] & (v["Nbar"] * (times * PITCH_OVER_LAYER * v["h"]) ** 2 < 1)
 
 
 @rule(256, rf"wide in a cup, $a > {STEEP:g}\,\min(|R_1|, |R_2|)$", "0.68")

@@ -35,7 +35,7 @@ def ra_as_of_iso(v):
     if {"Ra", "Nbar", "micro"} <= {*v} and not one_of(v["micro"].values, smooth_laws()).all():
         from ..specimen.roughness import looks_like_iso_ra  # here: it loads what measures scans
 
-        Ra, Nbar = (v["Ra"] + 0 * v["Nbar"]).values, (v["Nbar"] + 0 * v["Ra"]).values
+        Ra, Nbar = (v["Ra"] + 0 * v["Nbar"]).values, (0 * v["Ra"] + v["Nbar"]).values  # of one order of axes
         yield from filter(None, [looks_like_iso_ra(Ra, Nbar, si="units" in v["Ra"].attrs)])
 
 

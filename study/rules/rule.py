@@ -11,6 +11,7 @@ import numpy as np
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS
 from solver.parameters import one_of
+from solver.problem import can_feel
 from solver.shapes import PARABOLOID, SHAPES
 
 from ..arrays import xarray_later as xr
@@ -107,9 +108,9 @@ def numbers(variables: Mapping) -> Mapping:
     """Name -> array over the dimensions of `status`, of length 1 along some; NaN of a name that is not there. They are
     arrays, since DataArrays take as long as a contact.
 
-    Beside the variables: layered, rough, thin (bool: a thin layer was used), E1* (reduced modulus of the layer), spots
-    (how many touch), b (radius of the central one), slope (f'(a) of the shape of the punch), pressure (p(0), and where
-    that is not finite the mean).
+    Beside the variables: layered, rough, thin (bool: a thin layer was used), on_half_space (bool: asperities press on
+    one, whatever their pitch), E1* (reduced modulus of the layer), spots (how many touch), b (radius of the central one), slope
+    (f'(a) of the shape of the punch), pressure (p(0), and where that is not finite the mean).
     """
     dims, used = variables["status"].dims, variables["model_used"].attrs
     arrays = {name: along(dims, array) for name, array in variables.items() if set(array.dims) <= set(dims)}
@@ -119,6 +120,7 @@ def numbers(variables: Mapping) -> Mapping:
         v["model_used"], [value for value, word in models if word.endswith(("thin_layer", "thin_stack"))]
     )
     v |= {"slope": slope(v), "pressure": _pressure(v)}
+    v |= {"on_half_space": ~can_feel(v["base"], v["micro"]) | (v.get("asperities_on", "auto") == "half_space")}
     v |= {"layered": v["base"] != "half_space", "rough": have("rough", v["micro"]), "E1*": layer_modulus(v["n"])}
     return v | {"spots": spots(v) * _touching(v), "b": spot_radius(v)}
 

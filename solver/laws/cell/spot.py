@@ -24,8 +24,9 @@ POINTS, _LEAST, _WIDEST = 24, 48, 5.0
 #: N is a polynomial of this degree on each piece of x. A piece is at most half of h, whose waves have their singularity
 #: at 2 h i, and a fifth of the distance to that of the neighbours at d: the next term is then below rounding.
 _DEGREE, _OF_H, _OF_D = 11, 0.5, 0.2
-#: Waves are summed at so many x times waves at a time.
-_AT_ONCE = 2**21
+#: Numbers of points of one panel, and the b/h up to which each serves where speed counts: 1e-10 at n = 1000, where
+#: rounding is as large, and 1e-11 of other layers (tests/laws/cell/test_family.py).
+FEW = ((16, 2.5), (24, 4.0), (32, 7.0))
 
 
 class Cell(NamedTuple):
@@ -66,12 +67,15 @@ class _Pieces(NamedTuple):
         """N and dN/dx at x of any shape."""
         index = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.edges) - 2)
         half = np.diff(self.edges) / 2
-        xi = (x - self.edges[index]) / half[index] - 1
+        inverse = (1 / half)[index]
+        xi = (x - self.edges[index]) * inverse - 1
         value, slope = self.coefficients[-1][index], np.zeros_like(x)
         for row in self.coefficients[-2::-1]:
-            slope = slope * xi + value
-            value = value * xi + row[index]
-        return value, slope / half[index]
+            slope *= xi
+            slope += value
+            value *= xi
+            value += row.take(index)
+        return value, slope * inverse
 
 
 def _edges(cell, most):
@@ -89,18 +93,36 @@ def pieces(cell, reach):
     """:class:`_Pieces` of N for x from 0 to twice the largest radius."""
     edges = _edges(cell, 2 * reach)
     nodes = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
-    x = (edges[:-1] + np.diff(edges) / 2 * (nodes[:, None] + 1)).ravel()
+    half = np.diff(edges) / 2
+    middle = edges[:-1] + half
+    x = middle + half * nodes[:, None]
     N = np.zeros_like(x) if cell.lattice == "disc" else neighbours(cell.lattice, x)[0]
     if cell.L1 is not None:
         k, c = waves("hex" if cell.lattice == "disc" else cell.lattice, cell.pitch, reach)
         if len(k):
-            amplitudes, step = c * cell.L1(k / cell.pitch), max(1, _AT_ONCE // len(k))
-            N = N + np.concatenate([np.cos(np.outer(x[i : i + step], k)) @ amplitudes for i in range(0, len(x), step)])
-    return _Pieces(edges, np.linalg.solve(np.vander(nodes, increasing=True), N.reshape(_DEGREE + 1, -1)))
+            N = N + _summed(k, c * cell.L1(k / cell.pitch), middle, half, nodes)
+    return _Pieces(edges, np.linalg.solve(np.vander(nodes, increasing=True), N))
 
 
-def points(cell, reach):
-    """Points and weights (T,) on [0, 1] for radii up to `reach`."""
+def _summed(k, c, middle, half, nodes):
+    """Sums (nodes, pieces) of c (W,) times cos kx at the nodes of pieces, by the addition theorem for all
+    pieces of one width: a tenth of the cosines."""
+    total = np.empty((len(nodes), len(middle)))
+    widths, of_width = np.unique(np.round(half / half.max(), 12), return_inverse=True)
+    for i in range(len(widths)):
+        here = np.flatnonzero(of_width == i)
+        far, near = np.outer(middle[here], k), np.outer(half[here[0]] * nodes, k)
+        total[:, here] = np.cos(near) @ (c * np.cos(far)).T - np.sin(near) @ (c * np.sin(far)).T
+    return total
+
+
+def points(cell, reach, sparing=False):
+    """Points and weights (T,) on [0, 1] for radii up to `reach`; `sparing`: as many as FEW
+    says."""
+    if sparing:
+        for count, most in FEW:
+            if cell.L1 is None or reach * cell.pitch <= most:
+                return gauss_legendre(count)
     n = -(-_LEAST // POINTS)
     if cell.L1 is not None:
         n = max(n, int(np.ceil(reach * cell.pitch / _WIDEST)))
@@ -108,10 +130,14 @@ def points(cell, reach):
     return ((np.arange(n)[:, None] + x) / n).ravel(), np.tile(w / n, n)
 
 
-def spots(cell, b):
-    """:class:`Spots` of a :class:`Cell` of the radii b (S,), in l, 0 < b < d/2."""
+def spots(cell, b, N=None):
+    """:class:`Spots` of a :class:`Cell` of the radii b (S,), in l, 0 < b < d/2.
+
+    N : :func:`pieces` of the cell up to the largest radius and farther, where others are solved too: the radii then
+        have as few points as serve the largest of them
+    """
     b = np.asarray(b, dtype=float)
-    N, (x, weights) = pieces(cell, b.max()), points(cell, b.max())
+    (x, weights), N = points(cell, b.max(), N is not None), N or pieces(cell, b.max())
     t, w = b[:, None] * x, b[:, None] * weights
     ends = np.concatenate([t, b[:, None]], axis=1)
     far, near = ends[:, :, None] + t[:, None, :], ends[:, :, None] - t[:, None, :]

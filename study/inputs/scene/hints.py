@@ -86,6 +86,7 @@ class Parameters(TypedDict, total=False):
     beta: Value
     sigma: Value
     cut: Value
+    asperities_on: Literal["auto", "layer", "half_space"] | Many
     hardness: Value
     yield_strength: Value
     R: Value

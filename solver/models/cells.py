@@ -1,0 +1,97 @@
+"""What the laws of asperities leave out on a coated body: docs/model.md, Asperities on the coated body.
+
+Asperities that feel the body are right but for three things: the pressure of a spot is taken to be a mean over the
+angle, of the disc cell the neighbours have no places, and of random heights they are a mean. Asperities on a half-space
+of the layer's material, where their pitch is above h, err by all that the body changes.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..kernels.two_layers import layer_modulus
+from ..laws import LAWS
+from ..laws.cell.law import end
+from ..parameters import one_of
+from ..problem import far_apart
+from ..scaling import dimensionless, law_of, of_one_law
+
+#: Bases whose asperities could feel the body. A thin layer has an error of its own, far above this one.
+_BASES = ("layered", "stack", "auto")
+#: The mean over the angle errs by this part, times 2 λ to a power, in A, λ or p_max of resolved cells
+#: (tests/models/test_cells.py): of a square lattice, and of a hexagonal one, whose waves the disc cell has.
+_SQUARE, _HEX = (0.03, 3.5), (1e-3, 4.0)
+_ANGULAR = {"square_lattice": _SQUARE}
+#: The law that stands for one without a body of its own, as the power law is fitted to it, and for those that have no
+#: places of the neighbours; and the lattice with which it is compared.
+_DISC, _LATTICE = "disc_cell", "hex_lattice"
+#: An error is at most this: beyond, it says that the number means nothing.
+_MOST = 30.0
+
+
+def left_out(problem, solution):
+    """(B,) relative error of what asperities leave out of the coated body they stand on: the largest of p_max, λ and
+    D. 0 of smooth cases, of laws that do not know the asperities, and on a half-space where their pitch is at most h.
+    `solution` and problem have one unit."""
+    error = np.zeros(len(problem))
+    felt, there = problem.feels_layer(), one_of(problem.base, _BASES) & np.isfinite(problem.Ra) & problem.rough()
+    index = np.flatnonzero(there & np.isfinite(solution.P) & (felt | far_apart(problem.Nbar, problem.h)))
+    if not len(index):
+        return error
+    part, ended = problem.take(index), solution.take(index)
+    scaled = dimensionless(part).but(base=np.where(part.base == "auto", "layered", part.base))
+    ended = replace(ended, p0=_largest(ended) / part.E2, D=ended.D / part.R, A0=ended.A0 / part.R)
+    for rows in of_one_law(scaled):
+        some, state = scaled.take(rows), ended.take(rows)
+        error[index[rows]] = _of_felt(some, state) if some.feels_layer()[0] else _of_half_space(some, state)
+    return error
+
+
+def _largest(solution):
+    """p(0) (B,), or where it is not known the largest pressure of the profile."""
+    return np.where(np.isnan(solution.p0), np.fmax.reduce(solution.p, axis=1, initial=np.nan), solution.p0)
+
+
+@np.errstate(all="ignore")  # of pressures that are not known
+def _of_felt(part, solution):
+    """The error (B,) of asperities that feel the body, in units R = E2* = 1."""
+    name = str(part.micro[0])
+    factor, power = _ANGULAR.get(name, _HEX)
+    lam = np.fmax.reduce(solution.lam, axis=1, initial=0.0)
+    error = factor * (2 * lam) ** power
+    return error + _of_disc(part, lam, solution) if LAWS[name].smears else error
+
+
+def _of_disc(part, lam, solution):
+    """The error (B,) because the neighbours of a spot have no places, at the contact fractions lam (B,): by a cell on a
+    half-space. They lift the surface under the spots by a part of p/E that depends on λ, and hardly on the body; where
+    this is a larger part of A than on a half-space, λ and p_max err by as much more."""
+    y = np.sqrt(lam / (1 - lam))
+    ones = np.ones(len(lam))
+    disc, lattice = (LAWS[name].bind(ones, Nbar=ones, Ra=ones) for name in (_DISC, _LATTICE))
+    p = disc.p_star * disc.evaluate(y[:, None]).q[:, 0]
+    spots, true = disc.at(p[:, None]), lattice.at(p[:, None])
+    lifted = ((spots.A - true.A) / spots.A)[:, 0]
+    E = layer_modulus(part.n) / (1 + part.m)
+    A = (spots.A - true.A)[:, 0] / p * solution.p0 / (E * np.sqrt(part.Nbar))
+    more = np.maximum(A / solution.A0 / lifted, 1.0)
+    others = [np.abs(values / exact - 1)[:, 0] for values, exact in zip(spots[1:], true[1:], strict=True)]
+    return np.maximum(A / solution.D, more * np.maximum(*others))
+
+
+@np.errstate(all="ignore")
+def _of_half_space(part, solution):
+    """The error (B,) of asperities on a half-space though their pitch is above h, in units R = E2* = 1."""
+    if LAWS[str(part.micro[0])].on_body is None:
+        part = part.but(micro=_DISC)
+    on_body = law_of(part.but(asperities_on="layer"))
+    return _difference(law_of(part), on_body, np.minimum(solution.p0, end(on_body)), solution.D)
+
+
+def _difference(law, right, p, D):
+    """The largest relative difference (B,) of p_max, λ and D from those of the `right` law at the pressures p (B,)."""
+    spots, true = law.at(p[:, None]), right.at(p[:, None])
+    of_spots = [np.abs(values / exact - 1)[:, 0] for values, exact in zip(spots[1:], true[1:], strict=True)]
+    deeper = (true.A - spots.A)[:, 0] / D
+    error = np.maximum.reduce([*of_spots, np.abs(deeper) / np.maximum(1 + deeper, 1.0)])
+    return np.where(np.isfinite(p), np.minimum(np.nan_to_num(error, nan=_MOST), _MOST), 0.0)

@@ -1,0 +1,77 @@
+"""What the asperities of a study press on: the coated body itself, or a half-space of the layer's material."""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from solver.laws import LAWS
+from solver.laws.own_table import PREFIX
+from solver.parameters import one_of
+from solver.problem import FELT, can_feel, far_apart, feels
+
+from ..terminal import shown
+from .grid import Grid, along
+from .vocabulary import cases_with
+
+#: What asperities have pressed on, value of `asperities_used` -> its name.
+USED = ("none", "half_space", "layer")
+#: Bases whose `model_error` is that of the exact layer, though asperities on them do not feel it.
+_THIN = ("thin_layer", "thin_stack")
+
+
+def felt(grid: Grid) -> np.ndarray:
+    """bool, along the dimensions of the grid: the cases whose asperities feel what lies below the surface."""
+    return feels(*(along(grid, name) for name in ("base", "micro", "asperities_on", "Nbar", "h")))
+
+
+def is_said(grid: Grid) -> bool:
+    """Whether the results say what the asperities press on: some feel the layer, or the study names `asperities_on`."""
+    return "asperities_on" in grid.values or bool(felt(grid).any())
+
+
+def used(grid: Grid) -> np.ndarray:
+    """int8, over all dimensions of the grid: places in `USED`."""
+    rough = one_of(along(grid, "micro"), [name for name, law in LAWS.items() if law.rough])
+    return np.broadcast_to(rough.astype(np.int8) + felt(grid), grid.shape).astype(np.int8)
+
+
+def stand_apart(grid: Grid) -> np.ndarray:
+    """bool, along the dimensions of the grid: asperities stand farther apart than the layer is thick, and numbers of the
+    case depend on that."""
+    if not {"h", "Nbar"} <= {*grid.values}:
+        return np.False_
+    base, micro, check = (along(grid, name) for name in ("base", "micro", "model_check"))
+    exact = one_of(base, ("layered", "stack")) | (base == "auto") & can_feel(base, micro)
+    against = (base == _THIN[1]) | (base == _THIN[0]) & (check == "first_order")
+    counts = exact | against & can_feel("layered", micro)
+    there = cases_with("Nbar", partial(along, grid)) & cases_with("h", partial(along, grid))
+    return counts & there & far_apart(along(grid, "Nbar"), along(grid, "h"))
+
+
+def mistakes(grid: Grid, sections: Any) -> list[str]:
+    """Messages about asperities that are to feel a layer and cannot, and about a choice where there is none."""
+    if "asperities_on" not in sections:
+        return []
+    base, micro, on = np.broadcast_arrays(*(along(grid, name) for name in ("base", "micro", "asperities_on")))
+    can, layer, messages = can_feel("layered", micro), on == "layer", []
+    if (wrong := ~can & (layer if can.any() else on != "auto")).any():
+        laws = " or ".join(shown(name) for name, law in LAWS.items() if law.on_body)
+        way_out = f'leave it out, or take micro = {laws}'
+        messages.append(f"{_with(on[wrong], 'micro', micro[wrong])}, {_why(str(micro[wrong][0]))}: {way_out}")
+    if (thin := layer & can & ~one_of(base, FELT)).any():
+        way_out = 'take base = "layered" or "stack", or asperities_on = "auto"'
+        messages.append(f"{_with(on[thin], 'base', base[thin])}, on which they press on a half-space: {way_out}")
+    return messages
+
+
+def _with(words: np.ndarray, name: str, values: np.ndarray) -> str:
+    return f"asperities_on = {shown(str(words[0]))} is given with {name} = {shown(str(values[0]))}"
+
+
+def _why(micro: str) -> str:
+    if not LAWS[micro].rough:
+        return "which has no asperities"
+    if micro == "power_law" or micro.startswith(PREFIX):
+        return "whose A[p] is given, whatever asperities press on"
+    return "a law that takes no kernel of the body"

@@ -44,8 +44,8 @@ LAYERED = (
     Case("a soft bonded film", 2e-5, 0.003, 27, (336, 672, 1344), Layer(0.006, 0.2, bonded=True)),
     Case("a hard bonded coating", 4e-5, 0.002, 29, (360, 720, 1440), Layer(0.015, 4.0, bonded=True)),
 )
-#: Layers thinner than the pitch: one that becomes ever thinner, and four of other stiffness. The mesh of the hardest is
-#: finer: its spots are the smallest.
+#: Layers thinner than the pitch: one that becomes ever thinner, and four of other stiffness, of which the hardest also
+#: with four times as many spots.
 THINNER = tuple(
     Case(f"h = {h:g}", 2e-5, 0.0054, 15, (366, 732), Layer(h, 0.5)) for h in (0.016, 0.008, 0.004, 0.002, 0.001)
 )
@@ -54,6 +54,7 @@ THIN = (
     Case("n = 2.06, bonded", 4e-5, 0.0054, 15, (366, 732, 1464), Layer(0.00045, 2.06, bonded=True)),
     Case("n = 5, bonded", 6e-5, 0.0054, 17, (394, 788, 1576), Layer(0.0012, 5.0, bonded=True)),
     Case("n = 20, frictionless", 6e-5, 0.0054, 17, (394, 788, 1576), Layer(0.0009, 20.0)),
+    Case("n = 20, more spots", 6e-5, 0.0027, 31, (752, 1504), Layer(0.00045, 20.0)),
 )
 
 

@@ -99,7 +99,7 @@ def _films(found: xr.Dataset, panel) -> None:
         at, change = one["pitch_over_h"].values, one["change"].sel(quantity="A").values
         panel.plot(at, 100 * abs(change), color=COLOURS[i], linestyle="", marker="o", markersize=3)
     panel.set(xscale="log", yscale="log", ylim=(3e-3, 500), xlim=(0.95, 17), xlabel="pitch/$h$")
-    panel.set_ylabel("$|A/A_{\\rm half-space} - 1|$ (%)")
+    panel.set_ylabel("change of $A$ by the coated body (%)")
     _plain(panel, [1, 2, 3, 5, 10, 16])
     panel.legend(fontsize=6.5, title=f"λ = {SHOWN:g}; o cell, — the law", title_fontsize=6.5, loc="lower right")
 
@@ -112,7 +112,7 @@ def draw_cells(found: xr.Dataset, path: Path) -> None:
         figure = Figure(figsize=(6.9, 3.1), layout="constrained")
         panels = figure.subplots(1, 2, sharey=True)
         stiff = sorted({*found["n"].values.tolist()})
-        for panel, name, symbol in zip(panels, ("A", "p_max"), ("$A$", "$p_{max}$"), strict=True):
+        for panel, name, symbol in zip(panels, ("A", "p_max"), ("$A$", "$p_{\\max}$"), strict=True):
             for n, colour in zip(stiff, COLOURS[::-1], strict=True):
                 own = found.isel(cell=found["n"].values == n)
                 error = 100 * abs(own["error"].sel(quantity=name)).clip(LEAST)

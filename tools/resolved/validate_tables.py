@@ -102,7 +102,7 @@ def thinner_table(found: xr.Dataset) -> str:
             row += [form.format(float(one[key].sel(asperities_on=on))) for on in ("half_space", "layer")]
         rows.append(row)
     heads = [HEADS[key] for key in ("D", "a", "p_max")]
-    names = [name for head in (*heads, "cell means") for name in (f"{head}, h.-s.", "layer")]
+    names = [name for head in (*heads, "cell means") for name in (f"{head}: half-space", "layer")]
     return table(["pitch/h", "b(0)/h", *names], rows)
 
 
@@ -122,7 +122,7 @@ def cell_table(found: xr.Dataset) -> str:
         for on, digits in (("half_space", 1), ("layer", 2)):
             row += [f"{float(value):+.{digits}%}" for value in one["error"].sel(on=on).values]
         rows.append(row)
-    heads = [f"{name}, {on}" for on in ("h.-s.", "layer") for name in ("A", "λ", "p_max")]
+    heads = [name for on in ("half-space", "layer") for name in (f"{on}: A", "λ", "p_max")]
     return table(["pitch/h", "λ", "lattice", "n, interface", "ν1", "m", *heads], rows)
 
 

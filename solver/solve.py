@@ -12,7 +12,7 @@ from .models.graded import solve_graded
 from .models.model_error import judged
 from .models.named import model_of, solve_named
 from .models.plastic_share import has_yield, plastic_share
-from .models.range_of_law import radii_of
+from .models.range_of_law import beyond_end, radii_of
 from .models.table_ends import beyond_table
 from .problem import Problem
 from .scaling import dimensionless, refused
@@ -25,7 +25,7 @@ from .threads import one_blas_thread
 
 @one_blas_thread()
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN and a status
-def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
+def solve(problem: Problem, x: ArrayLike = (0.0, 1.0), *, extrapolate: bool = False) -> Solution:
     """Solve a batch of cases. One that cannot be solved is a status and NaN.
 
     Smooth on a half-space is Hertz's closed form; smooth on a thin layer one linear solve; rough cases, and all on the
@@ -37,6 +37,8 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
     ----------
     problem : :class:`~solver.problem.Problem`, cases of any mixture of bases, micro laws, bondings and schemes
     x : (m,), radii r/a in [0, 1] at which the profiles p and λ are wanted
+    extrapolate : whether a contact keeps its numbers where spots that feel the coated body are so large that their law
+        has ended. Beyond, its curves are straight lines in their logarithms
 
     Returns
     -------
@@ -79,6 +81,8 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
     if shaped(problem).any():
         beyond = ~invalid & beyond_table(scaled, solution)
         solution = solution.refused(beyond, Status.OUTSIDE_LAW)
+    if not extrapolate and (felt := problem.feels_layer()).any():
+        solution = solution.refused(~invalid & felt & beyond_end(problem, solution), Status.OUTSIDE_LAW)
     solution = replace(solution, model_error=solution.model_error + left_out(problem, solution))
     if yields:
         solution = replace(solution, plastic_share=plastic_share(problem, solution.lam[:, len(x) :]))

@@ -16,7 +16,7 @@ from .data.dataset import Parts, parts
 from .data.one_case import OneCase
 from .data.si import dataset_in_units, in_units
 from .derivatives import sensitivities as derivatives_of
-from .in_words import FarOutside, doubts, falling, far_outside
+from .in_words import FarOutside, beside_rules, doubts, far_outside
 from .inputs.checks import unloading
 from .inputs.definition import POINTS, Definition, StudyError
 from .inputs.punch.stresses import none_in
@@ -71,8 +71,8 @@ def solve(
         Nbar and Ra, as the paper's is
     sigma, cut : of micro = "normal_heights", standard deviation of the heights, and the largest above the mean over it;
         "uniform_heights" has sigma alone
-    asperities_on : what asperities press on: "layer", the coated body itself; "half_space", one of the layer's material;
-        "auto", the coated body where their pitch 1/sqrt(Nbar) is above h (docs/model.md)
+    asperities_on : what asperities press on: "layer", the coated body itself; "half_space", one of the material of the
+        layer; "auto", the coated body where their pitch 1/sqrt(Nbar) is above h (docs/model.md)
     hardness, yield_strength : of micro = "elastic_plastic", of the softer of asperity and what it presses on. One of
         both is enough: the hardness is then 2.84 times the yield strength. Beside
         other rough laws they set `validity`
@@ -171,7 +171,7 @@ def solve(
         warnings.warn(text, stacklevel=2)
     if chunks is None:
         contacts = found if definition.grid.sizes else OneCase(made)
-        beyond = doubts(contacts) if definition.scene else falling(contacts)
+        beyond = doubts(contacts) if definition.scene else beside_rules(contacts)
         if beyond:
             warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)
     return found

@@ -47,6 +47,20 @@ def left_out(problem, solution):
     return error
 
 
+def last_fraction(problem):
+    """(B,): the largest contact fraction λ that the law of asperities on their coated bodies knows; 0 where it knows
+    none, NaN of asperities that do not feel the body, and inf of laws without an end."""
+    fraction = np.full(len(problem), np.nan)
+    felt = np.flatnonzero(problem.feels_layer())
+    scaled = dimensionless(problem.take(felt))
+    for rows in of_one_law(scaled.but(base=np.where(scaled.base == "auto", "layered", scaled.base))):
+        law = law_of(scaled.take(rows))
+        most = end(law)
+        lam = law.at(np.where(np.isfinite(most), most, 0.0)[:, None]).lam[:, 0]
+        fraction[felt[rows]] = np.where(most > 0, np.where(np.isinf(most), np.inf, lam), 0.0)
+    return fraction
+
+
 def _largest(solution):
     """p(0) (B,), or where it is not known the largest pressure of the profile."""
     return np.where(np.isnan(solution.p0), np.fmax.reduce(solution.p, axis=1, initial=np.nan), solution.p0)
@@ -59,7 +73,9 @@ def _of_felt(part, solution):
     factor, power = _ANGULAR.get(name, _HEX)
     lam = np.fmax.reduce(solution.lam, axis=1, initial=0.0)
     error = factor * (2 * lam) ** power
-    return error + _of_disc(part, lam, solution) if LAWS[name].smears else error
+    if not LAWS[name].smears:
+        return error
+    return error + _of_disc(part, lam, solution)
 
 
 def _of_disc(part, lam, solution):

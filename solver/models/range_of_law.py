@@ -30,20 +30,26 @@ def radii_of(problem, all_of_them=False):
 
 def outside_law(problem, solution):
     """(B,) bool: p(0) is below the range of the law, or p(0) or a pressure of the profile is above it; NaN is within.
-    Asperities that feel the body have a law that ends, on some bodies at once. `solution` is in the units of
-    `problem`."""
+    `solution` is in the units of `problem`."""
     outside = np.zeros(len(problem), dtype=bool)
     for law in _laws(problem):
         index, p0, E = _of_law(problem, solution, law)
         largest = np.maximum(p0, np.fmax.reduce(solution.p[index], axis=1, initial=0.0))
         outside[index] = (p0 < law.least * E) | (largest > law.most * E)
+    return outside
+
+
+def beyond_end(problem, solution):
+    """(B,) bool: p(0) or a pressure of the profile is beyond the end of the law of asperities that feel the body, which
+    on some bodies ends at once. `solution` is in the units of `problem`, whose bases have names."""
+    beyond = np.zeros(len(problem), dtype=bool)
     felt = np.flatnonzero(problem.feels_layer())
     scaled = dimensionless(problem.take(felt))
     for rows in of_one_law(scaled):
         index, most = felt[rows], end(law_of(scaled.take(rows)))
         largest = np.fmax(solution.p0[index], np.fmax.reduce(solution.p[index], axis=1, initial=0.0))
-        outside[index] = (largest > most * problem.E2[index]) | ~(most > 0)
-    return outside
+        beyond[index] = (largest > most * problem.E2[index]) | ~(most > 0)
+    return beyond
 
 
 def edge_error(problem, solution):

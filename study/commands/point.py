@@ -153,7 +153,8 @@ def as_numbers(contact: xr.Dataset) -> dict:
     shown |= {"plastic_share": described(contact, "plastic_share")} if yields else {}
     shown |= {"stable": bool(contact["stable"])} if "stable" in contact and contact["status"] == 0 else {}
     shown |= {name: number(contact[name]) for name in ("error", "model_error")}
-    shown |= {name: decode(contact[name]).item() for name in ("status", "model_used")}
+    flags = [name for name in ("status", "model_used", "asperities_used") if name in contact]
+    shown |= {name: decode(contact[name]).item() for name in flags}
     shown["validity"] = decode(contact["validity"]).item().split()
     return shown | {"beware": doubts(contact)}
 

@@ -177,6 +177,7 @@
   function trouble(found) {
     const command = "The command below solves it.";
     if (found.status === "film") return `The layer is thinner than 1/256 of the contact radius (about ${Contact.readable(found.a * found.case_.R, "m")}). This page does not solve that. ${command}`;
+    if (found.status === "apart") return `The asperities are farther apart than the layer is thick (pitch 1/√N̄ = ${Contact.readable(1 / Math.sqrt(found.inputs.v.Nbar.value), "m")}): they press on the body through it. This page does not solve that. ${command}`;
     if (found.status === "lift_off") return "The ball lifts off inside the contact, or the pressure is tensile there: there is no full disc of contact, and the model has no solution.";
     if (found.status === "open") return `This page finds no solution here. ${command.replace("solves it", "may solve it, or says what is wrong")}`;
     const elsewhere = Object.keys(Contact.CHOICES).map((name) => found.problems[name]).filter(Boolean); // of the address

@@ -22,8 +22,7 @@ NODES = (16, 22)
 _SCRIPTS = ("core.js", "stress.js", "numbers.js", "contact.js", "strength.js", "drawing.js", "map.js", "page.js")
 #: Limits of assumptions and doubts, which the page looks at as the program does.
 _LIMITS = {
-    assumptions: ("STEEP", "COMPRESSED", "STRETCHED", "FEW_SPOTS", "MERGING", "STEEP_SPOT", "SPOT_OVER_LAYER")
-    + ("PITCH_OVER_LAYER", "HARDEST"),
+    assumptions: ("STEEP", "COMPRESSED", "STRETCHED", "FEW_SPOTS", "MERGING", "STEEP_SPOT"),
     doubts: ("YIELD", "STIFF"),
     pressures: ("RING",),
     strength: ("RUBBER",),
@@ -54,7 +53,6 @@ def contents() -> dict:
         "materials": [{key: getattr(entry, key) for key in numbers} | strengths(entry) for entry in entries],
         "bounds": {name: ends(VOCABULARY[name].parameter.interval)[:2] for name in bounded},
         "limits": {name: getattr(module, name) for module, names in _LIMITS.items() for name in names},
-        "seen": [(pitch, *errors) for pitch, errors in assumptions.SEEN.items()],
         "merging": _MERGING,
     }
 

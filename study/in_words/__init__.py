@@ -1,8 +1,7 @@
 """A contact in words: each quantity with its unit and how sure it is, how it was solved, and what it rests on."""
 
 from .early import FarOutside, far_outside
-from .notes.unloading import falling
-from .sentences import MODELS, NOT_VIOLATED, doubts
+from .sentences import MODELS, NOT_VIOLATED, beside_rules, doubts
 from .text import MOST_CASES, SHOWN, Summary, summary
 
 __all__ = [
@@ -12,8 +11,8 @@ __all__ = [
     "SHOWN",
     "FarOutside",
     "Summary",
+    "beside_rules",
     "doubts",
-    "falling",
     "far_outside",
     "summary",
 ]

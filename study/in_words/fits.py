@@ -44,6 +44,10 @@ _FLOWS = (
     "slope dP/dD at the beginning of the unloading over the contact radius there (Oliver and Pharr), and fit "
     'x="a", y="dP_dD" (docs/afm.md).'
 )
+_ENDED = (
+    "The deepest contact is beyond the end of the law of its asperities on the coated body: the spots merge or, of the "
+    "disc cell on a soft layer, go wrong. Take points that are less deep, or give asperities_on."
+)
 
 
 def of_fit(fitted: xr.Dataset) -> str:
@@ -92,8 +96,10 @@ def _of_curve(curve: xr.Dataset, i: int, count: int, inputs: list[str], shifts: 
     lines += [_FLOWS] if "flows" in curve and bool(curve["flows"]) else []
     broken = str(decode(curve["validity"]).item()).split() if int(curve["validity"]) else []
     lines += [f"At the deepest point: {RULES[name].sentence}" for name in broken if name in RULES]
+    ended = "outside_law" in curve and bool(curve["outside_law"])
+    lines += [_ENDED] * ended
     lines += [f"At the deepest point {NOT_VIOLATED[0].lower()}{NOT_VIOLATED[1:]}"] * (
-        count == 1 and not broken and not doubts and status == "converged"
+        count == 1 and not broken and not ended and not doubts and status == "converged"
     )
     return lines
 

@@ -14,6 +14,12 @@ from ..specimen.quantities import READABLE, readable
 
 #: Words that a text needs before it, to be understood among others.
 _WORDS = {"shape": "shape", "tip": "tip", "adhesion": "adhesion", "branch": "branch"}
+#: What asperities press on, by the word of `asperities_on`.
+_ASPERITIES = {
+    "auto": "asperities on the layer where their pitch is above h",
+    "layer": "asperities on the layer",
+    "half_space": "asperities on a half-space of the layer's material",
+}
 #: Models of adhesion as people write them.
 _MODELS = {"jkr": "JKR", "dmt": "DMT", "maugis": "Maugis"}
 
@@ -27,6 +33,7 @@ def given_text(case: xr.Dataset, name: str) -> str:
     if isinstance(value, (str, np.str_)):
         word = _MODELS.get(str(value), str(value)) if name == "adhesion" else str(value)
         said = f"{_WORDS[name]} {word}" if name in _WORDS else word.replace("_", " ")
+        said = _ASPERITIES[str(value)] if name == "asperities_on" else said
         return f"{name} of {value}" if name in BODIES else said + assumed
     text = f"{name} = {in_its_unit(case, name, float(value), spread_of(case, name))}"
     text += " Ra/E1*^beta" * (name == "B") + "°" * (name in ANGLES) + assumed

@@ -13,6 +13,7 @@ from ..inputs.vocabulary import VOCABULARY, bodies_of
 from ..rules import rule
 from ..terminal import rounded
 from .influence import influence
+from .notes.asperities import ended, presses_on
 from .notes.punch import of_adhesion, of_shape, sticks, unit_of_length
 from .notes.unloading import falling
 from .pressures import largest_of_all
@@ -43,7 +44,12 @@ def doubts(contact: xr.Dataset) -> list[str]:
     found = rule.sentences(v | (largest_of_all(contact) if v["p_max"].attrs.get("units") == "Pa" else {}))
     yields = rule.RULES["body_yields"].sentence
     found = [f"{text} {which_yields(contact)}".rstrip() if text.endswith(yields) else text for text in found]
-    return found + falling(contact)
+    return found + beside_rules(contact)
+
+
+def beside_rules(contact: xr.Dataset) -> list[str]:
+    """What is said of contacts beside the rules, which see no problem that could be solved again."""
+    return falling(contact) + ended(contact)
 
 
 def _near_0(case: xr.Dataset) -> str:
@@ -73,7 +79,7 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
         exact = used in ("half_space", "layered", "stack")  # then `model_error` is that of the micro law
         against = "the micro law itself errs" if exact else "against the exact layered contact it errs"
         errs = f"; {against} by about {rounded(100 * error)} %" if error > 0 else ""
-        found.append(f"Model: {model}{errs}.{WHOSE * (not used.startswith('smooth'))}")
+        found.append(f"Model: {model}{presses_on(case)}{errs}.{WHOSE * (not used.startswith('smooth'))}")
     found += of_shape(case) + of_adhesion(case)
     beyond = doubts(case)
     found += [f"Beware: {sentence}" for sentence in beyond]

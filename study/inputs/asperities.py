@@ -8,21 +8,16 @@ import numpy as np
 from solver.laws import LAWS
 from solver.laws.own_table import PREFIX
 from solver.parameters import one_of
-from solver.problem import FELT, can_feel, far_apart, feels
+from solver.problem import FELT, can_feel, far_apart
 
 from ..terminal import shown
-from .grid import Grid, along
+from .grid import Grid, along, felt
 from .vocabulary import cases_with
 
 #: What asperities have pressed on, value of `asperities_used` -> its name.
 USED = ("none", "half_space", "layer")
 #: Bases whose `model_error` is that of the exact layer, though asperities on them do not feel it.
 _THIN = ("thin_layer", "thin_stack")
-
-
-def felt(grid: Grid) -> np.ndarray:
-    """bool, along the dimensions of the grid: the cases whose asperities feel what lies below the surface."""
-    return feels(*(along(grid, name) for name in ("base", "micro", "asperities_on", "Nbar", "h")))
 
 
 def is_said(grid: Grid) -> bool:
@@ -37,8 +32,8 @@ def used(grid: Grid) -> np.ndarray:
 
 
 def stand_apart(grid: Grid) -> np.ndarray:
-    """bool, along the dimensions of the grid: asperities stand farther apart than the layer is thick, and numbers of the
-    case depend on that."""
+    """bool, along the dimensions of the grid: asperities stand farther apart than the layer is thick, and numbers of
+    the case depend on that."""
     if not {"h", "Nbar"} <= {*grid.values}:
         return np.False_
     base, micro, check = (along(grid, name) for name in ("base", "micro", "model_check"))
@@ -57,7 +52,7 @@ def mistakes(grid: Grid, sections: Any) -> list[str]:
     can, layer, messages = can_feel("layered", micro), on == "layer", []
     if (wrong := ~can & (layer if can.any() else on != "auto")).any():
         laws = " or ".join(shown(name) for name, law in LAWS.items() if law.on_body)
-        way_out = f'leave it out, or take micro = {laws}'
+        way_out = f"leave it out, or take micro = {laws}"
         messages.append(f"{_with(on[wrong], 'micro', micro[wrong])}, {_why(str(micro[wrong][0]))}: {way_out}")
     if (thin := layer & can & ~one_of(base, FELT)).any():
         way_out = 'take base = "layered" or "stack", or asperities_on = "auto"'

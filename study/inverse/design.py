@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from ..carried import with_coordinates
-from ..in_words import doubts, falling
+from ..in_words import beside_rules, doubts
 from ..inputs.definition import StudyError
 from ..inputs.vocabulary import NOT_RUN, ROWS
 from ..specimen.foreign import plain
@@ -78,7 +78,7 @@ def design(
     answer = answered(want, pieces, t, change, stream)
     designed = contacts.assign(_variables(want, answer, contacts))
     designed, left_out = with_coordinates(designed, parameters)
-    beyond = doubts(designed) if want.definition.scene else falling(designed)
+    beyond = doubts(designed) if want.definition.scene else beside_rules(designed)
     left_out += ["\n".join(["a contact found is beyond what the model describes:", *beyond])] * bool(beyond)
     for text in left_out:
         warnings.warn(text, stacklevel=2)

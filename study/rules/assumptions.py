@@ -14,7 +14,7 @@ SPOT_OVER_LAYER = 0.1
 """On a half-space of the layer's material the central spot must be small against the layer, b <= 0.1 h."""
 PITCH_OVER_LAYER = 2.0
 """A layer bends between asperities whose pitch 1/sqrt(N̄) is larger than this times h. On a half-space of its material
-A[p] then errs: by up to 2.4 % where the pitch is 2 h, by up to 11 % where it is 3 h (`make validate`, docs/validate.md)."""
+A[p] then errs: by up to 2.4 % at a pitch of 2 h, by up to 11 % at 3 h (`make validate`, docs/validate.md)."""
 NOT_THIN = 0.1  # largest model error of a thin layer: `make validity` prints and draws where it reaches these 10 %
 MERGING = 0.4
 """Largest λ(0) of spots that do not merge: the disc cell then overestimates A[p] by 10 % against a square lattice of

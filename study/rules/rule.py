@@ -109,8 +109,8 @@ def numbers(variables: Mapping) -> Mapping:
     arrays, since DataArrays take as long as a contact.
 
     Beside the variables: layered, rough, thin (bool: a thin layer was used), on_half_space (bool: asperities press on
-    one, whatever their pitch), E1* (reduced modulus of the layer), spots (how many touch), b (radius of the central one), slope
-    (f'(a) of the shape of the punch), pressure (p(0), and where that is not finite the mean).
+    one, whatever their pitch), E1* (reduced modulus of the layer), spots (how many touch), b (radius of the central
+    one), slope (f'(a) of the shape of the punch), pressure (p(0), and where that is not finite the mean).
     """
     dims, used = variables["status"].dims, variables["model_used"].attrs
     arrays = {name: along(dims, array) for name, array in variables.items() if set(array.dims) <= set(dims)}

@@ -34,7 +34,7 @@ def cases(control: str) -> list[dict]:
     columns = parameters(control)
     columns["value"] = columns.pop(control)
     columns["bonded"], columns["rough"] = columns.pop("bonding") == "bonded", columns.pop("micro") == "disc_cell"
-    columns["layered"] = columns.pop("base") == "layered"
+    columns["layered"], _ = columns.pop("base") == "layered", columns.pop("asperities_on")
     columns["n"] = np.where(columns["layered"], columns["n"], 1.0)
     rows = zip(*(column[::EVERY].tolist() for column in columns.values()), strict=True)
     return [dict(zip(columns, row, strict=True), control=control) for row in rows]

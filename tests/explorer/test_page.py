@@ -21,8 +21,7 @@ SIZES = {
     "GPa": 1e9, "MPa": 1e6, "kPa": 1e3, "Pa": 1.0, "MN/m": 1e6, "kN/m": 1e3, "N/m": 1.0, "mN/m": 1e-3, "": 1.0,
 }  # fmt: skip
 #: Masks that the page looks at; the others are of thin layers, cups and strengths, which it does not have.
-LOOKED_AT = {"few_spots", "spot_not_small_against_h", "spots_merging", "strain_not_small"}
-LOOKED_AT |= {"asperity_strain_not_small", "pitch_not_small_against_h"}
+LOOKED_AT = {"few_spots", "spots_merging", "strain_not_small", "asperity_strain_not_small"}
 
 
 def contacts(many: int) -> list[dict[str, str]]:
@@ -75,12 +74,17 @@ def test_each_digit_is_that_of_the_command(explorer, monkeypatch):
     ± of what the page does not show takes five sixths of the time of the command, and is left out."""
     monkeypatch.setattr("study.commands.point._spreads_of_derived", lambda contact: {})
     solved, away, times, other = 0, [], [], 0
-    for case in contacts(230):
+    for case in contacts(260):
         hash_ = "&".join(f"{name}={quote(text)}" for name, text in case.items())
         shown = explorer.evaluate(SHOWN, hash_)
         answer = of_python(shown["command"])
         if shown["trouble"]:
-            assert "1/256" in shown["trouble"] or answer["status"] != "converged", (case, shown["trouble"])
+            elsewhere = (
+                "1/256" in shown["trouble"]
+                or answer.get("asperities_used") == "layer"
+                and "farther apart" in shown["trouble"]
+            )
+            assert elsewhere or answer["status"] != "converged", (case, shown["trouble"])
             continue
         solved += 1
         assert answer["status"] == "converged", case

@@ -81,6 +81,17 @@ def test_an_address_that_the_page_cannot_solve_is_told(explorer):
     assert "is no material of the table" in explorer.inner_text("#wrong-body")
 
 
+def test_asperities_that_feel_the_body_are_left_to_the_command(explorer):
+    """Farther apart than the layer is thick; up to there the page solves them."""
+    rough = (
+        "R=5%20mm&punch=steel%2052100&layer=TiN&bonding=bonded&body=steel%2052100&P=5%20N&micro=disc_cell&Ra=20%20um"
+    )
+    shown = explorer.evaluate(SHOWN, f"{rough}&h=1%20um&Nbar=0.1%201/um^2")
+    assert "farther apart than the layer is thick" in shown["trouble"] and "Nbar=" in shown["command"]
+    shown = explorer.evaluate(SHOWN, f"{rough}&h=4%20um&Nbar=0.1%201/um^2")
+    assert not shown["trouble"]
+
+
 def test_redraws_while_a_slider_moves(explorer):
     """The time is printed: wanted below 16 ms on an idle machine."""
     explorer.click("#restart")

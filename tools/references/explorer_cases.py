@@ -29,6 +29,7 @@ def parameters(control: str) -> dict[str, np.ndarray]:
         "bonding": np.where(bonded < 0.5, "bonded", "frictionless"),
         "base": np.where(base > 0.97, "half_space", "layered"),
         "micro": np.where(rough < 0.5, "disc_cell", "smooth"),
+        "asperities_on": np.full(MANY, "half_space"),  # which core.js has, whatever the pitch; contact.js judges that
         "Nbar": 10 ** (3 * of_Nbar + 4),
         "Ra": 10 ** (2 * of_Ra - 3.5),
     }

@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from solver import Status
+
 from ...in_words.fits import NAMES_OF_SHIFTS
 from ...inputs.scene.layers import moduli_of
 from ...inputs.vocabulary import NOT_RUN, ROWS
@@ -138,21 +140,22 @@ def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndar
     D0 = fitted["D0"].values if "D0" in fitted else np.zeros(len(X))
     good = np.isfinite(value).all(axis=1) & (deepest > D0)
     flags, valid, about = np.zeros(len(X), np.int64), np.where(good, deepest, np.nan), {}
-    plastic = np.zeros(len(X), bool)
+    plastic, outside = np.zeros((2, len(X)), bool)
     if good.any():
         contacts = _contacts(question, value[good], (deepest - D0)[good])
         flags[good], about = contacts["validity"].values, contacts["validity"].attrs
+        outside[good] = contacts["status"].values == Status.OUTSIDE_LAW
         touched = value[good, model.unknowns.index(model.modulus)] if model.modulus in model.unknowns else None
         touched = np.full(good.sum(), model.value(model.modulus)) if touched is None else touched
         plastic[good] = flows(model, touched, contacts)
-        broken = np.flatnonzero(flags != 0)
+        broken = np.flatnonzero((flags != 0) | outside)
         holds, fails = np.zeros(len(broken), int), np.full(len(broken), 2**_HALVINGS)  # in parts of the depth
         at_once = _all_parts(question, value[broken], (deepest - D0)[broken]) if 0 < len(broken) <= _FEW else None
         for _ in range(_HALVINGS if len(broken) else 0):
             part = (holds + fails) // 2
             x = part / 2**_HALVINGS * (deepest - D0)[broken]
             if at_once is None:
-                good_there = _contacts(question, value[broken], x)["validity"].values == 0
+                good_there = _hold(_contacts(question, value[broken], x))
             else:
                 good_there = at_once[np.arange(len(broken)), part]
             holds, fails = np.where(good_there, part, holds), np.where(good_there, fails, part)
@@ -164,14 +167,22 @@ def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndar
         "flows": ("curve", plastic, {"long_name": "whether a sharp tip makes the body flow: E is no modulus"}),
         f"{model.x}_valid": ("curve", valid, {"units": ROWS[model.x].unit}),
     }
+    if outside.any():
+        about = {"long_name": "whether the deepest contact is outside of the law of its asperities"}
+        variables["outside_law"] = "curve", outside, about
     return xr.Dataset(variables)
+
+
+def _hold(contacts: xr.Dataset) -> np.ndarray:
+    """(M,) bool: contacts that violate no assumption, and are in the range of the law of their asperities."""
+    return (contacts["validity"].values == 0) & (contacts["status"].values != Status.OUTSIDE_LAW)
 
 
 def _all_parts(question: Asked, value: np.ndarray, x: np.ndarray) -> np.ndarray:
     """(M, 1 + parts) bool: no assumption is violated at a part of the depths x (M,)."""
     parts = np.arange(1, 2**_HALVINGS)
     every = np.repeat(value, len(parts), axis=0), (x[:, None] * parts / 2**_HALVINGS).ravel()
-    good = _contacts(question, *every)["validity"].values == 0
+    good = _hold(_contacts(question, *every))
     return np.pad(good.reshape(len(x), -1), ((0, 0), (1, 0)))
 
 

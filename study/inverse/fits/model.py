@@ -159,12 +159,15 @@ class Model:
         return changed
 
     def solved(self, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:
-        """y (M,) at x (M,), both in SI, for values (M,) of inputs; NaN where a contact has no solution."""
+        """y (M,) at x (M,), both in SI, for values (M,) of inputs; NaN where a contact has no solution.
+
+        A tile of a table may reach beyond the end of a law of asperities: only the fitted contacts are judged.
+        """
         changed = self.scene_of(values)
         numbers = {name: value for name, value in changed.parameters.items() if name in PARAMETERS}
         unit, R = changed.unit, changed.R
         control = with_unit(x, tuple(-power for power in VOCABULARY[self.x].powers), unit, R)
         numbers = {name: value for name, value in numbers.items() if name not in ("P", "a", "D")} | {"rtol": _RTOL}
-        solution = solve(Problem.of(**{self.x: control}, **numbers), np.array([0.0]))
+        solution = solve(Problem.of(**{self.x: control}, **numbers), np.array([0.0]), extrapolate=True)
         y = with_unit(getattr(solution, self.y), VOCABULARY[self.y].powers, unit, R)
         return np.where(solution.status == 0, y, np.nan)

@@ -140,7 +140,7 @@ def measure() -> dict:
         "sizes": by_size,
         "flatness": flatness(by_size),
         "threads": threads(),
-        "asperities_on": felt(),
+        "asperities_on": [*felt()],
         "blas_threads": blas_threads(("random",), (2,)),
         "whole_run": [beside_the_solver(run)],
         "papers_way": papers_way(),

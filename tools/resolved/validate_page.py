@@ -72,8 +72,8 @@ The same sphere, at a pitch of 0.0054, on four layers, and on the hardest also w
 On the coated body the lattice law is right to {thin_D:.2%} in the depth, {thin_a:.2%} in the width and {thin_p_max:.2%}
 in the largest pressure, which is known to {known_p_max:.2%}; the real area is right as well as it is known. What is
 left of depth and width is that of two scales with few spots, {thin_spots}: with four times as many the hardest
-layer has {more_D:.2%} and {more_a:.2%}. `model_error` of asperities on the half-space says what the coated body would change;
-that of the disc cell also what a lattice would.
+layer has {more_D:.2%} and {more_a:.2%}. `model_error` of asperities on the half-space says what the coated body would
+change; that of the disc cell also what a lattice would.
 
 On a layer of n = 0.5 without friction that becomes thinner, the lattice law on a half-space of the layer's material and
 on the layer errs by

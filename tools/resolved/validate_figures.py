@@ -98,7 +98,7 @@ def _films(found: xr.Dataset, panel) -> None:
         panel.plot(one["fine"].values, 100 * abs(one["law"].values), linestyle="-", label=material, **look)
         at, change = one["pitch_over_h"].values, one["change"].sel(quantity="A").values
         panel.plot(at, 100 * abs(change), color=COLOURS[i], linestyle="", marker="o", markersize=3)
-    panel.set(xscale="log", yscale="log", ylim=(3e-3, 5e3), xlim=(0.95, 17), xlabel="pitch/$h$")
+    panel.set(xscale="log", yscale="log", ylim=(3e-3, 3e4), xlim=(0.95, 17), xlabel="pitch/$h$")
     panel.set_ylabel("change of $A$ by the coated body (%)")
     _plain(panel, [1, 2, 3, 5, 10, 16])
     panel.legend(fontsize=6.5, title=f"λ = {SHOWN:g}; o cell, — the law", title_fontsize=6.5, loc="upper left")

@@ -6,7 +6,9 @@ import numpy as np
 
 from . import shapes
 from .body import BODIES
+from .body.graded import graded_first
 from .body.half_space import STIFF, local_compliance
+from .body.stacked import stack
 from .contact.equation import Cases
 from .kernels.two_layers import TwoLayers, layer_modulus, thin_layer_coefficients
 from .laws import LAWS, try_out
@@ -16,6 +18,12 @@ from .punches.shaped import Shaped
 from .solution import PULLS
 from .status import Status
 
+#: What asperities press on, of :func:`kinds_of_laws`.
+_HALF_SPACE, _BODY, _GRADED = 0, 1, 2
+#: A graded layer that asperities feel is cut in so many sublayers in each octave of the depth, and in so many octaves
+#: that the pitch is at most _WIDEST times the thinnest: spots feel the gradient over their own size, and thinner
+#: sublayers take seconds (tests/stacks/test_felt.py has finer ones).
+_SUBLAYERS, _MOST_OCTAVES, _WIDEST = 4, 4, 100.0
 #: (i, j) of the unit E2*^i R^j of each quantity that has one.
 _UNITS = {"A0": (0, 1), "p0": (1, 0), "p_max": (1, 0), "p": (1, 0), "dP_dD": (1, 1)}
 _UNITS = _UNITS | {name: own.powers for name, own in CONTROL.items()}
@@ -103,17 +111,30 @@ def as_cases(part):
     return Cases(part.control, law_of(part, body), body, part.value, punch)
 
 
+def kinds_of_laws(problem):
+    """(B,) int8: what the asperities of each case press on. _HALF_SPACE; _BODY, the body as it is; a body whose first
+    layer is graded, _GRADED and the number of octaves in which that is cut."""
+    kinds, graded = np.where(problem.feels_layer(), _BODY, _HALF_SPACE).astype(np.int8), graded_first(problem)
+    if np.any(cut := graded & (kinds == _BODY)):
+        part = problem.take(cut)
+        finest = _WIDEST * np.sqrt(part.Nbar) * part.h / _SUBLAYERS
+        kinds[cut] = _GRADED + np.clip(np.floor(np.log2(finest)), 0, _MOST_OCTAVES)
+    return kinds
+
+
 def law_of(part, body=None):
     """The one law of the cases with their numbers, :class:`~solver.laws.Bound`: on their bodies if the asperities feel
-    these, which is so of all cases or of none. ValueError where :func:`~solver.laws.try_out` finds a slip in a law of
-    somebody else's.
+    these. ValueError where :func:`~solver.laws.try_out` finds a slip in a law of somebody else's.
 
-    body : of the cases, if it is at hand
+    part : cases of one law on one base, and of one of :func:`kinds_of_laws`; body : theirs, if it is at hand
     """
-    law = LAWS[str(part.micro[0])]
+    law, kind = LAWS[str(part.micro[0])], kinds_of_laws(part)[0] if len(part) else _HALF_SPACE
     values = {name: getattr(part, name) for name in law.arguments}
-    if len(part) and part.feels_layer()[0]:
-        body = BODIES[str(part.base[0])](part) if body is None else body
+    if kind >= _GRADED:
+        body = stack(part.but(sublayers=_SUBLAYERS), octaves=int(kind) - _GRADED)
+    elif kind == _BODY and body is None:
+        body = BODIES[str(part.base[0])](part)
+    if kind != _HALF_SPACE:
         return law.on_body(body.kernel, body.m, body.h, body.E, **values)
     E = layer_modulus(part.n) / (1 + part.m)
     try_out(law, E, values)
@@ -121,11 +142,12 @@ def law_of(part, body=None):
 
 
 def of_one_law(problem):
-    """Yield the indices of the cases that have one law on one kind of body, which :func:`law_of` can bind together."""
-    felt = problem.feels_layer()
-    bodies = np.where(felt, problem.base, "")
-    for micro, base in dict.fromkeys(zip(problem.micro.tolist(), bodies.tolist(), strict=True)):
-        yield np.flatnonzero((problem.micro == micro) & (bodies == base))
+    """Yield the indices of the cases that :func:`law_of` can bind together."""
+    kinds = kinds_of_laws(problem)
+    bases = np.where(kinds == _HALF_SPACE, "", problem.base)
+    columns = problem.micro, bases, kinds
+    for one in dict.fromkeys(zip(*(column.tolist() for column in columns), strict=True)):
+        yield np.flatnonzero(np.all([column == word for column, word in zip(columns, one, strict=True)], axis=0))
 
 
 def restore(solution, problem):

@@ -59,9 +59,19 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0), *, extrapolate: bool = Fa
     x = np.asarray(x, dtype=float)
     if x.ndim != 1 or not np.all((x >= 0) & (x <= 1)):
         raise ValueError("x must be one-dimensional and within [0, 1]")
-    yields = has_yield(problem).any()
+    felt = problem.feels_layer()
+    if not felt.any() or felt.all():
+        return _solved(problem, x, extrapolate)
+    # those that feel the layer have radii of their own, and no others are to change by rounding because of these
+    parts = [(index, problem.take(index)) for index in (np.flatnonzero(~felt), np.flatnonzero(felt))]
+    return Solution.join(len(problem), len(x), [(index, _solved(part, x, extrapolate)) for index, part in parts])
+
+
+def _solved(problem, x, extrapolate):
+    """:func:`solve` of cases whose asperities all feel the layer, or of none."""
+    yields, felt = has_yield(problem).any(), problem.feels_layer()
     radii = np.append(x, radii_of(problem, yields))
-    scaled, special = dimensionless(problem), shaped(problem) | (problem.w_adhesion > 0) | problem.feels_layer()
+    scaled, special = dimensionless(problem), shaped(problem) | (problem.w_adhesion > 0) | felt
     invalid = refused(problem, scaled) | problem.without_scheme() | unfit(scaled)
     if np.any(exact := special & (problem.base == "auto")):
         problem = problem.but(base=np.where(exact, "layered", problem.base))
@@ -81,8 +91,8 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0), *, extrapolate: bool = Fa
     if shaped(problem).any():
         beyond = ~invalid & beyond_table(scaled, solution)
         solution = solution.refused(beyond, Status.OUTSIDE_LAW)
-    if not extrapolate and (felt := problem.feels_layer()).any():
-        solution = solution.refused(~invalid & felt & beyond_end(problem, solution), Status.OUTSIDE_LAW)
+    if not extrapolate and felt.any():
+        solution = solution.refused(~invalid & beyond_end(problem, solution), Status.OUTSIDE_LAW)
     solution = replace(solution, model_error=solution.model_error + left_out(problem, solution))
     if yields:
         solution = replace(solution, plastic_share=plastic_share(problem, solution.lam[:, len(x) :]))

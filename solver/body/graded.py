@@ -24,9 +24,29 @@ def is_graded(problem):
     return graded & (problem.base == STACKED[1][0]) & (problem.sublayers == 0)
 
 
-def refined(layers, sublayers):
+def graded_first(problem):
+    """(B,) bool: the stacks whose first layer is graded."""
+    if not numbers_of(problem.parameters):
+        return np.zeros(len(problem), dtype=bool)
+    return (getattr(problem, full_name(1, "profile")) != "uniform") & (problem.base == STACKED[1][0])
+
+
+def contrast(problem):
+    """(B,): logarithm of the largest over the smallest modulus within the first layer; 0 of a uniform one."""
+    logs = np.zeros(len(problem))
+    index = np.flatnonzero(graded_first(problem))
+    if len(index):
+        part = problem.take(index)
+        word, bottom = getattr(part, full_name(1, "profile")), getattr(part, full_name(1, "n_bottom"))
+        logs[index] = np.abs(np.log(np.where(np.isnan(bottom), 1.0, bottom / (part.n + (part.n == 0)))))
+        for name in set(word.tolist()) & set(TABLES):
+            logs[index[word == name]] = np.log(TABLES[name].n.max() / TABLES[name].n.min())
+    return logs
+
+
+def refined(layers, sublayers, octaves=_OCTAVES):
     """The `layers` of :func:`.stacked.layers_of` with each that is graded in some case cut into uniform ones, of the
-    modulus in their middle. sublayers : (B,), one number for all cases.
+    modulus in their middle. sublayers : (B,), one number for all cases; octaves : of the first layer.
 
     They are the thinner the nearer they are to the top of the layer, as many in each octave of the depth: short waves
     then find the gradient as well resolved as long ones.
@@ -35,7 +55,8 @@ def refined(layers, sublayers):
     if not graded.any():
         return layers
     pieces = [
-        _cut(layers, j, int(sublayers[0]) or _USUAL) if graded[j] else _as_it_is(layers, j) for j in range(len(graded))
+        _cut(layers, j, int(sublayers[0]) or _USUAL, _DEEPER if j else octaves) if graded[j] else _as_it_is(layers, j)
+        for j in range(len(graded))
     ]
     return {name: np.concatenate([piece[name] for piece in pieces], axis=1) for name in pieces[0]}
 
@@ -44,12 +65,12 @@ def _as_it_is(layers, j):
     return {name: layers[name][:, j : j + 1] for name in ("h", "n", "nu", "bonding", "cn", "ct")}
 
 
-def _cut(layers, j, count):
+def _cut(layers, j, count, octaves):
     """Layer j as uniform ones."""
     part, profile = _as_it_is(layers, j), layers["profile"][:, j : j + 1]
     bottoms = {name: layers[f"{name}_bottom"][:, j : j + 1] for name in ("n", "nu")}
     bottoms = {name: np.where(np.isnan(v) | (profile == "uniform"), part[name], v) for name, v in bottoms.items()}
-    ends = _depths(profile, part["n"], bottoms["n"], cuts(count, _DEEPER if j else _OCTAVES))
+    ends = _depths(profile, part["n"], bottoms["n"], cuts(count, octaves))
     middle, last = (ends[:, 1:] + ends[:, :-1]) / 2, np.arange(ends.shape[1] - 1) == ends.shape[1] - 2
     n = _moduli(profile, part["n"], bottoms["n"], middle)
     sublayers = {"h": part["h"] * np.diff(ends, axis=1), "n": n, "nu": _linear(part, bottoms, "nu", middle)}

@@ -23,10 +23,10 @@ def layers_of(problem):
     return layers | {"n": np.hstack([layer_modulus(layers["n"][:, :1]), layers["n"][:, 1:]])}
 
 
-def kernel_of(problem):
+def kernel_of(problem, **octaves):
     """The :class:`~..kernels.stack.Stack` of cases, and the thickness (B,) of its first layer in R. A graded layer is
-    as many uniform ones as `sublayers` says."""
-    layers = refined(layers_of(problem), problem.sublayers)
+    as many uniform ones as `sublayers` says; `octaves` : of the first, if they are not the usual ones."""
+    layers = refined(layers_of(problem), problem.sublayers, **octaves)
     h, unit = layers["h"], layers["n"][:, :1] / layers["h"][:, :1]
     slips = layers["bonding"] == "frictionless"
     arrays = layers["n"], layers["nu"], h / h[:, :1], slips, layers["cn"] * unit, layers["ct"] * unit
@@ -34,9 +34,10 @@ def kernel_of(problem):
     return Stack(*arrays, problem.nu2, problem.n == 0, sampler), h[:, 0]
 
 
-def stack(problem):
-    """The exact body. m = E1*/E3* is of the modulus at the surface itself, of a graded layer too."""
-    kernel, h = kernel_of(problem)
+def stack(problem, **octaves):
+    """The exact body. m = E1*/E3* is of the modulus at the surface itself, of a graded layer too. `octaves` : as of
+    :func:`kernel_of`."""
+    kernel, h = kernel_of(problem, **octaves)
     return Hankel(kernel, h, problem.m * (kernel.E1 / layer_modulus(problem.n)))
 
 

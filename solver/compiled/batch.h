@@ -1,8 +1,16 @@
 /* What Python and the core share: as in library.py, in the same order. Tables of numbers that are summed over their
-   columns are in blocks of 8 rows: `_blocks` of tables.py. */
+   columns are in blocks of 8 rows: `_blocks` of tables.py. LAYOUT changes with all that is here: library.py takes no
+   core of another one. */
 #include <stdint.h>
+#define LAYOUT 3
 enum { LOAD, RADIUS, DEPTH };               /* the control of a batch */
-enum { DISC_CELL, POWER_LAW, SMOOTH };      /* its micro law */
+enum { DISC_CELL, POWER_LAW, SMOOTH, CELL };        /* its micro law */
+/* A family of cells on the coated body (cells.py): these numbers, PIECES pieces an octave of 1 + kappa y with the
+   polynomials of exp P and exp G, those of exp Q, and of 1 + kappa_r r with those of y/r. */
+enum { kappa_, end_, top_, kappa_r_, end_r_, top_r_, slope_P_, bend_P_ = 9, settles_ = 12, slope_r_, at_Q_, at_r_,
+       NUMBERS };
+#define PIECES 32
+#define ROW 8                               /* coefficients of a polynomial of P, G or Q; half as many of y/r */
 enum { a_, P_, D_, p0_, p_max_, Ar_An_, A0_, dP_dD_, residual_, error_, profile_error_, SCALARS };
 #define JUDGED 6                            /* the first of these are judged by their relative error */
 /* Points between the nodes of a mesh: s, weights of 2 s ds, kappa, and tables (n columns, m rows) of the polynomials
@@ -30,6 +38,7 @@ typedef struct {
     int32_t control, law, layered, octaves, first_octave, steps;
     const int64_t *ladder;
     const double *value, *rtol, *p_star, *A_star, *beta, *ratio, *E, *C;
+    const double *const *cells;             /* (size,), the family of each case, of the law CELL */
     const double *h, *m, *n, *bonded, *c1, *c2, *one_c1, *one_c2, *plus_c1, *one_c1c2;
     const int64_t *fixed;                   /* (size,), number of nodes, or 0: chosen by rtol */
     const double *shrink;                   /* (points,), s at a profile's radius over the s that is solved there */

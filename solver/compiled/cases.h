@@ -236,7 +236,7 @@ static void finish(Group *c, State *s) {
 static void begin(Group *c, State *s) {
     const Batch *b = c->b;
     V a = c->value, soft = all(1.0), P = c->value, e = all(1.5), gamma = all(1.351283845031745);
-    if (b->law != DISC_CELL) e = 1 / c->law.beta, gamma = all(1.0);
+    if (b->law == POWER_LAW || b->law == SMOOTH) e = 1 / c->law.beta, gamma = all(1.0);
     if (b->control == DEPTH) a = root(1.5 * P);
     if (b->control == LOAD) {
         V springs = 4 * c->C * P / PI, both = power(2 * c->law.A_star * gamma, e) * (2 * e + 2);
@@ -255,7 +255,7 @@ static void begin(Group *c, State *s) {
     else {
         V q = 1 / (X * soft * (PI * PI / 16) + Y + 1 / sparse_of(&c->law, 1 / Z));
         V share = Z * curve_of(&c->law, guess_of(&c->law, q)).g;
-        rise = (b->law == DISC_CELL ? 1.1 : 0.5) * pick(share == share, clip(share, all(0.0), all(1.0)), all(0.0));
+        rise = (b->law == POWER_LAW ? 0.5 : 1.1) * pick(share == share, clip(share, all(0.0), all(1.0)), all(0.0));
     }
     I springs = c->C > 0;
     if (!b->layered) digits = pick(springs, all(3.4), digits), factor = pick(springs, all(0.97), factor);

@@ -1,6 +1,6 @@
 /* Micro laws and the two kernels of a layer, a case in each lane: solver/laws, solver/kernels/closed_form.py. */
 typedef struct { V q, g, dq, dg; } Curve;
-typedef struct { int name; V p_star, A_star, beta, ratio; } Law;
+typedef struct { int name; const double *cell[W]; V p_star, A_star, beta, ratio, of_cell[NUMBERS]; } Law;
 #define PI 3.14159265358979323846
 static inline V spot_curve(V y, V *dq, V *g, V *dg) {                          /* (6), (7); returns q */
     V sin2 = 1 / (1 + y * y), sine = root(sin2), cosine = y * sine, theta = angle(y);
@@ -29,8 +29,71 @@ static inline V spot_from_pressure(V q) {
     }
     return y;
 }
+/* The piece of a family at x >= 0, and t from -1 to 1 on it; returns dt/dx. */
+static inline V piece(V x, V kappa, V top, I *index, V *t) {
+    V z = most(least(1 + kappa * x, top), all(1.0));                           /* 1 to top, of no number too */
+    U bits = (U)z;
+    *index = (I)(bits >> 47) - 1023 * PIECES;
+    *t = 2 * ((V)(((bits << 5) & 0x000fffffffffffffull) | 0x3ff0000000000000ull) - 1) - 1;
+    return 2 * PIECES * kappa * (V)((2046 - (bits >> 52)) << 52);
+}
+static inline V of_lanes(const double *const *at, int i) {
+    V v;
+    EACH(l) v[l] = at[l][i];
+    return v;
+}
+/* The polynomial of `rows` coefficients at t, and its slope by t; each lane has its own coefficients. */
+static inline V polynomial(const double *const *at, int rows, V t, V *slope) {
+    V value = all(0), d = all(0);
+    for (int i = rows - 1; i >= 0; i--) d = d * t + value, value = value * t + of_lanes(at, i);
+    *slope = d;
+    return value;
+}
+/* exp of P, G or Q at y: of the series `which`, and its derivative by ln y; beyond the end a power of y. */
+static inline V of_cell(const Law *law, const double *const *at, int which, V y, V t, V dt, V *by_log) {
+    V slope, value = polynomial(at, ROW, t, &slope), end = law->of_cell[end_];
+    I far = y > end;
+    *by_log = slope * dt * y;
+    if (any(far)) {
+        V s = law->of_cell[slope_P_ + which], c = law->of_cell[settles_], bend = law->of_cell[bend_P_ + which] / c;
+        V beyond = vlog(most(y / end, all(1.0))), less, turned;
+        exponential(-c * beyond, &less);
+        turned = -less * bend;
+        value = pick(far, value * vexp((s + bend) * beyond - turned / c), value);
+        *by_log = pick(far, (s + turned) * value, *by_log);
+    }
+    return value;
+}
+static ALONE Curve cell_curve(const Law *law, V y) {                           /* solver/laws/cell/law.py */
+    const double *at[W];
+    I index;
+    V t, by_P, by_G, dt = piece(y, law->of_cell[kappa_], law->of_cell[top_], &index, &t);
+    EACH(l) at[l] = law->cell[l] + NUMBERS + 2 * ROW * index[l];
+    V P = of_cell(law, at, 0, y, t, dt, &by_P);
+    EACH(l) at[l] += ROW;
+    V G = of_cell(law, at, 1, y, t, dt, &by_G), slope = 2 / PI * y * y;
+    return (Curve){slope * y * P, y * y * G, slope * (3 * P + by_P), y * (2 * G + by_G)};
+}
+static ALONE V cell_guess(const Law *law, V q) {
+    const double *at[W];
+    I index;
+    V r = cube_root(PI / 2 * q), t, unused, end = law->of_cell[end_r_];
+    piece(r, law->of_cell[kappa_r_], law->of_cell[top_r_], &index, &t);
+    EACH(l) at[l] = law->cell[l] + (int64_t)law->of_cell[at_r_][l] + ROW / 2 * index[l];
+    V y = r * polynomial(at, ROW / 2, t, &unused);
+    I far = r > end;
+    return any(far) ? pick(far, y * power(most(r / end, all(1.0)), law->of_cell[slope_r_]), y) : y;
+}
+static ALONE V cell_peak(const Law *law, V y) {
+    const double *at[W];
+    I index;
+    V t, unused, dt = piece(y, law->of_cell[kappa_], law->of_cell[top_], &index, &t);
+    EACH(l) at[l] = law->cell[l] + (int64_t)law->of_cell[at_Q_][l] + ROW * index[l];
+    return 3 / PI * y * of_cell(law, at, 2, y, t, dt, &unused);
+}
 static inline Curve curve_of(const Law *law, V y) {
     Curve c;
+    if (law->name == CELL) return cell_curve(law, y);
     if (law->name == SMOOTH) return (Curve){y, all(0.0), all(1.0), all(0.0)};
     if (law->name == POWER_LAW) {
         V inverse = 2 / law->beta, q = power(y, inverse);
@@ -41,20 +104,23 @@ static inline Curve curve_of(const Law *law, V y) {
 }
 static inline V guess_of(const Law *law, V q) {
     if (law->name == DISC_CELL) return spot_guess(q);
+    if (law->name == CELL) return cell_guess(law, q);
     return law->name == POWER_LAW ? power(most(q, all(1e-295)), law->beta / 2) : q;
 }
 static inline V sparse_of(const Law *law, V g) {                               /* q of small pressures */
     if (law->name == POWER_LAW) return power(g, 1 / law->beta);
     V t = g / 1.351283845031745;                                              /* (pi/2)^(2/3) */
-    return law->name == DISC_CELL ? t * root(t) : g;
+    return law->name == SMOOTH ? g : t * root(t);
 }
 static inline V area_of(const Law *law, V y, V q) {                            /* (11) */
     if (law->name == SMOOTH) return all(1.0);
+    if (law->name == CELL) return least(y * y, all(1.0));
     if (law->name == POWER_LAW) y = spot_from_pressure(law->ratio * q);
     return 1 / (1 + 1 / (y * y));
 }
 static inline V peak_of(const Law *law, V y, V q) {                            /* (13) over p* */
     if (law->name == SMOOTH) return q;
+    if (law->name == CELL) return cell_peak(law, y);
     V spot = law->ratio * pick(q < 1e-270, all(__builtin_nan("")), q);         /* the ratio is 1 but of power laws */
     if (law->name == POWER_LAW) y = spot_from_pressure(spot);
     return (3 / PI / root(1 + 1 / (y * y)) + 2 / PI * spot * (PI / 2 - angle(y))) / law->ratio;

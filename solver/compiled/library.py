@@ -6,7 +6,7 @@ or "avx512". Without it that is the core with the widest vectors of the processo
 
 import os
 from collections.abc import Callable
-from ctypes import CDLL, CFUNCTYPE, POINTER, Structure, c_int, c_int32, c_int64, c_void_p
+from ctypes import CDLL, CFUNCTYPE, POINTER, Structure, c_int, c_int32, c_int64, c_void_p, sizeof
 from functools import lru_cache
 from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
@@ -16,6 +16,9 @@ import numpy as np
 
 #: Name of the file, without its suffix; its variants, the widest first; and the variable that chooses one.
 NAME, VARIANTS, VARIABLE = "_core", ("avx512", "avx2", "sse2"), "ROUGHCOAT_CORE"
+
+#: LAYOUT of batch.h: a core that was built of another one would read elsewhere what this one writes.
+LAYOUT = 3
 
 _LAYERED = ("h", "m", "n", "bonded", "c1", "c2", "one_c1", "one_c2", "plus_c1", "one_c1c2")
 
@@ -61,6 +64,7 @@ class Batch(Structure):
         *((name, c_int64) for name in ("size", "stride", "points", "rungs")),
         *((name, c_int32) for name in ("control", "law", "layered", "octaves", "first_octave", "steps")),
         *((name, c_void_p) for name in ("ladder", "value", "rtol", "p_star", "A_star", "beta", "ratio", "E", "C")),
+        ("cells", c_void_p),
         *((name, c_void_p) for name in (*_LAYERED, "fixed", "shrink", "place")),
         *(("columns", c_int64), ("scalars", c_void_p), ("p", c_void_p), ("lam", c_void_p)),
         *(("nodes", c_void_p), ("iterations", c_void_p), ("mesh", OF_MESH), ("table", OF_TABLE)),
@@ -72,16 +76,34 @@ def pointer(array: np.ndarray, start: int = 0) -> int:
     return array.ctypes.data + start * (array.strides[0] if array.ndim else 0)
 
 
+def layout() -> int:
+    """What `roughcoat_layout` of a core built of these sources returns: LAYOUT and the sizes of the structures."""
+    number = LAYOUT
+    for structure in (Batch, Mesh, Table):
+        number = number * 4096 + sizeof(structure)
+    return number
+
+
+def _fits(library: Any) -> bool:
+    """Whether a core has the :func:`layout` of these sources."""
+    of = getattr(library, "roughcoat_layout", None)
+    if of is None:
+        return False
+    of.argtypes, of.restype = [], c_int64
+    return of() == layout()
+
+
 @lru_cache(maxsize=1)
 def _library() -> Any:
-    """The library, None if it was not built or cannot be loaded."""
+    """The library, None if it was not built, cannot be loaded, or was built of other sources (:func:`layout`)."""
     for suffix in EXTENSION_SUFFIXES:
         path = Path(__file__).with_name(NAME + suffix)
         if path.exists():
             try:
-                return CDLL(str(path))
+                library = CDLL(str(path))
             except OSError:
                 return None
+            return library if _fits(library) else None
     return None
 
 

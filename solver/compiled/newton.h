@@ -43,6 +43,10 @@ static inline void load_cases(Group *c, const int64_t *index, int count) {
                &of->n, &of->m, &of->h, &of->c1, &of->c2, &of->one_c1, &of->one_c2, &of->plus_c1, &of->one_c1c2};
     c->count = count;
     EACH(l) c->index[l] = index[l < count ? l : count - 1];
+    if (b->law == CELL) {
+        EACH(l) c->law.cell[l] = b->cells[c->index[l]];
+        for (int i = 0; i < NUMBERS; i++) c->law.of_cell[i] = of_lanes(c->law.cell, i);
+    }
     of->bonded = b->layered && b->bonded[index[0]] != 0;
     of->stiff = b->layered && b->n[index[0]] > 2;
     for (int i = 0; i < (of->bonded ? 17 : b->layered ? 11 : 8); i++) *to[i] = of_cases(from[i], c->index);

@@ -15,21 +15,27 @@ from ..edges import FREE
 from ..kernels.closed_form import bond_constants
 from ..kernels.two_layers import TwoLayers
 from ..laws import LAWS
+from ..laws.cell.law import number, spot_curve
 from ..numerics.ladder import LADDER
 from ..parameters import one_of
 from ..punches import PARABOLOID
 from ..solution import Solution
 from ..status import Status
+from .cells import cells_of
 from .library import OF_MESH, OF_TABLE, Batch, core, pointer
 from .tables import mesh_for, table_for
 
-#: The laws and controls of the core, in the order of batch.h.
+#: The laws and controls of the core, in the order of batch.h. Behind these laws, CELL stands for those on the coated
+#: body whose curve is that of a family.
 TAKEN, _CONTROLS = ("disc_cell", "power_law", "smooth"), ("P", "a", "D")
 #: The bases of the core: it solves nearly all cases of these and the laws above.
 BASES = ("half_space", "thin_layer", "layered")
 _SCALARS = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "residual", "error", "profile_error")
 #: Most cases of one call of the core. Its memory is 14 MB, and groups of like cases are full.
 _CHUNK = 16_384
+#: Most families of cells on a coated body in one call: of 10 to 60 kB each. Where there are more, a call has no more
+#: cases than this.
+_FAMILIES = 1024
 #: Meshes of the core, and the finer one of the last. What needs more is left to numpy, which goes on to panels.
 _MESHES, _FINER = LADDER[:-1], LADDER[-1]
 
@@ -55,7 +61,7 @@ def _taken(cases, nodes):
     """(B,) bool: the cases of which the core knows law, body and punch, and whose mesh is free."""
     law, body = cases.law.law, cases.body
     taken = (nodes == 0) | one_of(nodes, _MESHES)
-    if law not in [LAWS[name] for name in TAKEN] or cases.punch is not PARABOLOID or cases.edge is not FREE:
+    if _law_of(law) is None or cases.punch is not PARABOLOID or cases.edge is not FREE:
         return np.zeros_like(taken)
     if law.name == "power_law":
         taken = taken & (cases.law.own[0][:, 0] >= STEEP)
@@ -64,6 +70,13 @@ def _taken(cases, nodes):
     if isinstance(body, Hankel) and isinstance(body.kernel, TwoLayers):
         return taken & (body.kernel.n <= STIFFEST[1])
     return np.zeros_like(taken)
+
+
+def _law_of(law):
+    """The number of a law in batch.h; None of those that the core does not know."""
+    if law.curve is spot_curve:
+        return len(TAKEN)
+    return next((i for i, name in enumerate(TAKEN) if law is LAWS[name]), None)
 
 
 def _solved(function, cases, rtol, nodes, x):
@@ -78,13 +91,19 @@ def _solved(function, cases, rtol, nodes, x):
     rows["fixed"] = np.ascontiguousarray(nodes, dtype=np.int64)
     given = _Given(solved_at.tobytes())
     shared = {"stride": size, "points": len(place), "rungs": len(ladder), "control": _CONTROLS.index(cases.control)}
-    shared |= {"law": TAKEN.index(cases.law.law.name), "layered": isinstance(cases.body, Hankel), "steps": LIMIT}
+    shared |= {"law": _law_of(cases.law.law), "layered": isinstance(cases.body, Hankel), "steps": LIMIT}
     shared |= {"octaves": OCTAVES[1] - OCTAVES[0] + 1, "first_octave": OCTAVES[0], "columns": points}
     shared |= {"ladder": pointer(ladder), "shrink": pointer(shrink), "place": pointer(place)}
     shared |= {"mesh": OF_MESH(given.address_of(mesh_for)), "table": OF_TABLE(given.address_of(table_for))}
-    for low in range(0, size, _CHUNK):
+    on_body, chunk = cases.law.law.curve is spot_curve, _CHUNK
+    if on_body and len(np.unique(number(cases.law.own[0], "digest"))) > _FAMILIES:
+        chunk = min(chunk, _FAMILIES)
+    for low in range(0, size, chunk):
         own = {name: pointer(values, low) for name, values in rows.items()}
-        own |= {"size": min(_CHUNK, size - low), "scalars": pointer(scalars.T, low)}
+        if on_body:
+            families, addresses = cells_of(cases.law.own[0][low : low + chunk])
+            own["cells"] = pointer(addresses)
+        own |= {"size": min(chunk, size - low), "scalars": pointer(scalars.T, low)}
         if not function(byref(Batch(**shared, **own)), -(-max(3 * _MESHES[-1], len(place)) // 32) * 32):
             raise MemoryError("no memory for the compiled core")
         given.raise_what_was_raised()

@@ -15,6 +15,19 @@ X = 2 p*/(pi H), x = X t and f = p_s/(H x),
     p_max/p* = (2 t/pi) f (1 + 0.5/(1 + τ)) + (2 q/pi) arcsin t.
 
 Where nothing yields all numbers are those of the disc cell to the last bit. The law holds while the load rises.
+
+On the coated body itself (:mod:`.cell.law`) the disc cell's q_e and g_e at t = y are those of its family, and x is the
+mean pressure of the elastic spot there: x = X y exp(P - P0), with P0 that of a half-space,
+
+    exp(P0) = (π/2)/(arccos t + t sqrt(1 - t²)).
+
+Under a hard film on a soft body this mean falls where the film bends over its asperities (b/h above 1.2). What has
+flowed stays so: x is the largest up to this radius.
+What neighbours and the body below add to the approach is elastic, and less by the part f as the load is; the pressure
+in the middle tends from the elastic one to the mean of the spot, M = (2/π) x/X:
+
+    q = f q_e,   g = t²/(1 + χ) - f (t² - g_e),   p_max/p* = f (M + (S - M)/(1 + τ)) + N,
+    N = (2 q/π) arcsin t, S = p_max,e/p* - (2 q_e/π) arcsin t.
 """
 
 from typing import NamedTuple
@@ -24,7 +37,9 @@ import numpy as np
 from ..closed_forms import yield_pressure
 from ..parameters import Parameter
 from . import disc_cell
-from .law import Curve, Law, inverse
+from .cell import law as cell
+from .cell.family import half_space
+from .law import Bound, Curve, Law, inverse
 
 #: Hardness over yield strength, where only one of both is given (Jackson and Green, J. Tribol. 127, 2005, 343).
 TABOR = 2.84
@@ -69,7 +84,11 @@ class Spot(NamedTuple):
 
 
 def _spot(y, X, x_y):
-    x = X / np.sqrt(1 + y**-2.0)
+    return _flow(X / np.sqrt(1 + y**-2.0), x_y)
+
+
+def _flow(x, x_y):
+    """:class:`Spot` at x."""
     above = np.maximum(x - x_y, 0.0)
     tau, denominator = above / (1 - x_y), x * (x + 1 - 2 * x_y)
     f = np.where(above > 0, (x - x_y**2) / denominator, 1.0)
@@ -115,21 +134,102 @@ def _yielded(X, x_y):
     return (x_y / X) ** 2
 
 
+def _on_body(kernel, m, h, E, Nbar, Ra, **strengths):
+    """:class:`~solver.laws.law.Bound` of spots on the coated body: its own numbers are the rows of the families of the
+    disc cell, X, x_y and the λ at which spots begin to yield."""
+    p_star, A_star, X, x_y = _scales(E, Nbar, Ra, **strengths)
+    rows = cell.rows_of("disc", kernel, m, h, Nbar)
+    X, x_y = (np.asarray(v * np.ones(np.shape(E)))[:, None] for v in (X, x_y))
+
+    def pressure(y):
+        x, slope = _mean(y, rows, X)
+        return x, slope * x / y
+
+    with np.errstate(all="ignore"):
+        first = inverse(pressure, x_y * np.ones_like(X), x_y / X)
+    return Bound(_ON_BODY, p_star, A_star, (rows, X, x_y, np.where(np.isnan(first), np.inf, first**2)))
+
+
+def _mean(y, rows, X):
+    """x, the mean pressure of elastic spots over the hardness, and d ln x/d ln y."""
+    P, dP = cell.exponent(rows, 0, y)
+    t = np.minimum(y, cell.number(rows, "end"))
+    ratio, slope = half_space(t)
+    x = X * y * np.exp(P - slope * np.log(y / t)) / ratio  # beyond the end a power of y
+    top = np.where(y > cell.number(rows, "turn"), X * cell.number(rows, "top"), 0.0)
+    return np.maximum(x, top), np.where(x < top, 0.0, 1 + dP - slope)
+
+
+def _body_curve(y, rows, X, x_y, yields):
+    elastic, (x, slope) = cell.spot_curve(y, rows), _mean(y, rows, X)
+    _, tau, f, by_x, lost = _flow(x, x_y)
+    dx = slope * x / y
+    N = tau**2 + 2.5 * tau + 2
+    chi, d_chi = tau**2 / N, (2.5 * tau**2 + 4 * tau) / N**2 / (1 - x_y) * dx
+    less, d_less = y * y - elastic.g, 2 * y - elastic.dg
+    g = elastic.g + (lost * less - y * y * chi / (1 + chi))
+    dg = elastic.dg + (lost * d_less - by_x * dx * less - (2 * y * chi + y * y * d_chi / (1 + chi)) / (1 + chi))
+    return Curve(f * elastic.q, g, f * elastic.dq + elastic.q * by_x * dx, dg)
+
+
+def _body_peak(y, q, rows, X, x_y, yields):
+    x, _ = _mean(y, rows, X)
+    _, tau, f, _, _ = _flow(x, x_y)
+    neighbours, mean = 2 / np.pi * q * np.arcsin(np.minimum(y, 1.0)), f * (2 / np.pi) * x / X
+    spot = f * cell.spot_peak(y, q, rows) - neighbours
+    return neighbours + mean + (spot - mean) / (1 + tau)
+
+
+def _body_guess(q, rows, X, x_y, yields):
+    """As :func:`_guess`: the law of flowing spots is that of any body."""
+    y, flows = cell.spot_guess(q, rows), np.sqrt(np.pi / 2 * X * q) + 2 * X * q
+    f = _flow(_mean(y, rows, X)[0], x_y).f
+    return np.where(f < _FLOWING, np.maximum(y, flows / np.hypot(1, flows)), y)
+
+
+def _body_from_pressure(q, *own):
+    elastic = cell.spot_from_pressure(q, own[0])
+    if not (elastic**2 > own[3]).any():
+        return elastic
+    start = _body_guess(np.maximum(q, 0.0), *own)
+    return np.where(elastic**2 > own[3], inverse(lambda y: _body_curve(y, *own)[0::2], q, start), elastic)
+
+
+def _body_end(*own):
+    return np.minimum(_body_curve(cell.number(own[0], "end"), *own).q, cell.number(own[0], "most"))
+
+
 #: Of the softer of asperity and what it presses on.
 _STRENGTH = Parameter(interval="[1e-15, 1e15]", powers=(1, 0), instead="")
+_REST = {
+    "parameters": disc_cell.PARAMETERS
+    | {"hardness": _STRENGTH._replace(instead="yield_strength"), "yield_strength": _STRENGTH},
+    "scales": _scales,
+    "poisson": True,
+    "allows": _allows,
+    "rise": disc_cell.LAW.rise,
+}
+_ON_BODY = Law(
+    name="elastic_plastic_on_body",
+    curve=_body_curve,
+    area=lambda y, q, *own: cell.spot_area(y, q, own[0]),
+    peak=_body_peak,
+    edge=lambda *own: cell.EDGE,
+    yielded=lambda rows, X, x_y, yields: yields,
+    from_pressure=_body_from_pressure,
+    guess=_body_guess,
+    end=_body_end,
+    **_REST,
+)
 LAW = Law(
     name="elastic_plastic",
-    parameters=disc_cell.PARAMETERS
-    | {"hardness": _STRENGTH._replace(instead="yield_strength"), "yield_strength": _STRENGTH},
-    scales=_scales,
     curve=_curve,
     area=lambda y, q, X, x_y: disc_cell.spot_area(y),
     peak=_peak,
     edge=lambda X, x_y: disc_cell.LAW.edge(),
-    poisson=True,
-    allows=_allows,
     yielded=_yielded,
-    rise=disc_cell.LAW.rise,
     from_pressure=_from_pressure,
     guess=_guess,
+    on_body=_on_body,
+    **_REST,
 )

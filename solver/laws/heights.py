@@ -7,6 +7,9 @@ contact: p ~ A^(5/2) there, until A is about σ/c. Without a cut c there is no h
 
 q is the root of an equation at each y. So a law is tabulated when it is first used, once for each σ/A* and c. Many
 cases with one spread are fast; a batch with as many spreads as cases waits for as many tables.
+
+On the coated body itself the spots are those of :mod:`.cell.summits`, and there is a table for each family of bodies
+too. It ends where λ is that at which the disc cell ends.
 """
 
 from collections.abc import Callable
@@ -19,7 +22,11 @@ from ..numerics import special
 from ..numerics.quadrature import gauss_legendre
 from ..parameters import Parameter
 from . import disc_cell, spread
-from .law import Curve, Law
+from .cell import heights as on_body
+from .cell import law as cell
+from .cell.family import different, family
+from .cell.summits import Lookup, summit
+from .law import Bound, Curve, Law, where_positive
 
 #: For σ/A* below this the power law of small pressures (`edge`) is that of equal heights.
 _ALIKE = 0.03
@@ -35,6 +42,8 @@ _RARE, _SHARPER = 25.0, 1.7
 #: Points of the quadrature over a density, exact to rounding for the normal one (tests/laws/heights/test_touching.py),
 #: and how many cases have it at a time.
 _ENOUGH, _ROWS = 32, 10_000
+#: On a coated body, Newton's steps on a table from the first guess, and the largest change of ln y in one.
+_TO_TABLE, _LONGEST = 4, 3.0
 
 #: Standard deviation σ of the heights, in R; and c, the largest height above the mean, over σ.
 SIGMA = Parameter(interval="[0, 10]", powers=(0, 1))
@@ -208,13 +217,112 @@ def _scales(density, field, E, Nbar, Ra, sigma=1.0, cut=None):
     return p_star, A_star, sigma / A_star, density.c if cut is None else cut
 
 
+class _Body(NamedTuple):
+    """The functions of the law of a density of heights on the coated body. The law's own numbers are sigma/A* and cut,
+    (B, 1), the rows of the disc cell, and of summits."""
+
+    density: object
+
+    def bound(self, law, kernel, m, h, E, Nbar, Ra, sigma=1.0, cut=None):
+        """:class:`~solver.laws.law.Bound` of the cases."""
+        p_star, A_star, sigma, cut = _scales(self.density, 1.0, E, Nbar, Ra, sigma, cut)
+        with np.errstate(all="ignore"):
+            keys, index = different("disc", 1 / (h * np.sqrt(Nbar)), kernel, m)
+        cells = [family(key, kernel, m, i) for key, i in keys]
+        summits = [summit(key, disc, kernel, m, i) for (key, i), disc in zip(keys, cells, strict=True)]
+        numbers = [(v * np.ones(np.shape(E)))[:, None] for v in (sigma, cut)]
+        return Bound(law, p_star, A_star, (*numbers, cell.stacked(cells)[index], cell.stacked(summits)[index]))
+
+    def tables(self, sigma, cut, rows, summits):
+        """As :func:`_tables`, one for each family with each sigma and cut."""
+        numbers = np.concatenate([np.where(sigma > 0, sigma, 1.0), cut, cell.number(rows, "digest")], axis=1)
+        triples, first, group = np.unique(numbers, axis=0, return_index=True, return_inverse=True)
+        keys = [(self.density, "body", *triple) for triple in triples.tolist()]
+        found = [_TABLES.get(key) for key in keys]
+        for i, (key, row) in enumerate(zip(keys, first, strict=True)):
+            if found[i] is None:
+                if len(_TABLES) >= _KEPT:
+                    _TABLES.clear()
+                found[i] = _TABLES[key] = self._table(triples[i], rows[row], summits[row])
+        return np.array(found), group.ravel()
+
+    def _table(self, numbers, row, summit):
+        sigma, cut = numbers[:2, None, None]
+        at, relief = partial(self.density.at, cut=cut[..., None, None]), float(_relief(self.density, sigma, cut)[0, 0])
+        lam = cell.number(row[None], "end")[0, 0] ** 2
+        return on_body.table(Lookup(summit), (self.density.edges(cut), self.density.fine), at, sigma, relief, lam)
+
+    def looked_up(self, which, y, *own):
+        """As :func:`_looked_up`."""
+        table, group = self.tables(*own)
+        step = spread.STEP * spread.KNOTS / table.shape[-1]
+        value, slope = spread.look_up(np.ascontiguousarray(table[:, which]), group, y, step)
+        return np.exp(value), slope
+
+    def curve(self, y, *own):
+        sigma, cut, rows, _ = own
+        q, slope = self.looked_up(0, np.minimum(y, spread.LAST), *own)
+        relief = _relief(self.density, sigma, cut)
+        if (y > spread.LAST).any():
+            q, slope = spread.beyond(y, q, slope, relief)
+        (delta, w), dq = spread.depth(y, q, relief), slope * q / y
+        spots = Curve(q, delta, dq, 2 * delta / y * (1 - y * dq / (w + q)))
+        if (sigma > 0).all():
+            return spots
+        level = cell.spot_curve(y, rows)
+        return Curve(
+            *(np.where(sigma > 0, of_spots, of_level) for of_spots, of_level in zip(spots, level, strict=True))
+        )
+
+    def guess(self, q, *own):
+        """As :func:`_guess`, and then Newton's steps on the table."""
+        sigma, cut, rows, _ = own
+        level = cell.spot_guess(q, rows)
+        alike = cell.spot_curve(np.maximum(level, 1e-300), rows).g
+        few = (1.25 * np.pi * sigma / self.density.top(cut) * np.maximum(q, 0.0)) ** 0.4
+        delta = np.clip(few, alike, alike + self.density.mean(cut) * sigma)
+        y = np.maximum(spread.unknown(delta, q, _relief(self.density, sigma, cut)), 1e-300)
+        for _ in range(_TO_TABLE):
+            now, slope = self.looked_up(0, y, *own)
+            y = y * np.exp(np.clip(np.log(np.maximum(q, 1e-300) / now) / slope, -_LONGEST, _LONGEST))
+        return where_positive(q, np.where(sigma > 0, y, level))
+
+    def area(self, y, q, *own):
+        area = np.minimum(self.looked_up(1, y, *own)[0], 1.0)
+        return np.where(own[0] > 0, area, cell.spot_area(y, q, own[2]))
+
+    def peak(self, y, q, *own):
+        """p_max/p* under the highest summit."""
+        sigma, cut, rows, summits = own
+        delta = spread.depth(y, q, _relief(self.density, sigma, cut))[0]
+        return np.where(sigma > 0, on_body.peak(summits, q, delta), cell.spot_peak(y, q, rows))
+
+    def edge(self, sigma, cut, *_):
+        return _edge(self.density, 1.0, sigma, cut)
+
+    def end(self, *own):
+        """The largest q of the table, where its λ ends."""
+        table, group = self.tables(*own)
+        last = np.argmax(np.diff(table[:, 1], axis=1) == 0, axis=1) - on_body.PAST
+        most = np.exp(table[np.arange(len(table)), 0, last])[group, None]
+        of_level = cell.number(own[2], "most")
+        return np.where(of_level > 0, np.where(own[0] > 0, most, of_level), 0.0)
+
+
+def _of_heights(name, density, **rest):
+    """`on_body` of :class:`~solver.laws.law.Law`."""
+    body = _Body(density)
+    parts = {part: getattr(body, part) for part in ("curve", "area", "peak", "edge", "guess", "end")}
+    return partial(body.bound, Law(name=f"{name}_on_body", scales=partial(_scales, density, 1.0), **parts, **rest))
+
+
 def law(name, density, field=1.0, **rest):
     """:class:`~solver.laws.law.Law` of these heights; `field` 0: the asperities do not feel each other."""
     parts = {"curve": _curve, "area": _area, "peak": _peak, "edge": _edge, "guess": _guess, "scales": _scales}
     parts = {key: partial(part, density, field) for key, part in parts.items()}
-    rest = {"error": ERROR, "touching": partial(_touching, density)} | rest
-    parameters = disc_cell.PARAMETERS | density.parameters
-    return Law(name=name, parameters=parameters, rise=1.1, corners=True, **parts, **rest)
+    rest = {"error": ERROR, "touching": partial(_touching, density), "rise": 1.1, "corners": True} | rest
+    rest["parameters"] = disc_cell.PARAMETERS | density.parameters
+    return Law(name=name, on_body=_of_heights(name, density, **rest) if field else None, **parts, **rest)
 
 
 def histogram(name, z, share, version):

@@ -40,7 +40,7 @@ LAST = np.exp(FIRST + STEP * (KNOTS - 3))
 #: the relief. tests/laws/heights/test_heights_far.py has heights below, between and above both.
 _FAR, _FARTHEST = 10.0, 1e8
 #: Every sixth knot is solved first. The others begin at values interpolated between these, and take fewer steps.
-_EVERY = 6
+EVERY = 6
 
 
 class Means(NamedTuple):
@@ -193,8 +193,13 @@ def look_up(table, group, y, step=STEP):
 def tables(edges, density, field, sigma, relief, fine=1):
     """(2, G, KNOTS * fine): ln q and ln λ at the knots of G laws, STEP / fine apart; arguments as those of
     :func:`pressure`."""
-    y = np.exp(FIRST + STEP / fine * np.arange(KNOTS * fine)) * np.ones((len(sigma), 1))
-    few, _ = pressure(edges, density, field, y[:, :: _EVERY * fine], sigma, relief)
-    guess, _ = look_up(np.log(few), np.arange(len(y)), y, _EVERY * STEP)
+    y = knots(fine) * np.ones((len(sigma), 1))
+    few, _ = pressure(edges, density, field, y[:, :: EVERY * fine], sigma, relief)
+    guess, _ = look_up(np.log(few), np.arange(len(y)), y, EVERY * STEP)
     q, at = pressure(edges, density, field, y, sigma, relief, np.exp(guess))
     return np.log(np.stack([q, at.area]))
+
+
+def knots(fine=1):
+    """y (KNOTS * fine,) of the knots of tables."""
+    return np.exp(FIRST + STEP / fine * np.arange(KNOTS * fine))

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..body.graded import contrast
 from ..kernels.two_layers import layer_modulus
 from ..laws import LAWS
 from ..laws.cell.law import end
@@ -16,8 +17,9 @@ from ..parameters import one_of
 from ..problem import far_apart
 from ..scaling import dimensionless, law_of, of_one_law
 
-#: Bases whose asperities could feel the body. A thin layer has an error of its own, far above this one.
-_BASES = ("layered", "stack", "auto")
+#: Bases that have no error of their own. To that of "auto" this one is added where its law could feel the body; that of
+#: a thin layer is left as it is.
+_EXACT = ("layered", "stack")
 #: The mean over the angle errs by this part, times 2 λ to a power, in A, λ or p_max of resolved cells
 #: (tests/models/test_cells.py): of a square lattice, and of a hexagonal one, whose waves the disc cell has.
 _SQUARE, _HEX = (0.03, 3.5), (1e-3, 4.0)
@@ -25,6 +27,13 @@ _ANGULAR = {"square_lattice": _SQUARE}
 #: The law that stands for one without a body of its own, as the power law is fitted to it, and for those that have no
 #: places of the neighbours; and the lattice with which it is compared.
 _DISC, _LATTICE = "disc_cell", "hex_lattice"
+#: Random heights of the standard deviation _WIDE A* are deeper by _DEEPER A* than resolved ones, those of less by its
+#: square, without a layer and on one. λ and p_max err by up to _OF_LAMBDA from _LITTLE A* on (docs/validate.md, Random
+#: heights; tests/laws/heights/test_heights_on_body.py). _WIDE stands for that of a histogram.
+_WIDE, _DEEPER, _LITTLE, _OF_LAMBDA = 0.3, 0.04, 0.1, 0.08
+#: A graded layer is cut in few sublayers below asperities: A, λ and p_max err by at most this times ln of the largest
+#: over the smallest modulus (tests/stacks/test_felt.py).
+_CUT = 5e-3
 #: An error is at most this: beyond, it says that the number means nothing.
 _MOST = 30.0
 
@@ -34,7 +43,8 @@ def left_out(problem, solution):
     D. 0 of smooth cases, of laws that do not know the asperities, and on a half-space where their pitch is at most h.
     `solution` and problem have one unit."""
     error = np.zeros(len(problem))
-    felt, there = problem.feels_layer(), one_of(problem.base, _BASES) & np.isfinite(problem.Ra) & problem.rough()
+    felt = problem.feels_layer()
+    there = (one_of(problem.base, _EXACT) | problem.can_feel()) & np.isfinite(problem.Ra) & problem.rough()
     index = np.flatnonzero(there & np.isfinite(solution.P) & (felt | far_apart(problem.Nbar, problem.h)))
     if not len(index):
         return error
@@ -72,10 +82,19 @@ def _of_felt(part, solution):
     name = str(part.micro[0])
     factor, power = _ANGULAR.get(name, _HEX)
     lam = np.fmax.reduce(solution.lam, axis=1, initial=0.0)
-    error = factor * (2 * lam) ** power
+    error = factor * (2 * lam) ** power + _CUT * contrast(part)
     if not LAWS[name].smears:
         return error
-    return error + _of_disc(part, lam, solution)
+    error = error + _of_disc(part, lam, solution)
+    return error if LAWS[name].touching is None else error + LAWS[name].error + _of_heights(part, solution)
+
+
+def _of_heights(part, solution):
+    """The error (B,) because the neighbours of a summit are a mean: where one stands high they carry less than that."""
+    A_star = 1 / (np.pi * part.Nbar * part.Ra)
+    spread = np.nan_to_num(part.sigma / A_star, nan=_WIDE)
+    deeper = _DEEPER * np.minimum((spread / _WIDE) ** 2, spread / _WIDE) * A_star / solution.D
+    return np.maximum(deeper, _OF_LAMBDA * np.minimum(spread / _LITTLE, 1.0))
 
 
 def _of_disc(part, lam, solution):
@@ -98,6 +117,7 @@ def _of_disc(part, lam, solution):
 @np.errstate(all="ignore")
 def _of_half_space(part, solution):
     """The error (B,) of asperities on a half-space though their pitch is above h, in units R = E2* = 1."""
+    part = part.but(asperities_on="half_space")
     if LAWS[str(part.micro[0])].on_body is None:
         part = part.but(micro=_DISC)
     on_body = law_of(part.but(asperities_on="layer"))

@@ -13,7 +13,7 @@ from ..contact.driver import solve_on
 from ..contact.equation import State, evaluate
 from ..contact.results import difference, quantities
 from ..numerics.mesh import mesh_of
-from ..scaling import as_cases, dimensionless, restore
+from ..scaling import as_cases, dimensionless, kinds_of_laws, restore
 from ..solution import Solution
 from .named import error_of_law, solve_named, with_model_error
 
@@ -28,8 +28,8 @@ def judged(problem, x):
     problem : all of base "thin_layer" or "thin_stack"; x : (m,) radii
     """
     pieces, scaled = [], dimensionless(problem)
-    exact = scaled.but(base=np.where(scaled.base == "thin_stack", "stack", "layered"), asperities_on="auto")
-    kinds = problem.micro, problem.base, exact.feels_layer()
+    exact = scaled.but(base=np.where(scaled.base == "thin_stack", "stack", "layered"))
+    kinds = problem.micro, problem.base, kinds_of_laws(exact)
     for kind in dict.fromkeys(zip(*(words.tolist() for words in kinds), strict=True)):
         index = np.flatnonzero(np.all([words == word for words, word in zip(kinds, kind, strict=True)], axis=0))
         part = scaled.take(index).but(model_check="closed_form")

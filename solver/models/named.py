@@ -7,7 +7,15 @@ import numpy as np
 
 from ..contact import smooth
 from ..laws import LAWS
-from ..scaling import as_cases, dimensionless, restore, with_a_stiff_base, with_rigid_punch, without_springs
+from ..scaling import (
+    as_cases,
+    dimensionless,
+    kinds_of_laws,
+    restore,
+    with_a_stiff_base,
+    with_rigid_punch,
+    without_springs,
+)
 from ..schemes import SCHEMES
 from ..shapes import shaped
 from ..smooth_contact.contact import kinds_of
@@ -99,11 +107,11 @@ def _ways(problem, solvable):
     yield solvable & is_smooth & half_space, _smooth_half_space
     yield solvable & is_smooth & thin, _smooth_layer
     iterated = solvable & ~(is_smooth & (half_space | thin))
-    kinds = problem.micro, problem.base, problem.scheme, problem.shape, problem.feels_layer()
+    kinds = problem.micro, problem.base, problem.scheme, problem.shape, kinds_of_laws(problem)
     # of each kind the words that occur, and the cases that have them
     present = ([(word, words == word) for word in dict.fromkeys(words.tolist())] for words in kinds)
-    for (_, of_law), (_, on_body), (scheme, by_scheme), (_, of_shape), (_, felt) in product(*present):
-        chosen = iterated & of_law & on_body & by_scheme & of_shape & felt
+    for (_, of_law), (_, on_body), (scheme, by_scheme), (_, of_shape), (_, of_kind) in product(*present):
+        chosen = iterated & of_law & on_body & by_scheme & of_shape & of_kind
         for limit in np.unique(problem.max_iterations[chosen]):
             yield chosen & (problem.max_iterations == limit), SCHEMES[scheme]
 

@@ -6,6 +6,7 @@ from ..kernels.two_layers import layer_modulus
 from ..laws import LAWS
 from ..laws.cell.law import end
 from ..scaling import dimensionless, law_of, of_one_law
+from ..status import Status
 
 #: Radii r/a at which the pressure is compared with the range, whatever profile is asked for. They are denser near the
 #: edge, where a hard film presses most.
@@ -40,15 +41,17 @@ def outside_law(problem, solution):
 
 
 def beyond_end(problem, solution):
-    """(B,) bool: p(0) or a pressure of the profile is beyond the end of the law of asperities that feel the body, which
-    on some bodies ends at once. `solution` is in the units of `problem`, whose bases have names."""
+    """(B,) bool: cases with numbers of which p(0) or a pressure of the profile is beyond the end of the law of spots
+    that feel the body, and all cases whose law ends at once. `solution` is in the units of `problem`, whose bases have
+    names."""
     beyond = np.zeros(len(problem), dtype=bool)
     felt = np.flatnonzero(problem.feels_layer())
     scaled = dimensionless(problem.take(felt))
     for rows in of_one_law(scaled):
         index, most = felt[rows], end(law_of(scaled.take(rows)))
         largest = np.fmax(solution.p0[index], np.fmax.reduce(solution.p[index], axis=1, initial=0.0))
-        beyond[index] = (largest > most * problem.E2[index]) | ~(most > 0)
+        solved = np.isin(solution.status[index], (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
+        beyond[index] = solved & (largest > most * problem.E2[index]) | ~(most > 0)
     return beyond
 
 

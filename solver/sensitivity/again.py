@@ -9,7 +9,7 @@ from ..contact.results import quantities
 from ..contact.start import first_guess
 from ..numerics.ladder import LADDER
 from ..numerics.mesh import mesh_of
-from ..scaling import as_cases
+from ..scaling import as_cases, kinds_of_laws
 from ..shapes import PARABOLOID, flat
 
 #: The closed form of the smooth half-space is a polynomial in s that the coarsest mesh has.
@@ -32,7 +32,8 @@ def without_state(problem):
 def stacks(problem, nodes, a, most):
     """Yield the indices of cases of one law, base, shape and mesh, and their number of nodes; 0: of one case on panels.
     No stack has more than `most` unknowns."""
-    kinds = np.stack([problem.micro, problem.base, problem.shape, nodes.astype(str), problem.feels_layer().astype(str)])
+    words = problem.micro, problem.base, problem.shape, nodes.astype(str), kinds_of_laws(problem).astype(str)
+    kinds = np.stack(words)
     for kind in np.unique(kinds, axis=1).T:
         index, count = np.flatnonzero(np.all(kinds == kind[:, None], axis=0)), int(kind[3])
         order = as_cases(problem.take(index)).body.order(a[index])

@@ -128,10 +128,10 @@ def usual_block(grid: Grid) -> int:
     approximated = (along(grid, "scheme") == "picard").any()
     if layered and (approximated or (n > _STIFF).any() or (rtol < _FINE).any()):
         return SLOWEST
-    return SLOW if approximated or (nodes > _MANY_NODES).any() or _many_bodies(grid) else USUAL
+    return SLOW if approximated or (nodes > _MANY_NODES).any() or many_bodies(grid) else USUAL
 
 
-def _many_bodies(grid: Grid) -> bool:
+def many_bodies(grid: Grid) -> bool:
     """Whether asperities feel bodies, or stand at pitches, of which there are more than a few for each case."""
     if not felt(grid).any():
         return False

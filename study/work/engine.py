@@ -29,7 +29,7 @@ from solver.compiled.newton import BASES, TAKEN
 
 from ..data.dataset import failed_cases
 from ..inputs.definition import Definition
-from ..inputs.grid import USUAL, along, felt, usual_block
+from ..inputs.grid import USUAL, along, many_bodies, usual_block
 from ..terminal import counted
 from . import cases
 from .cases import Failure, can_travel, guarded, parcel
@@ -236,7 +236,7 @@ def others_beside(workers: int, blocks: int, here: bool) -> int:
 
 def core_takes(definition: Definition) -> bool:
     """Whether the compiled core solves nearly all cases of a study, and nothing else takes long for them."""
-    if core() is None or definition.inputs or definition.stresses or felt(definition.grid).any():
+    if core() is None or definition.inputs or definition.stresses or many_bodies(definition.grid):
         return False
     names = ("micro", "base", "scheme", "model_check")
     words = {name: {*along(definition.grid, name).ravel().tolist()} for name in names}

@@ -59,7 +59,7 @@ PURE = {
     "model_check", "nodes", "max_iterations", "Ar_An", "plastic_share", "lam0", "lam", "status", "error",
     "profile_error", "model_error", "model_used", "residual", "iterations", "nodes_used", "validity", "An_ratio",
     "spots", "x", "case", "label", "shape", "half_angle", "tip", "shape_power", "shape_coefficient", "adhesion",
-    "branch", "stable",
+    "branch", "stable", "asperities_on", "asperities_used",
 } | {f"{name}_{axis}" for name in STRESSES for axis in "rz"}
 # fmt: on
 
@@ -130,6 +130,7 @@ CHOICES = {
     "base": {"half_space", "thin_layer", "layered", "auto", "stack", "thin_stack"},
     "micro": {"smooth", "disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights",
               "elastic_plastic"},
+    "asperities_on": {"auto", "layer", "half_space"},
     "scheme": {"newton", "picard"},
     "model_check": {"closed_form", "first_order"},
     "shape": {"paraboloid", "sphere", "cone", "berkovich", "vickers", "cube_corner", "power", "frustum", "blunt_cone",
@@ -174,7 +175,7 @@ def test_parameters_are_in_their_order():
     assert " ".join(name for name in PARAMETERS if name != "table_unit") == (  # which comes with a table of a shape
         "P a D h n m nu1 nu2 Y1 Y2 Y_punch bonding base shape half_angle flat_radius tip_radius tip edge_radius "
         "shape_power shape_coefficient w_adhesion adhesion sigma0 z0 branch k_machine Nbar Ra micro B beta sigma cut "
-        "hardness yield_strength scheme k rtol accuracy model_check nodes max_iterations"
+        "hardness yield_strength asperities_on scheme k rtol accuracy model_check nodes max_iterations"
     )
     assert names("control") == ("P", "a", "D") and names("profile") == ("p", "lam")
 

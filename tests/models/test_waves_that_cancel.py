@@ -15,6 +15,7 @@ def where_waves_cancel(n, nu1, nu2):
     """Rough contacts on a bonded layer, without their control, and the solutions at a = 0.01."""
     x, share = (v.ravel() for v in np.meshgrid([1e-3, 1e-2, 0.1], 10.0 ** np.arange(-5, 1)))
     given = {"h": 0.01 * x, "n": n, "nu1": nu1, "nu2": nu2, "bonding": "bonded", "Ra": 1e-3}
+    given |= {"asperities_on": "half_space"}  # as on the thin layer
     given["Nbar"] = 1 / (np.pi * 1e-7 * share * x)
     return given, solve(Problem.of(a=0.01, **given, rtol=1e-7))
 

@@ -143,7 +143,7 @@ def test_rigid_base_and_failed_cases():
         (Model.SMOOTH_THIN_LAYER, {"h": 1e-4, "Nbar": 1e10, "Ra": 1e-3}),
         (Model.SMOOTH_LAYER_ALONE, {"h": 30.0, "Nbar": 1e10, "Ra": 1e-3}),
         (Model.LAYER_ALONE, {"h": 10.0, "Nbar": 250000.0, "Ra": 4e-3}),
-        (Model.THIN_LAYER, {"h": 1e-3, "Nbar": 250000.0, "Ra": 4e-3}),
+        (Model.THIN_LAYER, {"h": 1e-3, "Nbar": 250000.0, "Ra": 4e-3, "asperities_on": "half_space"}),
     ],
 )
 def test_auto_stays_at_its_model(model, case):
@@ -202,7 +202,7 @@ def test_panels():
 @pytest.mark.parametrize("x", [[], [0.0, 0.5]])
 def test_a_solution_that_is_not_found_again(x):
     """It is solved with moved inputs, which gives the same to their error, 1e-9/1e-3 and 1e-3²."""
-    problem = contacts("disc_cell", "layered", "P", size=2, bonding="frictionless")
+    problem = contacts("disc_cell", "layered", "P", size=2, bonding="frictionless", asperities_on="half_space")
     solution = solve(problem, x)
     first, second = (sensitivities(problem, s, x) for s in (solution, replace(solution, D=1.01 * solution.D)))
     for name in QUANTITIES:

@@ -29,13 +29,15 @@ EXTREMES = {"P": (1e-12, 1e-1), "Ra": (1e-5, 1e-1), "NR": (1e-6, 1e6), "n": (1e-
 
 
 def random_cases(size, seed, ranges=RANGES):
-    """Keyword arguments of ``Problem.of``: `size` cases, log-uniform over `ranges`; the power law is a possible fit."""
+    """Keyword arguments of ``Problem.of``: `size` cases, log-uniform over `ranges`; the power law is a possible fit.
+    Asperities are on a half-space, whatever their pitch: their law on a layer ends where spots merge."""
     rng = np.random.default_rng(seed)
     drawn = {name: np.exp(rng.uniform(*np.log(limits), size)) for name, limits in ranges.items()}
     drawn["Nbar"] = drawn.pop("NR") / drawn["Ra"] ** 2
     bonding = np.where(rng.random(size) < 0.5, "bonded", "frictionless")
     return drawn | {
         "bonding": bonding,
+        "asperities_on": "half_space",
         "B": np.exp(rng.uniform(-2.5, 0.2, size)),
         "beta": rng.uniform(0.45, 0.62, size),
     }

@@ -15,6 +15,7 @@ The inverse is a series too: with r = (3 p/4)^(1/3), the radius of a lone spot w
 asinh(r/h). It is used for first guesses alone, and has few terms.
 """
 
+import hashlib
 from typing import NamedTuple
 
 import numpy as np
@@ -22,9 +23,9 @@ from numpy.polynomial import chebyshev
 
 from ...numerics.kept import Kept
 from .rows import of_kernel
-from .spot import FEW, Cell, pieces, spots
+from .spot import FEW, POINTS, Cell, pieces, spots
 
-__all__ = ["GUESS", "NUMBERS", "REACH", "Family", "families", "family", "kernel_keys"]
+__all__ = ["GUESS", "NUMBERS", "REACH", "Family", "different", "families", "family"]
 
 #: Largest contact fraction of a family. Resolved cells have A, λ and p_max within 1 % up to 0.4, and within 4 % up to
 #: this (tests/evidence); beyond, the spots are no circles.
@@ -46,20 +47,32 @@ _DIGITS = 44
 #: On a soft layer a disc cell goes wrong: its series ends where A/A_hex - 1 exceeds that without a layer by _SOFT
 #: (CELL.md: A and p turn negative later). It is looked for at _SCANNED radii.
 _SOFT, _SCANNED = 0.1, 24
+#: The largest mean pressure of a spot is looked for at so many radii.
+_LOOKED = 200
+#: Beyond the end P, G and Q have the second derivative that they have there, less and less: with a corner of the slope,
+#: contacts that go beyond would need finer meshes. It falls at this rate in ln b at least, and the slopes change by at
+#: most _TURNED, so that p and A rise.
+_SETTLES, _TURNED = 4.0, 0.25
 #: Radii are solved so many numbers of their matrices at a time.
 _AT_ONCE = 2**20
 #: Bytes of the families that are kept: some 10,000 of them.
 _kept = Kept(2e7)
 
 #: The numbers of a family before its series, in their order: b/h over b/Bbar, 1/asinh and the largest b/Bbar of P, G
-#: and Q; 1/asinh and the largest r/Bbar of the inverse; the slopes by ln b at the end of P, G and Q; the largest p/p*
-#: that the law knows.
-NUMBERS = ("scale", "width", "end", "width_r", "end_r", "slope_P", "slope_G", "slope_Q", "most")
+#: and Q; 1/asinh and the largest r/Bbar of the inverse; at the end the slopes by ln b of P, G and Q, their second
+#: derivatives, and how fast these fall beyond; the largest p/p* that the law knows; of the disc cell, b/Bbar from which
+#: the mean pressure of a spot falls, and this mean over that of a lone spot of the radius Bbar (the end, and 0, if it
+#: does not); and what tells the family from others.
+NUMBERS = (
+    *("scale", "width", "end", "width_r", "end_r", "slope_P", "slope_G", "slope_Q", "bend_P", "bend_G", "bend_Q"),
+    *("settles", "most", "turn", "top", "digest"),
+)
 
 
 class Family(NamedTuple):
     """Series of P, G and Q, Chebyshev coefficients (N,) each, and of the inverse (GUESS,); pitch over h, and the
-    largest radius (unit l). `known` is False of a family that no law has: a pitch above MOST."""
+    largest radius (unit l). `known` is False of a family that no law has, of a pitch above MOST. `disc` : whether it is
+    of disc cells; digest : a whole number that other families do not have."""
 
     pitch: float
     reach: float
@@ -68,6 +81,12 @@ class Family(NamedTuple):
     Q: np.ndarray
     inverse: np.ndarray
     known: bool = True
+    disc: bool = False
+    digest: float = 0.0
+
+    @property
+    def terms(self):
+        return len(self.P)
 
     def at(self, b):
         """p, A and p_max at radii b of any shape up to the reach, in units E = Ra = l = 1."""
@@ -81,12 +100,45 @@ class Family(NamedTuple):
         Bbar = 1 / np.sqrt(np.pi)
         scale, end = self.pitch * Bbar, self.reach / Bbar
         end_r = end * np.exp(self.P.sum() / 3)
-        along = 2 * scale * end / np.hypot(1, scale * end) / np.arcsinh(scale * end)  # dx/d ln b at the end
-        slopes = [along * chebyshev.chebval(1.0, chebyshev.chebder(series)) for series in (self.P, self.G, self.Q)]
+        beta = scale * end
+        along = 2 * beta / np.hypot(1, beta) / np.arcsinh(beta)  # dx/d ln b at the end
+        orders = [[chebyshev.chebval(1.0, chebyshev.chebder(v, i)) for v in (self.P, self.G, self.Q)] for i in (1, 2)]
+        slopes = along * np.array(orders[0])
+        bends = along**2 * np.array(orders[1]) + slopes / (1 + beta**2)
+        settles = max(_SETTLES, np.abs(bends).max() / _TURNED)
         widths = 1 / np.arcsinh(scale * end), 1 / np.arcsinh(scale * end_r)
         most = 2 / np.pi * end_r**3 if self.known else 0.0
+        turn = _turn(scale, end, self.P) if self.disc else (end, 0.0)
         series = [np.append(one, np.zeros(terms - len(one))) for one in (self.P, self.G, self.Q)]
-        return np.concatenate([[scale, widths[0], end, widths[1], end_r, *slopes, most], *series, self.inverse])
+        return np.concatenate(
+            [
+                [scale, widths[0], end, widths[1], end_r, *slopes, *bends, settles, most, *turn, self.digest],
+                *series,
+                self.inverse,
+            ]
+        )
+
+
+def half_space(t):
+    """exp(P) of the disc cell on a half-space at t = b/Bbar, Eq. (7), and its derivative by ln t over it."""
+    sin = np.sqrt(1 - t * t)
+    whole = np.arccos(t) + t * sin
+    return np.pi / 2 / whole, 2 * t**3 / (sin * whole)
+
+
+def _turn(scale, end, P):
+    """t = b/Bbar from which the mean pressure of a spot, t exp(P - P0) in the unit of that at t = 1, falls, and it."""
+    t = np.sinh(np.linspace(0, 1, _LOOKED)[1:] * np.arcsinh(scale * end)) / scale
+    x = 2 * np.arcsinh(scale * t) / np.arcsinh(scale * end) - 1
+    mean = t * np.exp(chebyshev.chebval(x, P)) / half_space(t)[0]
+    falls = np.flatnonzero(np.diff(mean) < 0)
+    if not len(falls) or falls[0] == 0:
+        return end, 0.0
+    at = slice(falls[0] - 1, falls[0] + 2)
+    top = np.polyfit(x[at] - x[falls[0]], mean[at], 2)  # the parabola through the largest and its neighbours
+    turn = x[falls[0]] - top[1] / (2 * top[0])
+    t = np.sinh((turn + 1) / 2 * np.arcsinh(scale * end)) / scale
+    return t, t * np.exp(chebyshev.chebval(turn, P)) / half_space(t)[0]
 
 
 def kernel_keys(kernel, m):
@@ -103,16 +155,22 @@ def families(lattice, pitch, kernel, m):
     lattice : "square", "hex" or "disc"; pitch : (B,), l over h; kernel : :class:`~solver.kernels.kernel.Kernel` of the
     cases; m : (B,), E1*/E3* of an elastic punch
     """
-    pitch = rounded(pitch)
-    keys = [(lattice, float(l_h), key) for l_h, key in zip(pitch, kernel_keys(kernel, m), strict=True)]
+    first, index = different(lattice, pitch, kernel, m)
+    return [family(key, kernel, m, i) for key, i in first], index
+
+
+def different(lattice, pitch, kernel, m):
+    """The key of each family of B cases with the first case of it, a list, and the index (B,) of that of each case."""
+    keys = zip(rounded(pitch).tolist(), kernel_keys(kernel, m), strict=True)
     first = {}
-    index = np.array([first.setdefault(key, (len(first), i))[0] for i, key in enumerate(keys)], dtype=int)
-    return [family(key, kernel, m, i) for key, (_, i) in first.items()], index
+    index = [first.setdefault((lattice, *key), (len(first), i))[0] for i, key in enumerate(keys)]
+    return [(key, i) for key, (_, i) in first.items()], np.array(index, dtype=int)
 
 
 def family(key, kernel, m, i):
     """The :class:`Family` of case i with this key, kept for the next time. It is a function of the case alone."""
-    return _kept.get(key, lambda: Family(*_made(key[0], key[1], kernel.take([i]), float(m[i]))))
+    digest = float(int.from_bytes(hashlib.blake2b(repr(key).encode(), digest_size=6).digest()))
+    return _kept.get(key, lambda: Family(*_made(key[0], key[1], kernel.take([i]), float(m[i])))._replace(digest=digest))
 
 
 def rounded(pitch):
@@ -135,55 +193,70 @@ def _made(lattice, pitch, kernel, m):
     series = _series(cell, reach, N)
     if not np.isfinite(series).all():  # where p, A or p_max are not above 0
         return _bare(lattice)
-    return pitch, reach, *series, _inverse(pitch, reach, series[0])
+    return pitch, reach, *series, _inverse(pitch, reach, series[0]), True, lattice == "disc"
 
 
 def _bare(lattice):
     """The fields of a family that no law has: the numbers are those without a layer."""
     cell, reach = Cell(lattice, 1.0), np.sqrt(REACH / np.pi)
     series = _series(cell, reach, pieces(cell, reach))
-    return 1.0, reach, *series, _inverse(1.0, reach, series[0]), False
+    return 1.0, reach, *series, _inverse(1.0, reach, series[0]), False, lattice == "disc"
 
 
 def _series(cell, reach, N):
-    """P, G and Q of a cell, as many terms as they need."""
-    terms = next(count for most, count in _TERMS if cell.pitch <= most)
+    """P, G and Q of a cell, (3, N)."""
+
+    def logs(b):
+        p, A, p_max = solved(cell, b, N)
+        return np.log([p / (4 / 3 * b**3), A / b**2, p_max / (2 * b / np.pi)])
+
+    return chebyshev_series(logs, cell.pitch, reach, np.array(_SMALL))
+
+
+def chebyshev_series(of, pitch, reach, small, numbers=_TERMS, enough=_ENOUGH):
+    """Chebyshev series (K, N) in 2 v - 1 of functions of the radius, as many terms as they need.
+
+    of : function of radii b (S,) -> (K, S)
+    small : what the last coefficients of each may be, over 1 or over its largest; a number or (K,)
+    numbers, enough : as _TERMS and _ENOUGH
+    """
+    terms = next(count for most, count in numbers if pitch <= most)
     while True:
         x = np.cos(np.pi * (np.arange(terms) + 0.5) / terms)
-        b = np.sinh((x + 1) / 2 * np.arcsinh(reach * cell.pitch)) / cell.pitch
-        p, A, p_max = solved(cell, b, N)
-        series = _chebyshev(np.log([p / (4 / 3 * b**3), A / b**2, p_max / (2 * b / np.pi)]))
+        values = of(np.sinh((x + 1) / 2 * np.arcsinh(reach * pitch)) / pitch)
+        series = 2 / terms * values @ np.cos(np.outer(np.arange(terms), np.arccos(x))).T
+        series[:, 0] /= 2
         if not np.isfinite(series).all():
             return series
-        if terms > _ENOUGH or (np.abs(series[:, -_LAST:]).max(axis=1) < _SMALL).all():
+        size = np.maximum(np.abs(series).max(axis=1), 1.0)
+        if terms > enough or (np.abs(series[:, -_LAST:]).max(axis=1) < small * size).all():
             needed = np.flatnonzero((np.abs(series) > _ROUNDING).any(axis=0))
-            return series[:, : needed[-1] + 1]
+            return series[:, : needed[-1] + 1 if len(needed) else 1]
         terms = int(_MORE * terms)
-
-
-def _chebyshev(values):
-    """Chebyshev coefficients (..., n) of values (..., n) at the n nodes of :func:`_series`, descending."""
-    n = values.shape[-1]
-    angles = np.outer(np.arange(n), np.pi * (np.arange(n) + 0.5) / n)
-    coefficients = 2 / n * values @ np.cos(angles).T
-    coefficients[..., 0] /= 2
-    return coefficients
 
 
 def solved(cell, b, N):
     """p, A and p_max (3, S) of the radii b (S,), each with as many points as it needs."""
-    out, beta = np.empty((3, len(b))), b * cell.pitch if cell.L1 is not None else 0 * b
+
+    def of(some):
+        spot = spots(cell, some, N)
+        return spot.p, spot.A, spot.p_max
+
+    return in_groups(cell, b, of, 3)
+
+
+def in_groups(cell, b, of, count):
+    """What a function gives, `count` arrays (s,), for radii of which the largest has few points more than the others
+    need: together (count, S)."""
+    out, beta = np.empty((count, len(b))), b * cell.pitch if cell.L1 is not None else 0 * b
     order, ends = np.argsort(beta), [most for _, most in FEW]
     while len(order):
         first = beta[order[0]]
         # those up to the next number of points; of more than one panel those up to a fifth wider
         most = next((end for end in ends if first <= end), 1.2 * first)
-        count = np.count_nonzero(beta[order] <= most)
-        size = max(1.0, beta[order[count - 1]] / 5) * 24
-        count = min(count, max(1, int(_AT_ONCE / size**2)))
-        some, order = order[:count], order[count:]
-        spot = spots(cell, b[some], N)
-        out[:, some] = spot.p, spot.A, spot.p_max
+        some = order[: np.count_nonzero(beta[order] <= most)]
+        some = some[: max(1, int(_AT_ONCE / (max(1.0, beta[some[-1]] / 5) * POINTS) ** 2))]
+        out[:, some], order = of(b[some]), order[len(some) :]
     return out
 
 

@@ -5,8 +5,8 @@ Q of the family of a case (:mod:`.family`) and p* = 2 E Bbar/(3 Ra), A* = Bbar²
 
     q = (2/pi) y³ e^P,   g = y² e^G,   λ = y²,   p_max/p* = (3/pi) y e^Q.
 
-P, G and Q end where the spots are no circles any more. Beyond, they are straight lines in ln y, so that Newton's method
-gets through: such a contact is outside the law, whose largest pressure :func:`end` says.
+P, G and Q end where the spots are no circles any more. Beyond, they soon are straight lines in ln y, so that Newton's
+method gets through: such a contact is outside the law, whose largest pressure :func:`end` says.
 """
 
 from functools import partial
@@ -15,8 +15,12 @@ import numpy as np
 
 from ..law import Bound, Curve, Law, log_step, where_positive
 from .family import GUESS, NUMBERS, families
+from .summits import clenshaw
 
-__all__ = ["EDGE", "end", "of_spots", "rows_of", "spot_area", "spot_curve", "spot_from_pressure", "spot_guess"]
+__all__ = [
+    *("EDGE", "end", "exponent", "number", "of_spots", "rows_of", "settled_slope", "stacked"),
+    *("spot_area", "spot_curve", "spot_from_pressure", "spot_guess", "spot_peak"),
+]
 
 _AT = {name: i for i, name in enumerate(NUMBERS)}
 #: Newton steps from the guess, which is right to 1e-2 or better: the third is below rounding.
@@ -31,15 +35,20 @@ def rows_of(lattice, kernel, m, h, Nbar):
     lattice : "square", "hex" or "disc"; kernel, m, h : of the body, as in `on_body` of :class:`~solver.laws.law.Law`
     """
     with np.errstate(all="ignore"):
-        different, index = families(lattice, 1 / (h * np.sqrt(Nbar)), kernel, m)
-    terms = max(len(family.P) for family in different)
-    return np.array([family.row(terms) for family in different])[index]
+        members, index = families(lattice, 1 / (h * np.sqrt(Nbar)), kernel, m)
+    return stacked(members)[index]
+
+
+def stacked(members):
+    """The rows of families or summits, (G, K), as long as the longest."""
+    terms = max(member.terms for member in members)
+    return np.array([member.row(terms) for member in members])
 
 
 def of_spots(name, lattice, scales, **rest):
     """`on_body` of the :class:`~solver.laws.law.Law` of equal asperities of this name, on a lattice. `scales` and
     `rest` are those of the law."""
-    parts = {"curve": spot_curve, "area": spot_area, "peak": _peak, "edge": _edge, "guess": spot_guess, "end": _end}
+    parts = {"curve": spot_curve, "area": spot_area, "peak": spot_peak, "edge": _edge, "guess": spot_guess, "end": _end}
     law = Law(name=f"{name}_on_body", scales=scales, from_pressure=spot_from_pressure, **parts, **rest)
     return partial(_bound, law, lattice)
 
@@ -55,15 +64,21 @@ def end(bound):
     return bound.p_star * np.broadcast_to(bound.law.end(*bound.own), (len(bound.p_star), 1))[:, 0]
 
 
-def _number(rows, name):
+def number(rows, name):
+    """One of the NUMBERS of the families of B cases, (B, 1)."""
     return rows[:, _AT[name], None]
+
+
+def settled_slope(rows):
+    """dP/d ln y far beyond the end, (B, 1)."""
+    return number(rows, "slope_P") + number(rows, "bend_P") / number(rows, "settles")
 
 
 def _along(rows, y):
     """x = 2 v - 1 of the series at y (B, m), dx/d ln y, and ln(y/end), 0 where y is not beyond the end."""
-    scale, last = _number(rows, "scale"), _number(rows, "end")
+    scale, last = number(rows, "scale"), number(rows, "end")
     beyond = np.log(np.maximum(y / last, 1.0))
-    beta, width = scale * np.minimum(y, last), 2 * _number(rows, "width")
+    beta, width = scale * np.minimum(y, last), 2 * number(rows, "width")
     return width * np.arcsinh(beta) - 1, width * beta / np.hypot(1, beta), beyond
 
 
@@ -71,29 +86,22 @@ def _series(rows, which, x):
     """The series P, G or Q (`which`: 0, 1, 2) at x (B, m), and its derivative by x: Clenshaw's recurrence."""
     terms = (rows.shape[1] - len(NUMBERS) - GUESS) // 3
     first = len(NUMBERS) + which * terms
-    return _clenshaw(rows[:, first : first + terms], x)
+    return clenshaw(rows[:, first : first + terms], x)
 
 
-def _clenshaw(coefficients, x):
-    value, before, slope, slope_before = np.zeros((4, *x.shape))
-    twice = 2 * x
-    for c in coefficients.T[:0:-1]:
-        slope, slope_before = twice * slope - slope_before + 2 * value, slope
-        value, before = twice * value - before + c[:, None], value
-    return x * value - before + coefficients[:, :1], value + x * slope - slope_before
-
-
-def _exponent(rows, which, y):
+def exponent(rows, which, y):
     """P, G or Q at y (B, m), and its derivative by ln y."""
     x, dx, beyond = _along(rows, y)
     value, slope = _series(rows, which, x)
-    last = rows[:, _AT["slope_P"] + which, None]
-    return value + last * beyond, np.where(beyond > 0, last, slope * dx)
+    last, bend = (rows[:, _AT[name] + which, None] for name in ("slope_P", "bend_P"))
+    settles = number(rows, "settles")
+    turned = bend * -np.expm1(-settles * beyond) / settles
+    return value + (last + bend / settles) * beyond - turned / settles, np.where(beyond > 0, last + turned, slope * dx)
 
 
 def _pressure(rows, y):
     """q and dq/dy at y (B, m)."""
-    P, dP = _exponent(rows, 0, y)
+    P, dP = exponent(rows, 0, y)
     slope = 2 / np.pi * y**2 * np.exp(P)
     return slope * y, slope * (3 + dP)
 
@@ -101,18 +109,18 @@ def _pressure(rows, y):
 def spot_curve(y, rows):
     """:class:`~solver.laws.law.Curve` at y (B, m)."""
     q, dq = _pressure(rows, y)
-    G, dG = _exponent(rows, 1, y)
+    G, dG = exponent(rows, 1, y)
     slope = y * np.exp(G)
     return Curve(q, slope * y, dq, slope * (2 + dG))
 
 
 def spot_guess(q, rows):
     """y with q(y) = q, roughly: by the inverse of the family, a series in asinh(r/h), r the radius of a lone spot."""
-    r, last = np.cbrt(np.pi / 2 * np.maximum(q, 0.0)), _number(rows, "end_r")
-    x = 2 * _number(rows, "width_r") * np.arcsinh(_number(rows, "scale") * np.minimum(r, last)) - 1
-    inside, _ = _clenshaw(rows[:, -GUESS:], x)
+    r, last = np.cbrt(np.pi / 2 * np.maximum(q, 0.0)), number(rows, "end_r")
+    x = 2 * number(rows, "width_r") * np.arcsinh(number(rows, "scale") * np.minimum(r, last)) - 1
+    inside, _ = clenshaw(rows[:, -GUESS:], x)
     beyond = np.log(np.maximum(r / last, 1.0))
-    return np.minimum(r, last) * np.exp(inside + beyond * 3 / (3 + _number(rows, "slope_P")))
+    return np.minimum(r, last) * np.exp(inside + beyond * 3 / (3 + settled_slope(rows)))
 
 
 def spot_from_pressure(q, rows):
@@ -129,13 +137,13 @@ def spot_area(y, q, rows):
     return np.minimum(y * y, 1.0)
 
 
-def _peak(y, q, rows):
+def spot_peak(y, q, rows):
     """p_max/p*, the pressure in the middle of a spot."""
-    return 3 / np.pi * y * np.exp(_exponent(rows, 2, y)[0])
+    return 3 / np.pi * y * np.exp(exponent(rows, 2, y)[0])
 
 
 def _end(rows):
-    return _number(rows, "most")
+    return number(rows, "most")
 
 
 def _edge(rows):

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...numerics.quadrature import gauss_legendre
-from .sums import LATTICES, neighbours, waves
+from .sums import LATTICES, lone_waves, neighbours, waves
 
 __all__ = ["Cell", "Spots", "spots"]
 
@@ -32,7 +32,7 @@ FEW = ((16, 2.5), (24, 4.0), (32, 7.0))
 class Cell(NamedTuple):
     """Cells of one lattice on one body.
 
-    lattice : "square", "hex", or "disc", whose layer has the waves of "hex"
+    lattice : "square", "hex", or "disc", whose layer has the waves of "hex"; "lone": of one spot alone, and no equation
     pitch : l/h
     L1 : function of u = kh (W,) : L(u) - 1 (W,) of the body, over 1 + m under an elastic punch; None without a layer
     """
@@ -96,9 +96,12 @@ def pieces(cell, reach):
     half = np.diff(edges) / 2
     middle = edges[:-1] + half
     x = middle + half * nodes[:, None]
-    N = np.zeros_like(x) if cell.lattice == "disc" else neighbours(cell.lattice, x)[0]
+    N = neighbours(cell.lattice, x)[0] if cell.lattice in LATTICES else np.zeros_like(x)
     if cell.L1 is not None:
-        k, c = waves("hex" if cell.lattice == "disc" else cell.lattice, cell.pitch, reach)
+        if cell.lattice == "lone":
+            k, c = lone_waves(cell.pitch, reach)
+        else:
+            k, c = waves("hex" if cell.lattice == "disc" else cell.lattice, cell.pitch, reach)
         if len(k):
             N = N + _summed(k, c * cell.L1(k / cell.pitch), middle, half, nodes)
     return _Pieces(edges, np.linalg.solve(np.vander(nodes, increasing=True), N))
@@ -130,20 +133,26 @@ def points(cell, reach, sparing=False):
     return ((np.arange(n)[:, None] + x) / n).ravel(), np.tile(w / n, n)
 
 
-def spots(cell, b, N=None):
+def kernels(N, ends, t, w):
+    """2 N(t, s) and its derivative by t, each with the weight of s, at the ends (S, T + 1) and the points t (S, T), of
+    the weights w (S, T): (S, T + 1, T)."""
+    far, near = ends[:, :, None] + t[:, None, :], ends[:, :, None] - t[:, None, :]
+    (sum_, d_sum), (difference, d_difference) = N.at(far), N.at(np.abs(near))
+    return (sum_ + difference) * w[:, None, :], (d_sum + np.sign(near) * d_difference) * w[:, None, :]
+
+
+def spots(cell, b, N=None, rule=None):
     """:class:`Spots` of a :class:`Cell` of the radii b (S,), in l, 0 < b < d/2.
 
     N : :func:`pieces` of the cell up to the largest radius and farther, where others are solved too: the radii then
         have as few points as serve the largest of them
+    rule : points and weights on [0, 1], if these are not to be chosen
     """
     b = np.asarray(b, dtype=float)
-    (x, weights), N = points(cell, b.max(), N is not None), N or pieces(cell, b.max())
+    (x, weights), N = rule or points(cell, b.max(), N is not None), N or pieces(cell, b.max())
     t, w = b[:, None] * x, b[:, None] * weights
     ends = np.concatenate([t, b[:, None]], axis=1)
-    far, near = ends[:, :, None] + t[:, None, :], ends[:, :, None] - t[:, None, :]
-    (sum_, d_sum), (difference, d_difference) = N.at(far), N.at(np.abs(near))
-    kernel = (sum_ + difference) * w[:, None, :]  # 2 N(t, s) with the weight of s
-    d_kernel = (d_sum + np.sign(near) * d_difference) * w[:, None, :]
+    kernel, d_kernel = kernels(N, ends, t, w)
     right = np.stack([np.ones_like(ends), ends**2], axis=2)
     slopes = np.stack([np.zeros_like(t), 2 * t], axis=2)
     if disc := cell.lattice == "disc":

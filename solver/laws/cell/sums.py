@@ -17,7 +17,7 @@ import numpy as np
 from ...numerics import special
 from ...numerics.quadrature import gauss_legendre
 
-__all__ = ["LATTICES", "Waves", "lattice_waves", "neighbours", "waves"]
+__all__ = ["LATTICES", "Waves", "lattice_waves", "lone_waves", "neighbours", "waves"]
 
 #: Distance d of neighbours over l.
 LATTICES = {"square": 1.0, "hex": (4 / 3) ** 0.25}
@@ -32,6 +32,8 @@ CUT = 19.0
 SPLIT, _MIDDLE, _WIDTHS = 30.0, 6.0, 12.0
 #: Points on each panel of the integral, and the widest panel: in units of h, over the largest radius, and over D.
 _POINTS, _PANEL = 16, (0.6, 4.0, 1.0)
+#: Panels towards k = 0, each half as wide as the one before: a plate of n = 1e3 has its kernel change at u = 1e-3.
+_HALVINGS = 24
 
 
 class Waves(NamedTuple):
@@ -87,6 +89,18 @@ def waves(lattice, pitch, reach):
     """
     k, c = _split(lattice, CUT * pitch, 2 * reach, pitch < SPLIT)
     return Waves(k, c / k)
+
+
+@lru_cache(maxsize=32)
+def lone_waves(pitch, reach):
+    """:class:`Waves` of one spot alone on a layer of h = l/`pitch`: sum c f(k) is the integral over all k up to CUT, of
+    an f that changes as L does and as cos kx up to x = 2 `reach`."""
+    widest = min(_PANEL[0], _PANEL[1] / (reach * pitch))
+    even = np.linspace(widest, CUT, max(2, int(np.ceil((CUT - widest) / widest)) + 1))
+    edges = np.concatenate([[0.0], widest * 0.5 ** np.arange(_HALVINGS, 0, -1.0), even])
+    nodes, weights = gauss_legendre(_POINTS)
+    width = np.diff(edges)[:, None]
+    return Waves((edges[:-1, None] + width * nodes).ravel() * pitch, (width * weights).ravel() * pitch)
 
 
 @lru_cache(maxsize=32)

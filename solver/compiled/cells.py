@@ -1,0 +1,71 @@
+"""Families of cells on the coated body as the core has them: polynomials on pieces that a number's own bits choose.
+
+A piece is one of PIECES parts of an octave of z = 1 + kappa y, with kappa so that the last octave ends where the series
+of the family do. Near y = 0 all pieces are equally wide, far from it they widen as y: the functions change as b/h does.
+"""
+
+import numpy as np
+
+from ..laws.cell.family import NUMBERS
+from ..laws.cell.law import exponent, number, settled_slope, spot_guess
+from ..numerics.kept import Kept
+
+#: As in batch.h: pieces an octave, and coefficients of a polynomial of exp(P), exp(G) and exp(Q); half as many of the
+#: first guess. The polynomials are those of the series to 1e-13 (tests/compiled/test_cells.py).
+PIECES, ROW = 32, 8
+#: The least number of octaves.
+_OCTAVES = 2
+#: All that is kept for later calls takes at most this many bytes.
+_kept = Kept(4e7)
+
+
+def cells_of(rows):
+    """The families of B cases from the rows (B, K) of their law, a list of arrays; and the address of that of each
+    case, (B,) whole numbers."""
+    digests, first, index = np.unique(number(rows, "digest")[:, 0], return_index=True, return_inverse=True)
+    families = [
+        _kept.get((digest, rows.shape[1]), lambda i=i: _family(rows[i : i + 1]))
+        for digest, i in zip(digests.tolist(), first, strict=True)
+    ]
+    addresses = np.array([family.ctypes.data for family in families], dtype=np.int64)
+    return families, np.ascontiguousarray(addresses[index])
+
+
+@np.errstate(all="ignore")
+def _family(row):
+    """The numbers of a family as in batch.h, from its row (1, K)."""
+    numbers = dict(zip(NUMBERS, row[0], strict=False))
+    scale, end, end_r = numbers["scale"], numbers["end"], numbers["end_r"]
+
+    def of(which):
+        return lambda y: np.exp(exponent(row, which, y)[0])
+
+    def ratio(r):
+        return spot_guess(2 / np.pi * r**3, row) / r
+
+    kappa, octaves = _octaves(scale, end)
+    kappa_r, octaves_r = _octaves(scale, end_r)
+    P, G, Q = (_polynomials(of(which), kappa, octaves, ROW) for which in range(3))
+    inverse = _polynomials(ratio, kappa_r, octaves_r, ROW // 2)
+    slopes = [numbers[f"{name}_{of}"] for name in ("slope", "bend") for of in "PGQ"]
+    slope_r = 3 / (3 + settled_slope(row)[0, 0]) - 1
+    tops = [np.nextafter(2.0**count, 0.0) for count in (octaves, octaves_r)]
+    header = [kappa, end, tops[0], kappa_r, end_r, tops[1], *slopes, numbers["settles"], slope_r, 0.0, 0.0]
+    header[-2] = len(header) + P.size + G.size
+    header[-1] = header[-2] + Q.size
+    return np.concatenate([header, np.concatenate([P, G], axis=1).ravel(), Q.ravel(), inverse.ravel()])
+
+
+def _octaves(scale, end):
+    """kappa, and the number of octaves of 1 + kappa y from 0 to `end`."""
+    octaves = max(_OCTAVES, int(np.ceil(np.log2(1 + scale * end))))
+    return (2.0**octaves - 1) / end, octaves
+
+
+def _polynomials(of, kappa, octaves, count):
+    """Coefficients (PIECES * octaves, count), ascending, in t from -1 to 1 on each piece."""
+    piece = np.arange(PIECES * octaves)
+    low, width = 2.0 ** (piece // PIECES) * (1 + piece % PIECES / PIECES), 2.0 ** (piece // PIECES) / PIECES
+    nodes = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    y = (low[:, None] - 1 + width[:, None] * (nodes + 1) / 2) / kappa
+    return np.linalg.solve(np.vander(nodes, increasing=True), of(y.reshape(1, -1)).reshape(y.shape).T).T

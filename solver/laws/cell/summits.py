@@ -1,0 +1,167 @@
+"""One spot of its own radius and load on a coated body, in the mean field of others: for asperities of random heights.
+
+Its own load acts by the kernel of a lone spot on the layer, that of the others as their mean, the nominal pressure p:
+by the half-space's field outside of its cell, as in the disc cell, and by what the layer adds for the waves of the
+hexagonal lattice, less what it adds for the spot itself. With N1 of the lone spot, Nh of the lattice, and the shape s
+of the spots of equal heights (of the disc cell, load 1, the same radius),
+
+    pi phi(t) + 2 int_0^b phi N1 ds = A - t² + p [2 sqrt(Bbar² - t²) - 2 int_0^b s (Nh - N1) ds].
+
+It is linear in p. In units of the disc cell, with c = b/Bbar = sin θ, v = cos θ and k = (2/3) q,
+
+    approach   a = c² e^G - 2 k (v + B),
+    load       f = (2/pi) [c³ e^P + q (θ - v c + F)],
+    p_max/p*     = (3/pi) c e^Q + (2/pi) q (θ + D),
+
+in which G, P, Q, B, F and D are smooth functions of b/h, all 0 without a layer. With a load that is the mean it is the
+disc cell of the family. Were the load of others its own, resolved cells of random heights would have A and λ up to 70 %
+off; so they are within 8 % (tests/laws/cell/test_summits.py).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...numerics.kept import Kept
+from .family import REACH, chebyshev_series, in_groups
+from .rows import of_kernel
+from .spot import Cell, kernels, pieces, points, spots
+
+__all__ = ["SUMMIT_NUMBERS", "Lookup", "Summit", "at", "clenshaw", "summit"]
+
+#: The numbers of a summit before its series: b/h over c, 1/asinh and the largest c of the series: that of the family of
+#: disc cells; and whether they go on beyond as straight lines in ln c, 1, or constant, 0, where that family ends early.
+SUMMIT_NUMBERS = ("scale", "width", "end", "on")
+SERIES = ("G", "P", "Q", "B", "F", "D")
+#: Terms of the series by the pitch over h, and their number at most: the laws of heights are right to 2e-4.
+_TERMS, _MORE, _ENOUGH, _SMALL = ((2.0, 16), (24.0, 28), (np.inf, 56)), 1.5, 130, 1e-7
+#: Polynomials of a lookup: their number for each term of the series, and their degree: right to 1e-9.
+_PIECES, _DEGREE = 6, 5
+_kept = Kept(2e7)
+
+
+class Summit(NamedTuple):
+    """Series (6, N) of G, P, Q, B, F and D; pitch over h, and the largest radius of the series, in l."""
+
+    pitch: float
+    reach: float
+    series: np.ndarray
+
+    @property
+    def terms(self):
+        return self.series.shape[1]
+
+    def row(self, terms):
+        """Its numbers, (len(SUMMIT_NUMBERS) + 6 `terms`,): SUMMIT_NUMBERS, then the series, zeros behind each."""
+        Bbar = 1 / np.sqrt(np.pi)
+        scale, end = self.pitch * Bbar, self.reach / Bbar
+        series = np.zeros((len(SERIES), terms))
+        series[:, : self.series.shape[1]] = self.series
+        on = float(self.reach > 0.99 * np.sqrt(REACH / np.pi))
+        return np.concatenate([[scale, 1 / np.arcsinh(scale * end), end, on], series.ravel()])
+
+
+def summit(key, disc, kernel, m, i):
+    """The :class:`Summit` of case i with the key of its family `disc` of disc cells (:mod:`.family`), kept for the next
+    time; that of no layer where no law has the family."""
+    return _kept.get(key, lambda: Summit(disc.pitch, disc.reach, _made(disc, kernel.take([i]), float(m[i]))))
+
+
+@np.errstate(all="ignore")  # of bodies that are none
+def _made(disc, kernel, m):
+    """The series of a :class:`Summit`."""
+    none = np.zeros((len(SERIES), 1))
+    if not disc.known:
+        return none
+    cell = Cell("disc", disc.pitch, of_kernel(kernel, m))
+    of_lattice, lone = pieces(cell, disc.reach), pieces(cell._replace(lattice="lone"), disc.reach)
+
+    def of(b):
+        return in_groups(cell, b, lambda some: _corrections(cell, some, of_lattice, lone), len(SERIES))
+
+    series = chebyshev_series(of, disc.pitch, disc.reach, _SMALL, _TERMS, _ENOUGH)
+    return series if np.isfinite(series).all() else none
+
+
+def _corrections(cell, b, of_lattice, lone):
+    """G, P, Q, B, F and D (6, S) at radii b (S,), by the equation of the module."""
+    rule = points(cell, b.max(), sparing=True)
+    t, w = (b[:, None] * values for values in rule)
+    equal = spots(cell, b, of_lattice, rule)
+    shape = (equal.phi / (2 * np.pi * (w * equal.phi).sum(axis=1)[:, None]))[..., None]
+    ends = np.concatenate([t, b[:, None]], axis=1)
+    own, d_own = kernels(lone, ends, t, w)
+    lattice, d_lattice = kernels(of_lattice, ends, t, w)
+    root = np.sqrt(1 / np.pi - ends**2)
+    right = np.stack([np.ones_like(ends), ends**2, 2 * root - ((lattice - own) @ shape)[..., 0]], axis=2)
+    slopes = [np.zeros_like(t), 2 * t, -2 * t / root[:, :-1] - ((d_lattice - d_own) @ shape)[:, :-1, 0]]
+    phi = np.linalg.solve(np.pi * np.eye(t.shape[1]) + own[:, :-1], right[:, :-1])
+    at_b = (right[:, -1] - (own[:, -1:] @ phi)[:, 0]) / np.pi
+    load = 2 * np.pi * (w[:, None] @ phi)[:, 0]
+    fall = (d_own[:, :-1] @ phi - np.stack(slopes, axis=2)) / (np.pi * t[..., None])
+    middle = (w[:, None] @ fall)[:, 0]
+    # phi(b) = 0 gives A = (part of the shape) - p (part of the others)
+    of_shape, of_others = at_b[:, 1] / at_b[:, 0], at_b[:, 2] / at_b[:, 0]
+    logs = np.log([
+        of_shape / b**2,
+        (of_shape * load[:, 0] - load[:, 1]) / (4 / 3 * b**3),
+        (of_shape * middle[:, 0] - middle[:, 1]) / (2 * b / np.pi),
+    ])  # fmt: skip
+    c = b * np.sqrt(np.pi)
+    v, angle = np.sqrt(1 - c * c), np.arcsin(c)
+    B = of_others * np.sqrt(np.pi) / 2 - v
+    F = np.pi / 2 * (load[:, 2] - of_others * load[:, 0]) - (angle - v * c)
+    D = np.pi / 2 * (middle[:, 2] - of_others * middle[:, 0]) - angle
+    return np.concatenate([logs, [B, F, D]])
+
+
+def clenshaw(coefficients, x):
+    """A Chebyshev series of coefficients (B, N) at x (B, m), and its derivative by x: Clenshaw's recurrence."""
+    value, before, slope, slope_before = np.zeros((4, *x.shape))
+    twice = 2 * x
+    for c in coefficients.T[:0:-1]:
+        slope, slope_before = twice * slope - slope_before + 2 * value, slope
+        value, before = twice * value - before + c[:, None], value
+    return x * value - before + coefficients[:, :1], value + x * slope - slope_before
+
+
+def at(rows, which, c):
+    """One of the SERIES (its index) of the rows (B, K) of B cases at c (B, m), and its derivative by ln c."""
+    terms = (rows.shape[1] - len(SUMMIT_NUMBERS)) // len(SERIES)
+    first = len(SUMMIT_NUMBERS) + which * terms
+    scale, width, end, on = rows[:, : len(SUMMIT_NUMBERS)].T[..., None]
+    beta, beyond = scale * np.minimum(c, end), np.log(np.maximum(c / end, 1.0))
+    x, dx = 2 * width * np.arcsinh(beta) - 1, 2 * width * beta / np.hypot(1, beta)
+    value, slope = clenshaw(rows[:, first : first + terms], x)
+    slope = slope * dx
+    return value + on * slope * beyond, np.where(c < end, slope, on * slope)
+
+
+class Lookup:
+    """Four of the SERIES, G, P, B and F of one row (K,), by short polynomials: fast for many points."""
+
+    def __init__(self, row):
+        self.scale, self.width, self.end, self.on = row[: len(SUMMIT_NUMBERS)]
+        nodes = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
+        series = row[len(SUMMIT_NUMBERS) :].reshape(len(SERIES), -1)
+        self.count = _PIECES * series.shape[1]
+        x = (2 * np.arange(self.count)[:, None] + 1 + nodes) / self.count - 1
+        values = [clenshaw(series[None, i], x.ravel()[None])[0].reshape(x.shape) for i in (0, 1, 3, 4)]
+        self.polynomials = np.linalg.solve(np.vander(nodes, increasing=True), np.stack(values).transpose(0, 2, 1))
+
+    def at(self, c):
+        """G, P, B and F at c of any shape, and their derivatives by ln c: two lists."""
+        beta = self.scale * np.minimum(c, self.end)
+        place = self.width * np.arcsinh(beta) * self.count
+        index = np.clip(place.astype(int), 0, self.count - 1)
+        xi, dx = 2 * (place - index) - 1, 2 * self.count * self.width * beta / np.hypot(1, beta)
+        values, slopes, dx = [], [], np.where(c < self.end, dx, self.on * dx)
+        beyond = np.log(np.maximum(c / self.end, 1.0))
+        for rows in self.polynomials:
+            value, slope = rows[-1].take(index), 0.0
+            for row in rows[-2::-1]:
+                slope = slope * xi + value
+                value = value * xi + row.take(index)
+            slopes.append(slope * dx)
+            values.append(value + slopes[-1] * beyond)
+        return values, slopes

@@ -1,11 +1,16 @@
-"""The master curves of coatings: every curve against the dataset, by formulas of its own."""
+"""The master curves of coatings: every curve against the dataset, by formulas of its own; and what lies under them in
+the pressure of asperities, against the law on the coated body."""
 
 import numpy as np
 import pytest
 import xarray as xr
 from conftest import opened
 from drawn import frame, legend, lines, ticks
+from numpy.testing import assert_allclose
 
+from solver.laws import LAWS, cell_rows
+from study import materials
+from study.studies.systems import substrate
 from study.studies.systems.figures import COLOURS, PALE, power
 
 # Row -> label, scale of the ordinate, column of the CSV.
@@ -120,3 +125,28 @@ def test_every_ratio_of_the_study_has_a_name_and_a_colour():
     names = {0.001: "10^{-3}", 0.01: "10^{-2}", 0.1: "0.1", 1.0: "1", 10.0: "10", 100.0: "10^{2}", 1000.0: "10^{3}"}
     assert {n: power(n) for n in names} == names
     assert list(COLOURS) == list(names) and len(set(COLOURS.values())) == len(names)
+
+
+def test_ratios_are_those_of_one_nominal_pressure(monkeypatch):
+    """At their λ the law on the coated body has the p that the half-space has at its λ, and p_max."""
+    monkeypatch.setattr(substrate, "PITCH", np.array([0.5, 8.0]))
+    coating, body = materials.get("TiN"), materials.get("steel 52100")
+    p_max, lam = substrate.ratios(coating, body)
+    assert_allclose([p_max[0], lam[0]], 1, rtol=2e-5)  # the error of the table
+    n = coating.reduced_modulus / body.reduced_modulus
+    p, _, felt = cell_rows("square", substrate.LAM * lam[1], 8.0, n, coating.nu, body.nu, "bonded")
+    bare = LAWS["square_lattice"].at(p, 1.0, Nbar=1.0, Ra=1.0)
+    assert_allclose([bare.lam, felt / bare.p_max], [substrate.LAM, p_max[1]], rtol=4e-5)
+
+
+def test_soft_coatings_press_more_and_hard_ones_less(monkeypatch):
+    monkeypatch.setattr(substrate, "PITCH", np.array([10.0]))
+    ratios = [substrate.ratios(materials.get(name), materials.get(under)) for name, under, *_ in substrate.COATINGS]
+    p_max, lam = np.array(ratios)[..., 0].T
+    assert (np.diff(p_max) > 0).all() and (np.diff(lam) < 0).all()  # from hard to soft
+
+
+@pytest.mark.parametrize(("power", "at"), [(0.1, 1.05**10), (-0.2, 1.05**5), (0.001, None)])
+def test_where_the_pressure_is_five_per_cent_off(power, at):
+    curve = np.maximum(substrate.PITCH, 1.0) ** power
+    assert substrate.felt_from(curve) == (None if at is None else pytest.approx(at, rel=1e-6))

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-import validate_film as film
+import validate_cells as cells
 from influence import Layer, coefficients, convolution
 from layered_independent import legendre
 from numpy.testing import assert_allclose
@@ -11,7 +11,6 @@ from scipy.special import j0, spherical_jn
 
 from solver import Problem, solve
 from solver.kernels.closed_form import layered_kernel
-from solver.laws import LAWS
 
 LAYERS = (
     Layer(0.5, 0.5),
@@ -82,12 +81,15 @@ def test_a_rough_sphere_on_a_layer(layer, P):
     assert np.abs(np.interp(r[inside], x * s.a[0], s.p[0]) - mean[inside]).max() < 4e-3 * s.p0[0]
 
 
-def test_what_a_lattice_errs_on_a_thin_layer():
-    """The first order, of small spots, is what a cell of the lattice shows; and nothing where the pitch is h."""
-    p, law = 1e-3, LAWS["square_lattice"].at(1e-3, 1.0, Nbar=1.0, Ra=1.0)
-    for layer in film.MATERIALS.values():
-        for pitch, most in ((1.0, 2e-4), (3.0, 0.1)):
-            one = layer._replace(h=1 / pitch)
-            change = film.cell(p, one)[0] - film.cell(p, None)[0]
-            assert abs(change) < most * law.A
-            assert_allclose(film.first_order(p, np.sqrt(law.lam / np.pi), one), change, rtol=0.05, atol=1e-5 * law.A)
+@pytest.mark.parametrize("lattice", ["square", "hex"])
+@pytest.mark.parametrize(("pitch", "layer"), [(1.0, LAYERS[2]), (6.0, LAYERS[2]), (6.0, LAYERS[1])], ids=str)
+def test_cells_on_a_layer(lattice, pitch, layer):
+    """On 64 elements along a period A and p_max are those of the law on the coated body; on a half-space they are at a
+    pitch of h, and at 6 h by far not."""
+    one = cells.Cell(lattice, 0.1, pitch, layer, m=0.3)
+    p, (bare, known) = cells.laws(one)
+    A, lam, p_max, largest = cells.resolved(one, p, 64)
+    assert_allclose([A, p_max, largest], [known[0], known[2], known[2]], rtol=2e-3)
+    assert_allclose(lam, known[1], rtol=0.03)
+    errors = abs(bare[[0, 2]] / [A, p_max] - 1)
+    assert (errors < 2e-3).all() if pitch == 1 else (errors > 0.05).all()

@@ -4,9 +4,9 @@
     python tools/bench/benchmark.py --page docs/speed.md
 
 The ratio r takes the machine out: it counts the linear systems that numpy solves in the time of one case, both in
-processor time and by turns. Beside it: time and memory against the number of cases, one and two threads, a study of a
-million cases, BLAS left two threads (benchmark_threads.py has more), and at equal error the paper's way and, if they
-are installed (extra `peers`), other codes.
+processor time and by turns. Beside it: time and memory against the number of cases, one and two threads, asperities
+that feel the coated body (benchmark_felt.py), a study of a million cases, BLAS left two threads (benchmark_threads.py
+has more), and at equal error the paper's way and, if they are installed (extra `peers`), other codes.
 """
 
 import argparse
@@ -24,6 +24,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import numpy as np  # noqa: E402
 from benchmark_cases import CASES, REPEATS, X, coatings, problem, processor_seconds, rated, seconds  # noqa: E402
+from benchmark_felt import felt  # noqa: E402
 from benchmark_page import measured_page  # noqa: E402
 from benchmark_peers import peers, rough_peers  # noqa: E402
 from benchmark_study import beside_the_solver, whole_run  # noqa: E402
@@ -139,6 +140,7 @@ def measure() -> dict:
         "sizes": by_size,
         "flatness": flatness(by_size),
         "threads": threads(),
+        "asperities_on": [*felt()],
         "blas_threads": blas_threads(("random",), (2,)),
         "whole_run": [beside_the_solver(run)],
         "papers_way": papers_way(),
@@ -161,7 +163,16 @@ def report(result: dict) -> None:
     flat = result["flatness"]
     word = "flat" if flat["flat"] else "not flat"
     print(f"time per case from {flat['from']} cases on: {word}, within {flat['deviation']:.1%} of its mean")
-    for name in ("sizes", "threads", "blas_threads", "whole_run", "papers_way", "peers", "rough_peers"):
+    for name in (
+        "sizes",
+        "threads",
+        "asperities_on",
+        "blas_threads",
+        "whole_run",
+        "papers_way",
+        "peers",
+        "rough_peers",
+    ):
         print(f"\n{name}")
         for row in result[name]:
             print("  " + ", ".join(f"{key} {value:.3g}" if isinstance(value, float) else f"{key} {value}"

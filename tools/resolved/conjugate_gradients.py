@@ -1,4 +1,7 @@
-"""A rigid shape pressed on an elastic grid by conjugate gradients: Polonsky and Keer, Wear 231, 1999, 206."""
+"""A rigid shape pressed on an elastic grid by conjugate gradients: Polonsky and Keer, Wear 231, 1999, 206.
+
+For grids that are not periodic; those that are have :func:`solver.laws.cell.periodic.pressed`.
+"""
 
 import numpy as np
 

@@ -94,6 +94,13 @@ def real_area(found: Resolved) -> float:
     return (np.count_nonzero(touched) - OUTSIDE * edge) * found.side**2
 
 
+def touched_share(pressure) -> float:
+    """Share of the elements of a period with pressure, less what they stand out over the edges of the spots."""
+    touched = pressure > 0
+    edge = sum(np.count_nonzero(touched != np.roll(touched, 1, axis)) for axis in (0, 1))
+    return (np.count_nonzero(touched) - OUTSIDE * edge) / touched.size
+
+
 def width(r, p, area) -> float:
     """sqrt(5/2 <r²>) of a pressure at r: the contact radius of Hertz's."""
     return float(np.sqrt(2.5 * (p * r**2 * area).sum() / (p * area).sum()))

@@ -1,5 +1,6 @@
 """`make validate`: the two scales against one. Rough spheres with every asperity resolved, on a half-space and on
-layers, of one height and of random heights, beside the predictions: docs/validate.nc, .md, .png, validate_limits.png.
+layers, of one height and of random heights, and cells of a lattice on layers, beside the predictions: docs/validate.nc,
+.md, .png, validate_cells.png, validate_limits.png.
 
     python tools/resolved/validate.py
 
@@ -11,11 +12,13 @@ import sys
 from pathlib import Path
 
 import xarray as xr
-from validate_cases import HALF_SPACE, LAYERED, THINNER, together
-from validate_figures import draw_limits, draw_means
-from validate_film import films, sparse
+from validate_cases import HALF_SPACE, LAYERED, THIN, THINNER, together
+from validate_cells import cells as layer_cells
+from validate_cells import films, sparse
+from validate_figures import draw_cells, draw_limits, draw_means
 from validate_heights import SPHERES, cells, compared, finer
 from validate_page import page
+from validate_rates import rates
 
 
 def found(folder: Path) -> dict[str, xr.Dataset]:
@@ -25,16 +28,19 @@ def found(folder: Path) -> dict[str, xr.Dataset]:
     return {
         "half_space": together(HALF_SPACE, folder),
         "layer": together(LAYERED, folder),
-        "thinner": together(THINNER, folder),
+        "thin": together(THIN, folder, "asperities_on"),
+        "thinner": together(THINNER, folder, "asperities_on"),
+        "layer_cells": layer_cells(folder),
         "films": films(),
         "sparse": sparse(),
+        "rates": rates(),
         "heights": spheres.assign_coords(case=[sphere.name for sphere in SPHERES]),
         "cells": cells(folder),
     }
 
 
 def main(docs: Path, folder: Path) -> None:
-    """Solve what is missing, and write the four files."""
+    """Solve what is missing, and write the files."""
     parts = found(folder)
     tree = xr.DataTree.from_dict({"/": xr.Dataset(attrs={"command": "make validate"}), **parts})
     small = {"zlib": True, "dtype": "float32"}
@@ -43,6 +49,7 @@ def main(docs: Path, folder: Path) -> None:
     }
     tree.to_netcdf(docs / "validate.nc", encoding=packed)
     draw_means(parts["half_space"], parts["layer"], docs / "validate.png")
+    draw_cells(parts["layer_cells"], docs / "validate_cells.png")
     draw_limits(parts, docs / "validate_limits.png")
     (docs / "validate.md").write_text(page(parts), encoding="utf-8")
 

@@ -12,7 +12,9 @@ from rough_sphere import Punch, Resolved, cell_means, real_area, resolved, width
 import study
 
 RA = 0.004
-LAWS = ("power_law", "disc_cell", "square_lattice")
+#: What asperities may feel, and the laws that are compared on several bases, and as these and those asperities.
+ON = ("layer", "half_space")
+LAWS = {"base": ("power_law", "disc_cell", "square_lattice"), "asperities_on": ("disc_cell", "square_lattice")}
 #: What is compared, and its name in the results of the two scales.
 QUANTITIES = {"D": "D", "a": "width", "p_max": "p_max", "Ar_An": "area"}
 #: Change of the pressure in the last step of the conjugate gradients, over it.
@@ -42,8 +44,17 @@ LAYERED = (
     Case("a soft bonded film", 2e-5, 0.003, 27, (336, 672, 1344), Layer(0.006, 0.2, bonded=True)),
     Case("a hard bonded coating", 4e-5, 0.002, 29, (360, 720, 1440), Layer(0.015, 4.0, bonded=True)),
 )
+#: Layers thinner than the pitch: one that becomes ever thinner, and four of other stiffness, of which the hardest also
+#: with four times as many spots.
 THINNER = tuple(
     Case(f"h = {h:g}", 2e-5, 0.0054, 15, (366, 732), Layer(h, 0.5)) for h in (0.016, 0.008, 0.004, 0.002, 0.001)
+)
+THIN = (
+    Case("n = 0.2, bonded", 2e-5, 0.0054, 15, (366, 732, 1464), Layer(0.0018, 0.2, bonded=True)),
+    Case("n = 2.06, bonded", 4e-5, 0.0054, 15, (366, 732, 1464), Layer(0.00045, 2.06, bonded=True)),
+    Case("n = 5, bonded", 6e-5, 0.0054, 17, (394, 788, 1576), Layer(0.0012, 5.0, bonded=True)),
+    Case("n = 20, frictionless", 6e-5, 0.0054, 17, (394, 788, 1576), Layer(0.0009, 20.0)),
+    Case("n = 20, more spots", 6e-5, 0.0027, 31, (752, 1504), Layer(0.00045, 20.0)),
 )
 
 
@@ -77,21 +88,23 @@ def solved(case: Case, folder: Path) -> list[Resolved]:
     return found
 
 
-def given(layer: Layer | None) -> dict:
-    """The layer in the words of the two scales, with every base that is claimed for it."""
+def given(layer: Layer | None, over: str = "base") -> dict:
+    """The layer in the words of the two scales, with every base that is claimed for it, or all that its asperities may
+    feel, the best first."""
     if layer is None:
         return {"base": ["half_space"]}
     words = {"bonding": "bonded" if layer.bonded else "frictionless", "base": ["layered", "thin_layer"]}
+    words |= {"base": "layered", "asperities_on": [*ON]} if over == "asperities_on" else {}
     return {"h": layer.h, "n": layer.n, "nu1": layer.nu1, "nu2": layer.nu2} | words
 
 
-def predicted(case: Case) -> xr.Dataset:
-    """The two scales, over the bases and the laws, in the quantities of `measured`."""
-    asked = {"P": case.P, "Nbar": case.pitch**-2, "Ra": RA, "x": 801, "rtol": 1e-6}
-    found = study.solve(**asked, **given(case.layer), micro=list(LAWS)).load().transpose("base", "micro", "x")
+def predicted(case: Case, over: str) -> xr.Dataset:
+    """The two scales, over the bases, or what the asperities feel, and the laws, in the quantities of `measured`."""
+    asked = {"P": case.P, "Nbar": case.pitch**-2, "Ra": RA, "x": 801, "rtol": 1e-6, "micro": list(LAWS[over])}
+    found = study.solve(**asked, **given(case.layer, over)).load().transpose(over, "micro", "x")
     x, p = found["x"].values, found["p"].values
     scaled = [[width(x, one, x) for one in some] for some in p]
-    found["width"] = ("base", "micro"), scaled * found["a"].values
+    found["width"] = (over, "micro"), scaled * found["a"].values
     found["area"] = found["Ar_An"] * np.pi * found["a"] ** 2
     return found
 
@@ -109,26 +122,27 @@ def richardson(coarse: float, fine: float, order: int) -> float:
     return fine + (fine - coarse) / (2**order - 1)
 
 
-def compared(case: Case, folder: Path) -> xr.Dataset:
-    """All that is shown of a case: errors over (base, law), the means of the cells, and the nominal pressures."""
-    meshes, two = solved(case, folder), predicted(case)
+def compared(case: Case, folder: Path, over: str = "base") -> xr.Dataset:
+    """All that is shown of a case: errors over (base, law), or over (asperities_on, law), the means of the cells, and
+    the nominal pressures."""
+    meshes, two = solved(case, folder), predicted(case, over)
     coarse, fine = (measured(mesh) for mesh in meshes[-2:])
     finest = {name: richardson(coarse[name], fine[name], 1 if name == "Ar_An" else 2) for name in QUANTITIES}
     r, mean = cell_means(meshes[-1], case.pitch)
     r, mean = r[mean > 0], mean[mean > 0]
-    dims = ("base", "law")
-    best = two.isel(base=0).sel(micro="square_lattice")
+    dims = (over, "law")
+    best = two.isel({over: 0}).sel(micro="square_lattice")
     data = {f"{name}_resolved": finest[name] for name in QUANTITIES}
     data |= {f"{name}_uncertain": abs(finest[name] / fine[name] - 1) / 2 for name in QUANTITIES}
     data |= {f"{name}_error": (dims, two[own].values / finest[name] - 1) for name, own in QUANTITIES.items()}
     data |= {"a0": float(best["a"]), "lam0": float(best["lam0"]), "p0": float(best["p0"])}
     data |= {"pitch": case.pitch, "h": case.layer.h if case.layer else np.inf}
-    data |= {"thin_error": two["model_error"].values[-1, -1], "cell_error": (dims, cell_errors(r, mean, two, case))}
+    data |= {"model_error": (dims, two["model_error"].values), "cell_error": (dims, cell_errors(r, mean, two, case))}
     data |= {"r": ("cell", r), "mean": ("cell", mean)}
     shown = two.isel(x=slice(None, None, 8))
     data["profile_r"] = (*dims, "x"), shown["a"].values[..., None] * shown["x"].values
     data["profile"] = (*dims, "x"), shown["p"].values
-    return xr.Dataset(data, {"base": two["base"].values, "law": list(LAWS), "cell": np.arange(len(r))})
+    return xr.Dataset(data, {over: two[over].values, "law": list(LAWS[over]), "cell": np.arange(len(r))})
 
 
 def cell_errors(r, mean, two: xr.Dataset, case: Case) -> np.ndarray:
@@ -142,7 +156,7 @@ def cell_errors(r, mean, two: xr.Dataset, case: Case) -> np.ndarray:
     return errors
 
 
-def together(cases: tuple[Case, ...], folder: Path) -> xr.Dataset:
+def together(cases: tuple[Case, ...], folder: Path, over: str = "base") -> xr.Dataset:
     """`compared` of all cases, along a dimension of their names."""
-    found = xr.concat([compared(case, folder) for case in cases], "case", join="outer")
+    found = xr.concat([compared(case, folder, over) for case in cases], "case", join="outer")
     return found.assign_coords(case=[case.name for case in cases])

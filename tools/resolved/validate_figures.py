@@ -4,12 +4,19 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from matplotlib.lines import Line2D
 from validate_cases import LAWS
+from validate_cells import SHOWN
 
 from study.figures.style import style
 
 WORDS = {"power_law": "power law", "disc_cell": "disc cell", "square_lattice": "square lattice"}
 LOOKS = {"power_law": ("C1", (0, (1, 1.2))), "disc_cell": ("C2", (0, (4, 2))), "square_lattice": ("C0", "-")}
+
+#: Colours of five stiffnesses, from hard to soft.
+COLOURS = ("#8c2d04", "#dd5f21", "#E69F00", "#2878b8", "#08306b")
+#: Errors below this, near that of the resolved cells, are drawn there.
+LEAST = 1e-6
 
 
 def draw_means(half_space: xr.Dataset, layer: xr.Dataset, path: Path) -> None:
@@ -38,7 +45,7 @@ def _means(one: xr.Dataset, top, below) -> None:
     a, p0 = float(one["a0"]), float(one["p0"])
     touched = np.isfinite(one["r"].values)
     r, mean = one["r"].values[touched], one["mean"].values[touched]
-    for law in LAWS:
+    for law in LAWS["base"]:
         colour, dashes = LOOKS[law]
         x, p = one["profile_r"].sel(law=law).values, one["profile"].sel(law=law).values
         top.plot(x / a, 100 * p, color=colour, linestyle=dashes, label=WORDS[law], linewidth=1)
@@ -67,29 +74,63 @@ def draw_limits(parts: dict[str, xr.Dataset], path: Path) -> None:
 
 def _thinner(found: xr.Dataset, panel) -> None:
     pitch = (found["pitch"] / found["h"]).values
-    best = found.sel(law="square_lattice", base="layered")
     for name, words, colour, mark in (
         ("D", "depth", "C0", "o"),
         ("a", "width", "C2", "s"),
         ("p_max", "largest pressure", "C1", "^"),
     ):
-        panel.plot(pitch, 100 * best[f"{name}_error"].values, color=colour, marker=mark, markersize=3.5, label=words)
+        error = 100 * found[f"{name}_error"].sel(law="square_lattice")
+        look = {"color": colour, "marker": mark, "markersize": 3.5}
+        panel.plot(pitch, error.sel(asperities_on="layer").values, label=words, linestyle="-", **look)
+        panel.plot(pitch, error.sel(asperities_on="half_space").values, linestyle=":", fillstyle="none", **look)
     panel.axhline(0, color="0.5", linewidth=0.6)
     panel.set(xscale="log", xlabel="pitch/$h$", ylabel="error of two scales (%)")
     _plain(panel, [0.3, 0.5, 1, 2, 3, 5])
-    panel.legend(fontsize=6.5, title="sphere, $n$ = 0.5, frictionless", title_fontsize=6.5)
+    title = "sphere, $n$ = 0.5, frictionless;\ndotted: asperities on a half-space"
+    panel.legend(fontsize=6.5, title=title, title_fontsize=6.5, loc="upper left")
 
 
 def _films(found: xr.Dataset, panel) -> None:
-    some = found.isel(p=1)
+    some = found.sel(lam=SHOWN)
     for i, material in enumerate(found["material"].values):
         one = some.sel(material=material)
-        at = one["pitch_over_h"].values
-        panel.plot(at, 100 * abs(one["formula"].values), color=f"C{i}", linewidth=1, label=material)
-        panel.plot(at, 100 * abs(one["change"].values), color=f"C{i}", linestyle="", marker="o", markersize=3)
-    panel.set(xscale="log", yscale="log", ylim=(3e-3, 100), xlabel="pitch/$h$", ylabel="$|\\delta A|/A$ (%)")
-    _plain(panel, [1, 1.5, 2, 3, 4, 6])
-    panel.legend(fontsize=6.5, title=f"λ = {float(some['lam']):.2f}; o cell, — first order", title_fontsize=6.5)
+        look = {"color": COLOURS[i], "linewidth": 1}
+        panel.plot(one["fine"].values, 100 * abs(one["law"].values), linestyle="-", label=material, **look)
+        at, change = one["pitch_over_h"].values, one["change"].sel(quantity="A").values
+        panel.plot(at, 100 * abs(change), color=COLOURS[i], linestyle="", marker="o", markersize=3)
+    panel.set(xscale="log", yscale="log", ylim=(3e-3, 3e4), xlim=(0.95, 17), xlabel="pitch/$h$")
+    panel.set_ylabel("change of $A$ by the coated body (%)")
+    _plain(panel, [1, 2, 3, 5, 10, 16])
+    panel.legend(fontsize=6.5, title=f"λ = {SHOWN:g}; o cell, — the law", title_fontsize=6.5, loc="upper left")
+
+
+def draw_cells(found: xr.Dataset, path: Path) -> None:
+    """What both laws err in A and p_max of the cells, over pitch/h."""
+    from matplotlib.figure import Figure
+
+    with style():
+        figure = Figure(figsize=(6.9, 3.1), layout="constrained")
+        panels = figure.subplots(1, 2, sharey=True)
+        stiff = sorted({*found["n"].values.tolist()})
+        for panel, name, symbol in zip(panels, ("A", "p_max"), ("$A$", "$p_{\\max}$"), strict=True):
+            for n, colour in zip(stiff, COLOURS[::-1], strict=True):
+                own = found.isel(cell=found["n"].values == n)
+                error = 100 * abs(own["error"].sel(quantity=name)).clip(LEAST)
+                at, look = (
+                    own["pitch_over_h"].values,
+                    {"color": colour, "linestyle": "", "marker": "o", "markersize": 4},
+                )
+                panel.plot(at, error.sel(on="layer").values, label=f"$n$ = {n:g}", **look)
+                panel.plot(at, error.sel(on="half_space").values, fillstyle="none", **look)
+            panel.axhline(1, color="0.5", linewidth=0.6, linestyle=":")
+            panel.set(xscale="log", yscale="log", xlabel="pitch/$h$", ylim=(100 * LEAST / 2, 1000))
+            panel.set_title(f"error of {symbol} (%)", fontsize=8)
+            _plain(panel, [1, 2, 3, 5, 10, 16])
+        handles = panels[0].get_legend_handles_labels()[0]
+        handles += [Line2D([], [], color="0.3", linestyle="", marker="o", markersize=4, fillstyle=fill, label=label)
+                    for fill, label in (("full", "on the layer"), ("none", "on a half-space"))]  # fmt: skip
+        figure.legend(handles=handles, loc="outside lower center", ncols=7, fontsize=7, handlelength=1)
+        figure.savefig(path)
 
 
 def _plain(panel, ticks: list[float]) -> None:

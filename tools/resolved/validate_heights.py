@@ -9,15 +9,14 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from conjugate_gradients import pressed
 from influence import Layer
-from rough_sphere import OUTSIDE, Punch, asperities, cell_means, real_area, resolved, width
-from scipy import fft
+from rough_sphere import Punch, asperities, cell_means, real_area, resolved, touched_share, width
 from scipy.special import ndtr, ndtri
 from validate_cases import RA, TOLERANCE, given, kept, richardson
 
 import study
 from solver.laws import LAWS
+from solver.laws.cell.periodic import pressed, response_of
 from solver.laws.heights import UNIFORM
 
 CUT = 4.0
@@ -143,18 +142,14 @@ def cell(spread: float, p: float, draw: int, meshes: tuple[int, ...] = MESHES) -
     around = np.pad(heights, 1, mode="wrap")
     for points in meshes:
         side = SUMMITS / points
-        waves = 2 * np.pi / side * np.hypot(fft.fftfreq(points)[:, None], fft.rfftfreq(points))
-        waves[0, 0] = np.inf  # the mean displacement is dropped
-
-        def displaced(pressure, waves=waves):
-            return fft.irfft2(2 / waves * fft.rfft2(pressure))
-
         at = (np.arange(points) + 0.5) * side - SUMMITS / 2
         shape = asperities(*np.meshgrid(at, at, indexing="ij"), 1.0, 1.0, around)
-        A, pressure = pressed(displaced, shape, np.ones_like(shape) if start is None else start, p, TOLERANCE)
-        touched = pressure > 0
-        edge = sum(np.count_nonzero(touched != np.roll(touched, 1, axis)) for axis in (0, 1))
-        rows.append([A, (np.count_nonzero(touched) - OUTSIDE * edge) / points**2])
+        pressure, A, closed = pressed(
+            shape, response_of(shape.shape, side, side, None), p, np.full(shape.shape, p) if start is None else start
+        )
+        if not closed:
+            raise AssertionError("conjugate gradients did not end")
+        rows.append([A, touched_share(pressure)])
         start = np.kron(pressure, np.ones((2, 2)))
     return {"meshes": np.array(rows)}
 
@@ -167,7 +162,7 @@ def cells(folder: Path) -> xr.Dataset:
         for j, p in enumerate(PRESSURES):
             for k in range(CELLS_DRAWN):
                 draw = k if spread else 0
-                key = ("cell", CUT, SUMMITS, MESHES, spread, p, draw)
+                key = ("periodic cell", CUT, SUMMITS, MESHES, spread, p, draw)
                 one = kept(folder, key, lambda spread=spread, p=p, draw=draw: cell(spread, p, draw))
                 found[i, j, k] = richardson(*one["meshes"][-2:], np.array([2, 1]))
     dims, where = ("spread", "p", "draw"), {"spread": list(SPREADS), "p": list(PRESSURES)}

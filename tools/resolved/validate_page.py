@@ -1,15 +1,27 @@
-"""The text and the tables of docs/validate.md."""
+"""The text of docs/validate.md."""
 
-import numpy as np
 import xarray as xr
-from validate_cases import LAWS, LAYERED, QUANTITIES, RA
-from validate_figures import WORDS
+from validate_cases import RA
+from validate_cells import MATERIALS, MESHES, POINTS
 from validate_heights import CELLS_DRAWN, CUT, DRAWS, RINGS, SUMMITS
+from validate_rates import LAM
+from validate_tables import (
+    alike_table,
+    cell_table,
+    cells_table,
+    films_table,
+    half_space_table,
+    heights_table,
+    layer_table,
+    off_by,
+    sparse_table,
+    spots,
+    thick_table,
+    thin_rates_table,
+    thin_table,
+    thinner_table,
+)
 
-from solver.laws import LAWS as KNOWN
-
-HEADS = {"D": "depth", "a": "width", "p_max": "largest pressure", "Ar_An": "real area"}
-BASES = {"half_space": "", "layered": "", "thin_layer": "thin layer, "}
 PAGE = """# Two scales against one
 
 `make validate` presses rough spheres with every asperity resolved, by conjugate gradients on square elements that are
@@ -47,43 +59,84 @@ pressure to {layer_p_max:.2%}, as well as on a half-space. The real area is righ
 
 ## A layer that is thin against the pitch
 
-The same sphere, at a pitch of 0.0054, on a layer of n = 0.5 without friction that becomes thinner; the errors of the
-exact layer with the lattice law:
+Asperities may press on a half-space of the layer's material, as in the paper, `asperities_on = "half_space"`, or on the
+[coated body itself](model.md#asperities-on-the-coated-body), `"layer"`. `"auto"`, the default, takes the coated body
+where their pitch is above h. The mean pressure is left to the base, which is exact either way.
+
+### Spheres
+
+The same sphere, at a pitch of 0.0054, on four layers, and on the hardest also with half the pitch and half of h:
+
+{thin}
+
+On the coated body the lattice law is right to {thin_D:.2%} in the depth, {thin_a:.2%} in the width and {thin_p_max:.2%}
+in the largest pressure, which is known to {known_p_max:.2%}; the real area is right as well as it is known. What is
+left of depth and width is that of two scales with few spots, {thin_spots}: with four times as many the hardest
+layer has {more_D:.2%} and {more_a:.2%}. `model_error` of asperities on the half-space says what the coated body would
+change; that of the disc cell also what a lattice would.
+
+On a layer of n = 0.5 without friction that becomes thinner, the lattice law on a half-space of the layer's material and
+on the layer errs by
 
 {thinner}
 
-The pitch over h decides, and not the spot over h. The mean pressure is left to the base, which is exact. The laws take
-L = 1 for waves as long as a cell and shorter, and the longest of these has L(2πh/pitch). A cell of the lattice on a
-layer shows what A errs. To the first order in L - 1 it is a sum over the waves k ≠ 0 of the lattice,
+### Cells
 
-```math
-\\delta A = \\frac{{2p}}{{E_1^\\ast}}\\sum_k\\frac{{L(kh) - 1}}k\\,F^2(kb), \\qquad
-F(x) = \\frac{{3(\\sin x - x\\cos x)}}{{x^3}}
-```
+Twenty-four cells of a lattice, on the kernel of the layer, by the conjugate gradients of `solver.laws.periodic_rows`
+on {mesh} elements along a period. λ is that of the law on the coated body, from which the nominal pressure follows;
+m is E1*/E3* of an elastic punch.
 
-The largest |δA|/A of four layers, n = 0.1 to 5, at three nominal pressures (λ = {lams}), and what p_max errs
-there, by resolved cells:
+{cell_rows}
+
+The largest errors on the coated body are {cells_A:.2%} in A, {cells_lam:.2%} in λ, which is counted in elements, and
+{cells_p_max:.2%} in p_max. On a half-space of the layer's material they are {bare_A:.0%}, {bare_lam:.0%} and
+{bare_p_max:.0%}.
+
+![Errors of A and of the largest pressure of 24 cells](validate_cells.png)
+
+Full: on the coated body; open: on a half-space of the layer's material; dotted: 1 %.
+
+### From which pitch on
+
+The largest errors of {materials} layers, n = 0.2 to 20, at the contact fractions λ = {lams}, by resolved cells
+of {points} elements a side:
 
 {films}
 
-Up to a pitch of h nothing of this is seen, whatever the spots. The mask `spot_not_small_against_h` of
-[validity](model.md#four-answers) asks for b(0) ≤ 0.1 h. Where the spots cover a hundredth of the area or more that is
-stricter than need be. Sparse spots are different: a stiff layer bends between them, and the
-mask `pitch_not_small_against_h` asks for a pitch ≤ 2 h. With b = 0.1 h on a bonded layer, to the first order, which is
-too large where it is large, δA/A is
+Up to a pitch of h nothing of the body is seen, whatever the spots: there `"auto"` stays with the half-space. Beyond,
+the pitch over h decides, and not the spot over h alone. Of asperities on a half-space, the mask
+`spot_not_small_against_h` of [validity](model.md#four-answers) asks for b(0) ≤ 0.1 h, and `pitch_not_small_against_h`
+for a pitch ≤ 2 h. With b = 0.1 h on a bonded layer, A on the coated body is, over that on a half-space, less 1,
 
 {sparse}
 
-`model_error` is made of such sums on the hexagonal lattice at p(0): the curvature of a spot changes by
-s = (p Ra/E1*) Σ (L - 1) k F², so that p_max errs by exp(0.8 s) - 1, and D by δA (`solver/models/cell_error.py`). Beside
-cells on the layer with n from 0.2 to 50, at λ = 0.05 and a pitch of 4 to 16 h, that is 0.7 to 1.3 times the error of
-p_max where this is below 1. Up to a pitch of h it is 0.
+Where the spots cover a hundredth of the area or more the first mask is stricter than need be. Sparse spots are
+different: a stiff layer bends between them.
 
 ![Thin layers, and random heights](validate_limits.png)
 
-(a) Two scales against spheres on a layer that becomes thinner. (b) What A errs on a cell: points resolved, lines to the
-first order. (c) Mean pressure of rings of cells: points resolved, ± two standard errors, lines the mean field; grey
-the disc cell of one height. (d) Depth of the mean plane of periodic cells: points resolved, ± two standard errors.
+(a) Two scales against spheres on a layer that becomes thinner. (b) What the coated body changes in A of a cell: points
+resolved, lines the law. (c) Mean pressure of rings of cells: points resolved, ± two standard errors, lines the mean
+field; grey the disc cell of one height. (d) Depth of the mean plane of periodic cells: points resolved, ± two standard
+errors.
+
+### Limits
+
+How fast the law on the coated body tends to its limits, on a square lattice with λ = {rate_lam:g}, bonded, ν1 = 0.25. A
+*thick* layer differs from a half-space of its material as L(Gh) - 1 of the longest wave G = 2π/pitch, which falls as
+e^(-2Gh): the ratio of both tends to one number for all bodies.
+
+{thick}
+
+A layer *nearly like its body*, ν alike, differs from it as n - 1, here at a pitch of 8 h, and one of the same material
+not at all:
+
+{alike}
+
+A layer that is *thin against the spots* is the half-space of the body, with the modulus E2*. The differences fall a
+little more slowly than h, as h ln(l/h):
+
+{thin_rates}
 
 ## Random heights
 
@@ -110,155 +163,56 @@ lies under its neighbours. They carry less than the mean, and so they press it d
 which is too deep.
 """
 
-
-def table(heads: list[str], rows: list[list[str]]) -> str:
-    """Rows in Markdown."""
-    return "\n".join(f"| {' | '.join(row)} |" for row in [heads, ["---"] * len(heads), *rows])
-
-
-def predictions(one: xr.Dataset) -> list[list[str]]:
-    """What is known of a resolved contact, and the errors of every base and law that is claimed for it."""
-    rows = [["resolved", *(f"± {float(one[f'{name}_uncertain']):.3%}" for name in QUANTITIES), ""]]
-    for base in one["base"].values:
-        for law in LAWS:
-            own = one.sel(base=base, law=law)
-            if np.isfinite(own["D_error"]):
-                errors = [f"{float(own[f'{name}_error']):+.2%}" for name in QUANTITIES]
-                rows.append([BASES[base] + WORDS[law], *errors, f"{float(own['cell_error']):.2%}"])
-    return rows
-
-
-def half_space_table(found: xr.Dataset) -> str:
-    """The errors, by pitch over a."""
-    rows = []
-    for name in found["case"].values:
-        one = found.sel(case=name)
-        first = [f"{float(one['pitch'] / one['a0']):.3f}", f"{spots(one):.0f}", f"{float(one['lam0']):.3f}"]
-        rows += [(first if i == 0 else [""] * 3) + row for i, row in enumerate(predictions(one))]
-    return table(["pitch/a", "spots", "λ(0)", "law", *HEADS.values(), "cell means"], rows)
-
-
-def spots(one: xr.Dataset) -> float:
-    """Number of spots by the lattice law, N̄πa²."""
-    return float(np.pi * (one["a0"] / one["pitch"]) ** 2)
-
-
-def off_by(share: float) -> float:
-    """λ at which A of the disc cell is larger by this share than that of the square lattice."""
-    p = np.geomspace(1e-6, 0.3, 400)
-    disc, lattice = (KNOWN[name].at(p, 1.0, Nbar=1.0, Ra=1.0) for name in ("disc_cell", "square_lattice"))
-    return float(np.interp(share, disc.A / lattice.A - 1, lattice.lam))
-
-
-def layer_table(found: xr.Dataset) -> str:
-    """The errors, by layer."""
-    rows = []
-    for case in LAYERED:
-        one, layer = found.sel(case=case.name), case.layer
-        bond = "bonded" if layer.bonded else "frictionless"
-        ratios = f"h/a = {layer.h / float(one['a0']):.2f}, pitch/h = {case.pitch / layer.h:.2f}"
-        spot = f"λ(0) = {float(one['lam0']):.2f}, b(0)/h = {spot_over_h(one):.3f}"
-        first = [case.name, f"n = {layer.n:g}, {bond}", ratios, spot]
-        if np.isfinite(one["thin_error"]):
-            first.append(f"`model_error` of the thin layer {float(one['thin_error']):.1%}")
-        own = predictions(one)
-        first += [""] * (len(own) - len(first))
-        rows += [[words, *row] for words, row in zip(first, own, strict=True)]
-    return table(["layer", "base and law", *HEADS.values(), "cell means"], rows)
-
-
-def spot_over_h(one: xr.Dataset) -> float:
-    """b(0)/h by the lattice law."""
-    return float(np.sqrt(one["lam0"] / np.pi) * one["pitch"] / one["h"])
-
-
-def thinner_table(found: xr.Dataset) -> str:
-    """The errors of the best prediction, by pitch over h."""
-    rows = []
-    for name in found["case"].values:
-        one = found.sel(case=name)
-        best = one.sel(base="layered", law="square_lattice")
-        first = [
-            f"{float(one['pitch'] / one['h']):.2f}",
-            f"{spot_over_h(one):.2f}",
-            f"{float(one['h'] / one['a0']):.2f}",
-        ]
-        errors = [f"{float(best[f'{key}_error']):+.2%}" for key in ("D", "a", "p_max")]
-        rows.append([*first, *errors, f"{float(best['cell_error']):.2%}"])
-    heads = [HEADS[key] for key in ("D", "a", "p_max")]
-    return table(["pitch/h", "b(0)/h", "h/a", *heads, "cell means"], rows)
-
-
-def films_table(found: xr.Dataset) -> str:
-    """The largest changes over materials and pressures, by pitch over h."""
-    largest = abs(found).max(["material", "p"])
-    rows = [[words] for words in ("A", "p_max")]
-    for row, name in zip(rows, ("change", "peak"), strict=True):
-        row += [f"{value:.2%}" for value in largest[name].values]
-    return table(["pitch/h", *(f"{pitch:g}" for pitch in found["pitch_over_h"].values)], rows)
-
-
-def sparse_table(found: xr.Dataset) -> str:
-    """δA/A by n and λ."""
-    columns = zip(found["lam"].values, found["pitch_over_h"].values, strict=True)
-    heads = [f"λ = {lam:g}, pitch/h = {pitch:.1f}" for lam, pitch in columns]
-    rows = [[f"n = {n:g}", *(f"{value:+.1%}" for value in found["formula"].sel(n=n).values)] for n in found["n"].values]
-    return table(["", *heads], rows)
-
-
-def heights_table(found: xr.Dataset) -> str:
-    """The errors of the law and of one height, and the scatter of the draws."""
-    rows, names = [], ("D", "a", "Ar_An", "p_max")
-    for case in found["case"].values:
-        one = found.sel(case=case)
-        scatter = [
-            f"± {value / np.sqrt(DRAWS):.2%}, scatter {value:.1%}"
-            for value in one["scatter"].sel(quantity=list(names)).values
-        ]
-        p0 = float(one["p0"])
-        rows.append([case, "resolved", *scatter, f"± {float(one['unsure'].max()) / p0:.2%}"])
-        for law, words in (("heights", "mean field"), ("one height", "one height")):
-            errors = [f"{value:+.1%}" for value in one["error"].sel(law=law, quantity=list(names)).values]
-            off = abs(one["law_mean"].sel(law=law) - one["mean"]).max()
-            rows.append(["", words, *errors, f"{float(off) / p0:.2%}"])
-    return table(["heights", "", *(HEADS[name] for name in names), "rings"], rows)
-
-
-def cells_table(found: xr.Dataset) -> str:
-    """What the mean field is off, by σ and p."""
-    rows = []
-    for spread in found["spread"].values:
-        one = found.sel(spread=spread)
-        row = [f"σ = {spread:g} A*"]
-        for p in found["p"].values:
-            own = one.sel(p=p)
-            unsure = float(own["A"].std("draw", ddof=1)) / np.sqrt(CELLS_DRAWN)
-            share = float(own["law_lam"] / own["lam"].mean("draw")) - 1
-            row.append(f"{float(own['law_A'] - own['A'].mean('draw')):+.3f} ± {unsure:.3f}, λ {share:+.1%}")
-        rows.append(row)
-    return table(["", *(f"p = {p:g}" for p in found["p"].values)], rows)
-
-
+#: Name in the text -> the part of the results that it shows, and its table.
 TABLES = {
-    "half_space": half_space_table,
-    "layer": layer_table,
-    "thinner": thinner_table,
-    "films": films_table,
-    "sparse": sparse_table,
-    "heights": heights_table,
-    "cells": cells_table,
+    "half_space": ("half_space", half_space_table),
+    "layer": ("layer", layer_table),
+    "thin": ("thin", thin_table),
+    "thinner": ("thinner", thinner_table),
+    "cell_rows": ("layer_cells", cell_table),
+    "films": ("films", films_table),
+    "sparse": ("sparse", sparse_table),
+    "thick": ("rates", thick_table),
+    "alike": ("rates", alike_table),
+    "thin_rates": ("rates", thin_rates_table),
+    "heights": ("heights", heights_table),
+    "cells": ("cells", cells_table),
 }
 
 
 def page(parts: dict[str, xr.Dataset]) -> str:
     """The page in Markdown."""
-    best = parts["layer"].sel(base="layered", law="square_lattice")
-    words = {f"layer_{name}": float(abs(best[f"{name}_error"]).max()) for name in ("D", "a", "p_max")}
-    words |= {"Ra": RA, "draws": DRAWS, "rings": RINGS, "cut": CUT, "summits": SUMMITS, "cells_drawn": CELLS_DRAWN}
-    words["lams"] = ", ".join(f"{lam:.2f}" for lam in parts["films"]["lam"].values)
+    words = {"Ra": RA, "draws": DRAWS, "rings": RINGS, "cut": CUT, "summits": SUMMITS, "cells_drawn": CELLS_DRAWN}
     words |= {"one_percent": off_by(0.01), "five_percent": off_by(0.05), "ten_percent": off_by(0.1)}
-    words["spots"] = spots(parts["half_space"].isel(case=0))
-    words["disc_D"] = float(parts["half_space"]["D_error"].sel(law="disc_cell").isel(case=1, base=0))
+    words |= of_spheres(parts) | of_cells(parts) | {"rate_lam": LAM}
     finer = parts["heights"]["finer"]
     words |= {f"finer_{name}": float(finer.sel(quantity=name)) for name in ("D", "Ar_An")}
-    return PAGE.format(**words, **{name: write(parts[name]) for name, write in TABLES.items()})
+    return PAGE.format(**words, **{name: write(parts[part]) for name, (part, write) in TABLES.items()})
+
+
+def of_spheres(parts: dict[str, xr.Dataset]) -> dict:
+    """Numbers in the text about spheres with asperities of one height."""
+    thin = parts["thin"].sel(asperities_on="layer", law="square_lattice")
+    best = {"layer": parts["layer"].sel(base="layered", law="square_lattice"), "thin": thin}
+    words = {
+        f"{part}_{name}": float(abs(one[f"{name}_error"]).max())
+        for part, one in best.items()
+        for name in ("D", "a", "p_max")
+    }
+    words["spots"] = spots(parts["half_space"].isel(case=0))
+    counts = [spots(parts["thin"].isel(case=i)) for i in range(parts["thin"].sizes["case"] - 1)]
+    words["thin_spots"] = f"{min(counts):.0f} to {max(counts):.0f}"
+    words["known_p_max"] = float(parts["thin"]["p_max_uncertain"].max())
+    words |= {f"more_{name}": abs(float(thin[f"{name}_error"][-1])) for name in ("D", "a")}
+    words["disc_D"] = float(parts["half_space"]["D_error"].sel(law="disc_cell").isel(case=1, base=0))
+    return words
+
+
+def of_cells(parts: dict[str, xr.Dataset]) -> dict:
+    """Numbers in the text about cells on layers."""
+    cells, words = parts["layer_cells"], {"mesh": MESHES[-1], "materials": len(MATERIALS), "points": POINTS}
+    words["lams"] = ", ".join(f"{lam:g}" for lam in parts["films"]["lam"].values)
+    for start, on in (("cells", "layer"), ("bare", "half_space")):
+        largest = abs(cells["error"]).sel(on=on).max("cell")
+        words |= {f"{start}_{name}": float(largest.sel(quantity=name)) for name in ("A", "lam", "p_max")}
+    return words

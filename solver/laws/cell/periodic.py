@@ -62,7 +62,7 @@ def periodic_rows(
         raise ValueError(f"dx = {dx}, dy = {dy}: must be finite and above 0")
     if pressures.ndim != 1 or not np.all((pressures > 0) & np.isfinite(pressures)):
         raise ValueError("pressures: must be finite and above 0")
-    response = _response(heights.shape, dx, dy, kernel)
+    response = response_of(heights.shape, dx, dy, kernel)
     depths, start = heights.max() - heights, None
     rows = np.full((3, len(pressures)), np.nan)
     for i in np.argsort(pressures):
@@ -73,7 +73,7 @@ def periodic_rows(
     return tuple(rows)
 
 
-def _response(shape, dx, dy, kernel):
+def response_of(shape, dx, dy, kernel):
     """Displacement over pressure of the waves of a period, as `numpy.fft.rfft2` has them; 0 of k = 0."""
     ky = 2 * np.pi * np.fft.fftfreq(shape[0], dy)
     kx = 2 * np.pi * np.fft.rfftfreq(shape[1], dx)
@@ -90,7 +90,7 @@ def _response(shape, dx, dy, kernel):
 def pressed(depths, response, mean, start):
     """The pressures (N, M) of a period, its approach A, and whether the iteration has ended.
 
-    depths : (N, M), of the surface below its highest summit; response : of :func:`_response`; mean : of the pressures;
+    depths : (N, M), of the surface below its highest summit; response : of :func:`response_of`; mean : of the pressures;
     start : (N, M), pressures to begin with, of this mean
     """
 

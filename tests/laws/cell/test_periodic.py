@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from solver.kernels.two_layers import TwoLayers
 from solver.laws import cell_rows, lattice, periodic_rows
-from solver.laws.cell.periodic import _response, pressed
+from solver.laws.cell.periodic import pressed, response_of
 
 #: Points along a period of the square cell. The spots are 10 to 45 of them wide: A and the pressure in the middle have
 #: an error below 1e-3, the number of points in contact one of a few hundredths.
@@ -26,7 +26,7 @@ def kernel(pitch, n, nu1, bonding):
 def test_a_spot_and_its_cell(lam, n, pitch, bonding):
     """Within 1 %, of which the resolved cell has a tenth and the mean over the angle 0.3 % at this lambda."""
     p, A, p_max = cell_rows("square", lam, pitch, n, 0.25, 0.3, bonding)
-    response = _response(HEIGHTS.shape, 1 / N, 1 / N, kernel(pitch, n, 0.25, bonding))
+    response = response_of(HEIGHTS.shape, 1 / N, 1 / N, kernel(pitch, n, 0.25, bonding))
     pressures, approach, closed = pressed(-HEIGHTS, response, p, np.full(HEIGHTS.shape, p))
     assert closed
     assert_allclose([approach, pressures[N // 2, N // 2]], [A, p_max], rtol=4e-3)
@@ -37,7 +37,7 @@ def test_what_the_mean_over_the_angle_leaves_out_is_what_model_error_says():
     """The worst of random cells up to a pitch of 12 h, n = 30 at 7 h: 2.7 % in A where half of the area touches."""
     for lam, most in (0.4, 0.03 * 0.8**3.5), (0.5, 0.03):
         p, A, p_max = cell_rows("square", lam, 7.0, 30.0, 0.25, 0.3, "bonded")
-        response = _response(HEIGHTS.shape, 1 / N, 1 / N, kernel(7.0, 30.0, 0.25, "bonded"))
+        response = response_of(HEIGHTS.shape, 1 / N, 1 / N, kernel(7.0, 30.0, 0.25, "bonded"))
         pressures, approach, _ = pressed(-HEIGHTS, response, p, np.full(HEIGHTS.shape, p))
         errors = abs(approach / A - 1), abs(pressures[N // 2, N // 2] / p_max - 1)
         assert 0.3 * most < max(errors) < most

@@ -1,6 +1,6 @@
 """What units cost: 1,000 calls of study.solve with physical values beside the same contacts without units.
 
-python tools/bench/physical_calls.py      prints processor times and their ratio, which is to be at most 1.2
+python tools/start/physical_calls.py      prints processor times and their ratio, which is to be at most 1.2
 """
 
 import statistics

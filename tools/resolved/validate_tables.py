@@ -1,0 +1,207 @@
+"""The tables of docs/validate.md."""
+
+import numpy as np
+import xarray as xr
+from validate_cases import LAWS, LAYERED, QUANTITIES, THIN
+from validate_figures import WORDS
+from validate_heights import CELLS_DRAWN, DRAWS
+
+from solver.laws import LAWS as KNOWN
+
+HEADS = {"D": "depth", "a": "width", "p_max": "largest pressure", "Ar_An": "real area"}
+BASES = {"half_space": "", "layered": "", "thin_layer": "thin layer, "}
+#: What asperities press on, in tables of thin layers.
+FELT = {"half_space": "half-space, ", "layer": "layer, "}
+
+
+def table(heads: list[str], rows: list[list[str]]) -> str:
+    """Rows in Markdown."""
+    return "\n".join(f"| {' | '.join(row)} |" for row in [heads, ["---"] * len(heads), *rows])
+
+
+def predictions(one: xr.Dataset, over: str = "base") -> list[list[str]]:
+    """What is known of a resolved contact, and the errors of every law, over the bases or what the asperities feel."""
+    rows = [["resolved", *(f"± {float(one[f'{name}_uncertain']):.3%}" for name in QUANTITIES), ""]]
+    for way in one[over].values:
+        for law in LAWS[over]:
+            own = one.sel({over: way, "law": law})
+            if np.isfinite(own["D_error"]):
+                errors = [f"{float(own[f'{name}_error']):+.2%}" for name in QUANTITIES]
+                words = (BASES if over == "base" else FELT)[way] + WORDS[law]
+                rows.append([words, *errors, f"{float(own['cell_error']):.2%}"])
+    return rows
+
+
+def half_space_table(found: xr.Dataset) -> str:
+    """The errors, by pitch over a."""
+    rows = []
+    for name in found["case"].values:
+        one = found.sel(case=name)
+        first = [f"{float(one['pitch'] / one['a0']):.3f}", f"{spots(one):.0f}", f"{float(one['lam0']):.3f}"]
+        rows += [(first if i == 0 else [""] * 3) + row for i, row in enumerate(predictions(one))]
+    return table(["pitch/a", "spots", "λ(0)", "law", *HEADS.values(), "cell means"], rows)
+
+
+def spots(one: xr.Dataset) -> float:
+    """Number of spots by the lattice law, N̄πa²."""
+    return float(np.pi * (one["a0"] / one["pitch"]) ** 2)
+
+
+def off_by(share: float) -> float:
+    """λ at which A of the disc cell is larger by this share than that of the square lattice."""
+    p = np.geomspace(1e-6, 0.3, 400)
+    disc, lattice = (KNOWN[name].at(p, 1.0, Nbar=1.0, Ra=1.0) for name in ("disc_cell", "square_lattice"))
+    return float(np.interp(share, disc.A / lattice.A - 1, lattice.lam))
+
+
+def layer_table(found: xr.Dataset) -> str:
+    """The errors, by layer."""
+    rows = []
+    for case in LAYERED:
+        one, layer = found.sel(case=case.name), case.layer
+        bond = "bonded" if layer.bonded else "frictionless"
+        ratios = f"h/a = {layer.h / float(one['a0']):.2f}, pitch/h = {case.pitch / layer.h:.2f}"
+        spot = f"λ(0) = {float(one['lam0']):.2f}, b(0)/h = {spot_over_h(one):.3f}"
+        first = [case.name, f"n = {layer.n:g}, {bond}", ratios, spot]
+        thin_error = float(one["model_error"].sel(base="thin_layer", law="square_lattice"))
+        if np.isfinite(thin_error):
+            first.append(f"`model_error` of the thin layer {thin_error:.1%}")
+        own = predictions(one)
+        first += [""] * (len(own) - len(first))
+        rows += [[words, *row] for words, row in zip(first, own, strict=True)]
+    return table(["layer", "base and law", *HEADS.values(), "cell means"], rows)
+
+
+def spot_over_h(one: xr.Dataset) -> float:
+    """b(0)/h by the lattice law."""
+    return float(np.sqrt(one["lam0"] / np.pi) * one["pitch"] / one["h"])
+
+
+def thin_table(found: xr.Dataset) -> str:
+    """The errors, by layer and by what the asperities press on, beside `model_error`."""
+    rows = []
+    for case in THIN:
+        one = found.sel(case=case.name)
+        ratios = f"h/a = {case.layer.h / float(one['a0']):.3f}, pitch/h = {case.pitch / case.layer.h:.2g}"
+        first = [case.name, ratios, f"λ(0) = {float(one['lam0']):.2f}, b(0)/h = {spot_over_h(one):.2f}"]
+        own = predictions(one, "asperities_on")
+        first += [""] * (len(own) - len(first))
+        said = ["", *(f"{float(value):.1%}" for value in one["model_error"].values.ravel())]
+        rows += [[words, *row, error] for words, row, error in zip(first, own, said, strict=True)]
+    return table(["layer", "asperities on, law", *HEADS.values(), "cell means", "`model_error`"], rows)
+
+
+def thinner_table(found: xr.Dataset) -> str:
+    """The errors of the lattice law on a half-space and on the layer, by pitch over h."""
+    rows = []
+    for name in found["case"].values:
+        one = found.sel(case=name, law="square_lattice")
+        row = [f"{float(one['pitch'] / one['h']):.2f}", f"{spot_over_h(one):.2f}"]
+        for key in ("D_error", "a_error", "p_max_error", "cell_error"):
+            form = "{:.2%}" if key == "cell_error" else "{:+.2%}"
+            row += [form.format(float(one[key].sel(asperities_on=on))) for on in ("half_space", "layer")]
+        rows.append(row)
+    heads = [HEADS[key] for key in ("D", "a", "p_max")]
+    names = [name for head in (*heads, "cell means") for name in (f"{head}: half-space", "layer")]
+    return table(["pitch/h", "b(0)/h", *names], rows)
+
+
+def cell_table(found: xr.Dataset) -> str:
+    """What is known of each resolved cell, and the errors of both laws."""
+    rows = []
+    for i in range(found.sizes["cell"]):
+        one = found.isel(cell=i)
+        bond = "bonded" if one["bonded"] else "frictionless"
+        row = [
+            f"{float(one['pitch_over_h']):g}",
+            f"{float(one['lam']):g}",
+            one["lattice"].item(),
+            f"{float(one['n']):g}, {bond}",
+        ]
+        row += [f"{float(one[name]):g}" for name in ("nu1", "m")]
+        for on, digits in (("half_space", 1), ("layer", 2)):
+            row += [f"{float(value):+.{digits}%}" for value in one["error"].sel(on=on).values]
+        rows.append(row)
+    heads = [name for on in ("half-space", "layer") for name in (f"{on}: A", "λ", "p_max")]
+    return table(["pitch/h", "λ", "lattice", "n, interface", "ν1", "m", *heads], rows)
+
+
+def films_table(found: xr.Dataset) -> str:
+    """The largest errors over materials and λ, by pitch over h."""
+    largest, rows = abs(found["error"]).max(["material", "lam"]), []
+    for on, words, digits in (("half_space", "half-space", 2), ("layer", "layer", 3)):
+        for name, symbol in (("A", "A"), ("p_max", "p_max")):
+            values = largest.sel(on=on, quantity=name).values
+            rows.append([f"{words}, {symbol}", *(f"{value:.{digits}%}" for value in values)])
+    return table(["pitch/h", *(f"{pitch:g}" for pitch in found["pitch_over_h"].values)], rows)
+
+
+def sparse_table(found: xr.Dataset) -> str:
+    """A over that on a half-space, less 1, by n and λ."""
+    columns = zip(found["lam"].values, found["pitch_over_h"].values, strict=True)
+    heads = [f"λ = {lam:g}, pitch/h = {pitch:.1f}" for lam, pitch in columns]
+    rows = [[f"n = {n:g}", *(f"{value:+.1%}" for value in found["change"].sel(n=n).values)] for n in found["n"].values]
+    return table(["", *heads], rows)
+
+
+def heights_table(found: xr.Dataset) -> str:
+    """The errors of the law and of one height, and the scatter of the draws."""
+    rows, names = [], ("D", "a", "Ar_An", "p_max")
+    for case in found["case"].values:
+        one = found.sel(case=case)
+        scatter = [
+            f"± {value / np.sqrt(DRAWS):.2%}, scatter {value:.1%}"
+            for value in one["scatter"].sel(quantity=list(names)).values
+        ]
+        p0 = float(one["p0"])
+        rows.append([case, "resolved", *scatter, f"± {float(one['unsure'].max()) / p0:.2%}"])
+        for law, words in (("heights", "mean field"), ("one height", "one height")):
+            errors = [f"{value:+.1%}" for value in one["error"].sel(law=law, quantity=list(names)).values]
+            off = abs(one["law_mean"].sel(law=law) - one["mean"]).max()
+            rows.append(["", words, *errors, f"{float(off) / p0:.2%}"])
+    return table(["heights", "", *(HEADS[name] for name in names), "rings"], rows)
+
+
+def cells_table(found: xr.Dataset) -> str:
+    """What the mean field is off, by σ and p."""
+    rows = []
+    for spread in found["spread"].values:
+        one = found.sel(spread=spread)
+        row = [f"σ = {spread:g} A*"]
+        for p in found["p"].values:
+            own = one.sel(p=p)
+            unsure = float(own["A"].std("draw", ddof=1)) / np.sqrt(CELLS_DRAWN)
+            share = float(own["law_lam"] / own["lam"].mean("draw")) - 1
+            row.append(f"{float(own['law_A'] - own['A'].mean('draw')):+.3f} ± {unsure:.3f}, λ {share:+.1%}")
+        rows.append(row)
+    return table(["", *(f"p = {p:g}" for p in found["p"].values)], rows)
+
+
+def thick_table(found: xr.Dataset) -> str:
+    """What A is off from the half-space of the layer's material, and that over L(Gh) - 1, by pitch over h."""
+    off, over = (found[name].sel(quantity="A") for name in ("thick", "over"))
+    rows = []
+    for n in found["n"].values:
+        rows.append([f"A, n = {n:g}", *(f"{value:+.1e}" for value in off.sel(n=n).values)])
+        rows.append(["over L(Gh) - 1", *(f"{value:.4f}" for value in over.sel(n=n).values)])
+    return table(["pitch/h", *(f"{pitch:g}" for pitch in found["thick_pitch"].values)], rows)
+
+
+def alike_table(found: xr.Dataset) -> str:
+    """What p, A and p_max are off from those of the body, by n - 1."""
+    rows = [
+        [name, *(f"{value:+.1e}" for value in found["alike"].sel(quantity=name).values)] for name in ("p", "A", "p_max")
+    ]
+    return table(["n - 1", *(f"{more:g}" for more in found["more"].values)], rows)
+
+
+def thin_rates_table(found: xr.Dataset) -> str:
+    """What p, A and p_max are off from those of the body alone, by pitch over h."""
+    rows = []
+    for n in found["n"].values:
+        for name in ("p", "A", "p_max"):
+            off = found["thin"].sel(n=n, quantity=name).values
+            left = [f"{value:+.2%}" + (f", x {value / before:.2f}" if before else "")
+                    for before, value in zip([0.0, *off[:-1]], off, strict=True)]  # fmt: skip
+            rows.append([f"{name}, n = {n:g}", *left])
+    return table(["pitch/h", *(f"{pitch:g}" for pitch in found["thin_pitch"].values)], rows)

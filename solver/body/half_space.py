@@ -57,12 +57,6 @@ class HalfSpaceOperator(NamedTuple):
     def between(self, q, s, half_space):
         return half_space
 
-    def wave_products(self, waves, half_space):
-        return np.stack([half_space, 0 * half_space])[:, None]
-
-    def waves_between(self, waves, s, half_space):
-        return half_space[None]
-
 
 class HalfSpace(NamedTuple):
     """The :class:`~solver.body.operator.Body` of modulus E (B,), in E2*, with springs of compliance C (B,), or 0. Its

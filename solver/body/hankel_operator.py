@@ -8,7 +8,6 @@ from ..numerics.mesh import Mesh
 from .film import MANY
 from .part import join
 from .tables import between, felt, film_rows
-from .wave_rule import quadrature
 
 
 class HankelOperator(NamedTuple):
@@ -82,27 +81,6 @@ class HankelOperator(NamedTuple):
                 out[np.ix_(index, near)] += np.matmul(away, q[index][:, :, None])[..., 0]
             out[part.index] += part.share * half_space[part.index]
         return out
-
-    def wave_products(self, waves, half_space):
-        out = np.full((2, len(self.rows), self.mesh.n + 1), np.nan)  # as films stay
-        for part in self.parts:
-            for tab, rows in part.tables(self.mesh) if part.film is None else ():
-                J = self._waves(waves, part, rows) * tab.J
-                out[0, part.index[rows]] = tab.weights(part.L1[rows]) @ J + half_space
-                out[1, part.index[rows]] = tab.weights(part.uL[rows]) @ J
-        return out
-
-    def waves_between(self, waves, s, half_space):
-        out = np.full((len(self.rows), len(s)), np.nan)
-        for part in self.parts:
-            for tab, rows in part.tables(self.mesh) if part.film is None else ():
-                J = self._waves(waves, part, rows) * between(int(part.octave[rows][0]), part.stiffness, s)
-                out[part.index[rows]] = tab.weights(part.L1[rows]) @ J + half_space
-        return out
-
-    def _waves(self, waves, part, rows):
-        """The transform `waves` (G, 1) at all nodes k of the cases `rows` of a part."""
-        return waves(quadrature(int(part.octave[rows][0]), part.stiffness)[0])[:, None]
 
 
 def rows_of(parts, mesh):

@@ -43,14 +43,6 @@ class Operator(Protocol):
         """K q (B, m) at points s = sqrt(1 - x²) (m,) > 0 between the nodes; `half_space` (B, m) is what K of a
         half-space gives there."""
 
-    def wave_products(self, waves, half_space):
-        """K of a pressure that is no polynomial in s, and its derivatives by ln a: (2, B or 1, n + 1), each at the
-        nodes and at last the displacement of the edge. ``waves(k)`` is the Hankel transform ∫₀¹ · J0(kx) x dx of the
-        pressure at k (G,), in 1/a, and `half_space` (n + 1,) what K of a half-space gives. NaN: it is not known."""
-
-    def waves_between(self, waves, s, half_space):
-        """The same (B or 1, m) at points s (m,) > 0 between the nodes, for `half_space` (m,) there."""
-
 
 class Body(Protocol):
     """What lies under the punch in B cases.

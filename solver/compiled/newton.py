@@ -11,7 +11,6 @@ from ..contact import adaptive
 from ..contact.error import STEEP
 from ..contact.newton import LIMIT
 from ..contact.results import apart
-from ..edges import FREE
 from ..kernels.closed_form import bond_constants
 from ..kernels.two_layers import TwoLayers
 from ..laws import LAWS
@@ -61,7 +60,7 @@ def _taken(cases, nodes):
     """(B,) bool: the cases of which the core knows law, body and punch, and whose mesh is free."""
     law, body = cases.law.law, cases.body
     taken = (nodes == 0) | one_of(nodes, _MESHES)
-    if _law_of(law) is None or cases.punch is not PARABOLOID or cases.edge is not FREE:
+    if _law_of(law) is None or cases.punch is not PARABOLOID:
         return np.zeros_like(taken)
     if law.name == "power_law":
         taken = taken & (cases.law.own[0][:, 0] >= STEEP)

@@ -122,7 +122,7 @@ def _on_panels(case, before, rtol, x, left, nearer=1.0):
 
     Tension and gaps count only if finer panels show them too: panels that are too coarse show some that are not there.
     """
-    best, lifted, count, at = before.solution, before.lifted(case.edge), before.solution.iterations, None
+    best, lifted, count, at = before.solution, before.lifted(), before.solution.iterations, None
     resolved, missed, spent = False, best.status == Status.CONVERGED, False
     for goal in (rtol, _FINER * rtol):
         if left <= 0:
@@ -137,7 +137,7 @@ def _on_panels(case, before, rtol, x, left, nearer=1.0):
         at = iterated.at
         answered = answer(iterated, x)
         left -= case.body.work(answered.solution.a, finer_mesh(at.mesh).n)[0][0]
-        lifted = (answered.gap | answered.lifted(case.edge)) & (not resolved)
+        lifted = (answered.gap | answered.lifted()) & (not resolved)
         if lifted[0]:
             continue
         resolved, error = True, answered.solution.error
@@ -150,7 +150,7 @@ def _on_panels(case, before, rtol, x, left, nearer=1.0):
             spent = False
             break
     best = replace(best, iterations=count.astype(np.int32))
-    lifted |= tensile_centre(best, case.edge)
+    lifted |= tensile_centre(best)
     ends = {
         Verdict.LIFTED: lifted,
         Verdict.SOLVED: (best.status == Status.CONVERGED) & ~missed,

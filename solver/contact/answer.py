@@ -72,7 +72,7 @@ class Goal(NamedTuple):
 class Answer(NamedTuple):
     """The solution of B cases, and what tells whether the punch lifts off and whether a finer mesh is of use.
 
-    tension : (B,), the tensile part of the load over the load; 0 where the edge pulls
+    tension : (B,), the tensile part of the load over the load
     gap : (B,) bool, there is a gap inside the contact. Gap or tension may also mean a mesh that is too coarse
     verdict : (B,) int8, a :class:`Verdict`; COARSE where there is no goal
     finer : the state on the next finer mesh, with which that mesh begins
@@ -88,10 +88,9 @@ class Answer(NamedTuple):
         finer = None if self.finer is None else self.finer.take(index)
         return Answer(self.solution.take(index), *(values[index] for values in self[1:-1]), finer)
 
-    def lifted(self, edge):
-        """(B,) bool: there is tension, in all or in the centre, which is too large to be an error, though the `edge`
-        does not pull."""
-        return is_tension(self.tension, self.solution.error) | tensile_centre(self.solution, edge)
+    def lifted(self):
+        """(B,) bool: there is tension, in all or in the centre, which is too large to be an error."""
+        return is_tension(self.tension, self.solution.error) | tensile_centre(self.solution)
 
 
 @lru_cache(maxsize=32)
@@ -116,10 +115,9 @@ def may_be_error(tension, error):
     return (tension > _TENSION) & (tension <= 10 * error)
 
 
-def tensile_centre(solution, edge):
-    """(B,) bool: p(0) < 0, the error is too small to make it so, and the `edge` does not pull. `solution` : what has p0
-    and error (B,)."""
-    return (solution.p0 < 0) & (solution.error < _SURE) & (not edge.pulls)
+def tensile_centre(solution):
+    """(B,) bool: p(0) < 0, and the error is too small to make it so. `solution` : what has p0 and error (B,)."""
+    return (solution.p0 < 0) & (solution.error < _SURE)
 
 
 def at_floor(error, slow, floor, rtol):
@@ -132,7 +130,7 @@ def _verdicts(ev, closed, solution, tension, goal):
     """:class:`Verdict` (B,) of cases whose iterations are `closed` (B,) bool; `solution` : what has p0 and error."""
     error, rtol = solution.error, goal.rtol
     slow, doubt = error > _FALLS * goal.before, may_be_error(tension, error)
-    lifted = is_tension(tension, error) | tensile_centre(solution, ev.cases.edge)
+    lifted = is_tension(tension, error) | tensile_centre(solution)
     wanting = (error > rtol) | (goal.free & doubt)
     floor = at_floor(error, slow, ev.floor, rtol) & ~doubt
     table = {
@@ -202,7 +200,7 @@ class _Judged(NamedTuple):
 def _tension(ev, finite):
     """The tensile part (B,) of the load over the load, of cases with `finite` numbers. There can be tension only where
     the equation is linear: without asperities."""
-    if ev.cases.law.rough or ev.cases.edge.pulls:
+    if ev.cases.law.rough:
         return np.zeros(len(finite))
     basis, w = _between(ev.mesh)
     q = ev.curve.q @ basis

@@ -4,10 +4,10 @@ With p = p* q(y), A = A* g(y), x = r/a and s = sqrt(1 - x²), Eq. (4) divided by
 
     X K[q] + Y q + Z g - s² = 0,    X = 8 p*/(π a E),  Y = 2 C p*/a²,  Z = 2 A*/a²        (R = E2* = 1)
 
-at the nodes of the mesh. Under a punch of another shape its drop stands for s² (:mod:`..punches.punch`). An edge that
-is not free adds a known pressure to q, and what that does to the surface to K[q] (:mod:`..edges.edge`). The control
+at the nodes of the mesh. Under a punch of another shape its drop stands for s² (:mod:`..punches.punch`). The control
 (load, radius or depth) is one more equation. The unknowns are y at the nodes and η = ln a. The body has E, the springs
-C and K (:mod:`..body.operator`); the law has p*, A*, q, g (:mod:`..laws.law`).
+C and K (:mod:`..body.operator`); the law has p*, A*, q, g (:mod:`..laws.law`). At the edge of the contact q is 0, as
+polynomials in s are by themselves.
 """
 
 from dataclasses import dataclass
@@ -16,8 +16,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ..body.operator import Body, Operator
-from ..edges import FREE
-from ..edges.edge import Edge
 from ..laws import Bound, Curve
 from ..numerics.kept import once
 from ..punches import PARABOLOID
@@ -44,15 +42,14 @@ _TINY = np.finfo(float).tiny
 
 
 class Cases(NamedTuple):
-    """A batch of B cases of one body, micro law, punch and edge in units R = 1, E2* = 1: the `control` "P", "a" or "D"
-    of the whole batch, the law, body, punch and edge with their numbers, and the controlled `value` (B,)."""
+    """A batch of B cases of one body, micro law and punch in units R = 1, E2* = 1: the `control` "P", "a" or "D" of the
+    whole batch, the law, body and punch with their numbers, and the controlled `value` (B,)."""
 
     control: str
     law: Bound
     body: Body
     value: np.ndarray
     punch: Punch = PARABOLOID
-    edge: Edge = FREE
 
     @property
     def shape(self):
@@ -65,8 +62,8 @@ class Cases(NamedTuple):
         return self.shape is not None and np.array_equal(self.shape.least(), self.shape.most())
 
     def take(self, index):
-        law, body, punch, edge = (part.take(index) for part in (self.law, self.body, self.punch, self.edge))
-        return Cases(self.control, law, body, self.value[index], punch, edge)
+        law, body, punch = (part.take(index) for part in (self.law, self.body, self.punch))
+        return Cases(self.control, law, body, self.value[index], punch)
 
 
 class State(NamedTuple):
@@ -210,7 +207,7 @@ def evaluate(cases, state, mesh, near=None):
     what still holds is used again."""
     X, Y, Z = groups(cases, state.eta)
     curve, a = cases.law.evaluate(state.y), np.exp(state.eta)
-    operator = cases.edge.at(cases.body, a, mesh, near)
+    operator = cases.body.at(a, mesh, near)
     Kq, edge_q = operator.products(curve.q)
     F = X * Kq + Y * curve.q + Z * curve.g - cases.punch.drop(a, mesh.s)
     return Evaluation(cases, state, operator, curve, X, Y, Z, Kq, edge_q, F)
@@ -222,7 +219,6 @@ def control_residual(cases, eta, X, q, edge_q, mesh):
         return eta - np.log(cases.value)
     if cases.control == "P":
         load = np.einsum("bj,j->b", q, mesh.w)  # not BLAS, whose rounding would depend on the number of cases
-        load = load + cases.edge.load(np.exp(eta))[0]
         return np.log(2 * np.pi * cases.law.p_star * load / cases.value) + 2 * eta
     depth = cases.punch.depth(np.exp(eta)) + X[:, 0] * edge_q
     return np.log(depth / (2 * cases.value)) + 2 * eta
@@ -232,9 +228,7 @@ def control_gradient(control, ev):
     """Derivatives of the logarithm of `control` by q (B, n) and by η (B,)."""
     q, X, w, a = ev.curve.q, ev.X[:, 0], ev.mesh.w, np.exp(ev.state.eta)
     if control == "P":
-        added, d_added = ev.cases.edge.load(a)
-        load = q @ w + added
-        return w / load[:, None], 2.0 + d_added / load
+        return w / (q @ w)[:, None], np.full(len(q), 2.0)
     if control == "a":
         return np.zeros_like(q), np.ones(len(q))
     edge, punch = X * ev.edge_q, ev.cases.punch

@@ -26,11 +26,11 @@ Quantities = namedtuple("Quantities", (*JUDGED, "A0"))
 def quantities(ev):
     """:class:`Quantities` of an :class:`~solver.contact.equation.Evaluation`. D is that of Eq. (3) at r = a; it equals
     Eq. (14) and needs p at no point."""
-    law, edge, y, q, a, w = ev.cases.law, ev.cases.edge, ev.state.y, ev.curve.q, np.exp(ev.state.eta), ev.mesh.w
-    centre = q[:, -1:] + edge.pressure(a, np.ones(1))
+    law, y, q, a, w = ev.cases.law, ev.state.y, ev.curve.q, np.exp(ev.state.eta), ev.mesh.w
+    centre = q[:, -1:]
     return Quantities(
         a=a,
-        P=2 * np.pi * a**2 * law.p_star * (q @ w + edge.load(a)[0]),  # (5)
+        P=2 * np.pi * a**2 * law.p_star * (q @ w),  # (5)
         D=a**2 / 2 * (ev.cases.punch.depth(a) + ev.X[:, 0] * ev.edge_q),  # (14)
         p0=law.p_star * centre[:, 0],
         p_max=law.peak(y[:, -1:], centre)[:, 0],  # (13)
@@ -94,9 +94,8 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
     q, g = ev.curve.q[rows], ev.curve.g[rows]
     drop = ev.cases.punch.take(rows).drop(np.exp(ev.state.eta[rows]), s)
     stiff, q_L = X * kappa, q @ L.T
-    # The least value keeps the right-hand side positive. It is far below κ q_L, which is small under a stiff film. An
-    # edge that pulls has no least value, since its q may be negative.
-    least = -np.inf if ev.cases.edge.pulls else np.clip(1e-3 * stiff * np.abs(q_L), 1e-16 * drop, 1e-9 * drop)
+    # The least value keeps the right-hand side positive. It is far below κ q_L, which is small under a stiff film.
+    least = np.clip(1e-3 * stiff * np.abs(q_L), 1e-16 * drop, 1e-9 * drop)
     right = np.maximum(drop - X * Kq + stiff * q_L, least)
     linear, node_linear = stiff + Y, X * node_kappa + Y
 
@@ -151,7 +150,7 @@ def apart(s, rough):
 
 
 def profiles(ev, x, rows):
-    """p (b, m) in E2* and λ (b, m) of the cases `rows` (b,) at the radii x (m,); 0 at a free edge."""
+    """p (b, m) in E2* and λ (b, m) of the cases `rows` (b,) at the radii x (m,); 0 at the edge."""
     s = np.sqrt((1 - x) * (1 + x))
     inner, law = s > 0, ev.cases.law.take(rows)
     solved_at = apart(s[inner], law.rough)
@@ -160,5 +159,4 @@ def profiles(ev, x, rows):
     p, lam = np.zeros((2, len(q), len(s)))
     p[:, inner] = law.p_star[:, None] * q
     lam[:, inner] = law.area(y, q)
-    p += law.p_star[:, None] * ev.cases.edge.take(rows).pressure(np.exp(ev.state.eta[rows]), s)
     return p, lam

@@ -58,7 +58,7 @@ def smooth_start(cases, mesh):
     of the asperities alone."""
     eta, drop = np.log(cases.value), cases.punch.drop(cases.value, mesh.s)
     X, Y, Z = groups(cases, eta)
-    operator = cases.edge.at(cases.body, np.exp(eta), mesh)
+    operator = cases.body.at(np.exp(eta), mesh)
     smooth = solve_stack(operator.K, Y / X * np.ones(mesh.n), (drop / X)[..., None])[..., 0]
     smooth = np.maximum(smooth, _LEAST * smooth.max(axis=1, keepdims=True))
     y = cases.law.guess(1 / (1 / smooth + 1 / cases.law.sparse(drop / Z)))

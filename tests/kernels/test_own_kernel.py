@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from edges.jkr import JKR
 from numpy.testing import assert_allclose
 from scipy.special import j0
 from stack import SAMPLER, Stack
@@ -16,7 +15,6 @@ from solver.body.hankel import Hankel
 from solver.body.wave_rule import STIFFEST, few, quadrature
 from solver.contact.adaptive import solve_newton
 from solver.contact.equation import Cases
-from solver.edges import FREE
 from solver.kernels.closed_form import layered_kernel
 from solver.laws import LAWS
 from solver.numerics.mesh import mesh_of
@@ -43,10 +41,9 @@ def stack_of(row, size=1):
     return Stack(*(np.array([values] * size) for values in (n, nu, h, bonded, nu2, rigid)))
 
 
-def solved(kernel, h, control, value, rtol=1e-9, sampler=None, w=None):
+def solved(kernel, h, control, value, rtol=1e-9, sampler=None):
     body = Hankel(kernel._replace(sampler=sampler), h, 0 * h)
-    edge = FREE if w is None else JKR(w, body.E)
-    case = Cases(control, LAWS["smooth"].bind(body.E), body, np.asarray(value, float), edge=edge)
+    case = Cases(control, LAWS["smooth"].bind(body.E), body, np.asarray(value, float))
     with np.errstate(all="ignore"):  # as in solver.solve: what goes wrong is a status
         return solve_newton(case, np.full(len(h), rtol), np.zeros(len(h), int), 0, np.array([0.0, 0.5]))
 
@@ -92,16 +89,6 @@ def test_contacts(row, sampler):
         found = solved(kernel, h, control, [value], sampler=sampler)
         for name, other in exact.items():
             assert_allclose(getattr(found, name), other, rtol=1e-9, atol=0)
-
-
-@pytest.mark.parametrize("row", CONTACTS, ids=lambda row: row["stack"])
-def test_adhesive_contacts(row):
-    """A kernel and an edge of somebody else's together, as they are."""
-    modulus = float(row["layers"].split()[1]) if row["base"] == "rigid" else 1.0
-    w = np.array([float(row["w"])]) / 100 / modulus
-    found = solved(stack_of(row), np.full(1, 0.01), "a", [float(row["a"]) / 100], w=w)
-    assert_allclose(found.P * 1e4 * modulus, float(row["P_adhesive"]), rtol=1e-9, atol=0)
-    assert_allclose(found.D * 100, float(row["D_adhesive"]), rtol=1e-9, atol=0)
 
 
 @SAMPLERS

@@ -26,7 +26,7 @@ OURS = {"roughcoat", "solver", "study", "studies"}
 ROOMS = {
     "solver": (
         *("threads", "closed_forms", "numerics", "status", "parameters", "layers", "shapes", "punches", "kernels"),
-        *("laws", "body", "edges", "problem", "solution", "contact", "compiled", "scaling", "estimate"),
+        *("laws", "body", "problem", "solution", "contact", "compiled", "scaling", "estimate"),
         *("flat", "schemes", "smooth_contact", "models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (
@@ -36,7 +36,7 @@ ROOMS = {
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.
-APART = {"body": {"laws"}, "kernels": {"laws", "punches"}, "edges": {"laws", "punches"}}
+APART = {"body": {"laws"}, "kernels": {"laws", "punches"}}
 
 
 def name(path: Path) -> str:

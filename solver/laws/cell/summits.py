@@ -38,8 +38,8 @@ _TERMS, _MORE, _ENOUGH, _SMALL = ((2.0, 16), (24.0, 28), (np.inf, 56)), 1.5, 130
 #: Polynomials of a lookup: their number for each term of the series, and their degree: right to 1e-9.
 _PIECES, _DEGREE = 6, 5
 _kept = Kept(2e7)
+#: `cell` of the :class:`~solver.laws.law.Law` of random heights.
 SUMMIT = "summit"
-"""`cell` of the :class:`~solver.laws.law.Law` of random heights."""
 
 
 class Summit(NamedTuple):

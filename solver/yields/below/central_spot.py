@@ -77,7 +77,7 @@ def spot_of(problem, solution):
     where its asperities do not feel the layer; and half of the distance of neighbours over the pitch."""
     for cells, loaded, _ in _cells(problem, solution, 0.0, 0.0):
         if cells[0]:
-            return np.array([cells[0].b[0] * cells[0].pitch, cells[0].pitch, loaded.h[0]]), beside(cells[0])
+            return np.array([cells[0].b[0] * cells[0].pitch, cells[0].pitch, loaded.h[0]]), half_way(cells[0])
     return np.full(3, np.nan), np.nan
 
 
@@ -97,7 +97,7 @@ def _cells(problem, solution, mu, residual):
             yield [cells[j] for j in here], loaded, (index[here], elastic.p_max[here])
 
 
-def beside(cell):
+def half_way(cell):
     """Half of the distance of neighbours, in l."""
     lattice = cell.member.cell.lattice
     return LATTICES["hex" if lattice == "disc" else lattice] / 2
@@ -149,7 +149,7 @@ class _Case:
                 return []
             edges = _doubling(self.h, least, self.h + farthest_of(self.loaded))
         else:
-            edges = _doubling(0.0, least, beside(self.cell) * self.cell.pitch)
+            edges = _doubling(0.0, least, half_way(self.cell) * self.cell.pitch)
         at = edges[:-1, None] + np.diff(edges)[:, None] * (1 + chebyshev_nodes(_NODES)) / 2
         if where == "interface":
             stresses, depth = self._at_interface(at.ravel()), self.h

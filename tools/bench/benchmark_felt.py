@@ -3,7 +3,8 @@
     python tools/bench/benchmark_felt.py
 
 Processor times by turns, on one thread. A family is one body with one pitch over h; its law is computed once and kept.
-Families are new in every turn: their N̄ differ by 1e-4.
+Families are new in every turn: their N̄ differ by 1e-4. On the half-space `model_error` takes the family as well, at one
+pressure; so `layer_ms` itself bounds what a new family costs.
 """
 
 import os

@@ -90,8 +90,8 @@ def response_of(shape, dx, dy, kernel):
 def pressed(depths, response, mean, start):
     """The pressures (N, M) of a period, its approach A, and whether the iteration has ended.
 
-    depths : (N, M), of the surface below its highest summit; response : of :func:`response_of`; mean : of the pressures;
-    start : (N, M), pressures to begin with, of this mean
+    depths : (N, M), of the surface below its highest summit; response : of :func:`response_of`; mean : of the
+    pressures; start : (N, M), pressures to begin with, of this mean
     """
 
     def moved(p):

@@ -10,8 +10,8 @@ from solver.models.cells import last_fraction
 
 from ...again import Again
 from ...arrays import xarray_later as xr
-from ...inputs.asperities import USED
 from ...inputs.definition import StudyError
+from ...inputs.punch.asperities import USED
 from ...rules.rule import of_cases
 from ...terminal import rounded
 

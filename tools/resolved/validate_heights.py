@@ -181,9 +181,9 @@ def cells(folder: Path) -> xr.Dataset:
     return xr.Dataset(data, where)
 
 
-def layer_cells(folder: Path) -> xr.Dataset:
-    """A of the mean plane over A*, and λ, of periodic cells on LAYERS, over (layer, spread, p, draw), and of the laws on
-    a half-space and on the layer."""
+def height_cells(folder: Path) -> xr.Dataset:
+    """A of the mean plane over A*, and λ, of periodic cells on LAYERS, over (layer, spread, p, draw), and those of
+    the law on a half-space and on the layer."""
     shape, law = (len(LAYERS), len(LAYER_SPREADS), len(LAYER_PRESSURES)), LAWS["normal_heights"]
     found, laws = np.empty((*shape, CELLS_DRAWN, 2)), np.empty((*shape, 2, 2))
     for (i, layer), (j, spread), (k, p) in product(

@@ -16,7 +16,7 @@ from validate_cases import HALF_SPACE, LAYERED, THIN, THINNER, together
 from validate_cells import cells as layer_cells
 from validate_cells import films, sparse
 from validate_figures import draw_cells, draw_limits, draw_means
-from validate_heights import SPHERES, cells, compared, finer
+from validate_heights import SPHERES, cells, compared, finer, height_cells
 from validate_page import page
 from validate_rates import rates
 
@@ -36,6 +36,7 @@ def found(folder: Path) -> dict[str, xr.Dataset]:
         "rates": rates(),
         "heights": spheres.assign_coords(case=[sphere.name for sphere in SPHERES]),
         "cells": cells(folder),
+        "height_cells": height_cells(folder),
     }
 
 

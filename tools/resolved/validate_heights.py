@@ -4,6 +4,7 @@ Both have their summits on a square lattice. Cells are in units E = Ra = pitch =
 all summits that could be drawn, which the micro laws have c σ deeper than the touch of the highest.
 """
 
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,8 +14,10 @@ from influence import Layer
 from rough_sphere import Punch, asperities, cell_means, real_area, resolved, touched_share, width
 from scipy.special import ndtr, ndtri
 from validate_cases import RA, TOLERANCE, given, kept, richardson
+from validate_cells import Cell, body
 
 import study
+from solver.kernels.two_layers import TwoLayers
 from solver.laws import LAWS
 from solver.laws.cell.periodic import pressed, response_of
 from solver.laws.heights import UNIFORM
@@ -31,6 +34,9 @@ SUMMITS, MESHES, PRESSURES = 15, (124, 248), (0.01, 0.03, 0.1, 0.3)
 #: σ over A* = 1/(π N̄ Ra), by which equal asperities give way at full contact three times.
 SPREADS = (0.0, 0.1, 0.3)
 ONES = {"Nbar": 1.0, "Ra": 1.0}
+#: Layers under periodic cells, of a pitch of 6 h, their spreads and nominal pressures.
+LAYERS = {f"n = {n:g}": Cell("square", np.nan, 6.0, Layer(1.0, n, bonded=True)) for n in (5.0, 0.2)}
+LAYER_SPREADS, LAYER_PRESSURES = (0.1, 0.3), (0.003, 0.01, 0.03)
 
 
 class Sphere(NamedTuple):
@@ -136,17 +142,19 @@ def compared(case: Sphere, folder: Path) -> xr.Dataset:
     return xr.Dataset(data, names)
 
 
-def cell(spread: float, p: float, draw: int, meshes: tuple[int, ...] = MESHES) -> dict[str, np.ndarray]:
-    """A of the mean plane and λ of one periodic cell of normal heights on each mesh (mesh, 2)."""
+def cell(
+    spread: float, p: float, draw: int, layer: Cell | None = None, meshes: tuple[int, ...] = MESHES
+) -> dict[str, np.ndarray]:
+    """A of the mean plane and λ of one periodic cell of normal heights on each mesh (mesh, 2), on a half-space or on
+    the layer of a :class:`.validate_cells.Cell`."""
     heights, rows, start = drawn("normal_heights", spread / np.pi, SUMMITS, [2, draw]), [], None
     around = np.pad(heights, 1, mode="wrap")
     for points in meshes:
         side = SUMMITS / points
         at = (np.arange(points) + 0.5) * side - SUMMITS / 2
         shape = asperities(*np.meshgrid(at, at, indexing="ij"), 1.0, 1.0, around)
-        pressure, A, closed = pressed(
-            shape, response_of(shape.shape, side, side, None), p, np.full(shape.shape, p) if start is None else start
-        )
+        answer = response_of(shape.shape, side, side, body(layer) if layer else None)
+        pressure, A, closed = pressed(shape, answer, p, np.full(shape.shape, p) if start is None else start)
         if not closed:
             raise AssertionError("conjugate gradients did not end")
         rows.append([A, touched_share(pressure)])
@@ -171,3 +179,30 @@ def cells(folder: Path) -> xr.Dataset:
     data["law_A"] = dims[:2], [np.pi * one.A - CUT * s for s, one in zip(SPREADS, laws, strict=True)]
     data["law_lam"] = dims[:2], [one.lam for one in laws]
     return xr.Dataset(data, where)
+
+
+def height_cells(folder: Path) -> xr.Dataset:
+    """A of the mean plane over A*, and λ, of periodic cells on LAYERS, over (layer, spread, p, draw), and those of
+    the law on a half-space and on the layer."""
+    shape, law = (len(LAYERS), len(LAYER_SPREADS), len(LAYER_PRESSURES)), LAWS["normal_heights"]
+    found, laws = np.empty((*shape, CELLS_DRAWN, 2)), np.empty((*shape, 2, 2))
+    for (i, layer), (j, spread), (k, p) in product(
+        enumerate(LAYERS.values()), enumerate(LAYER_SPREADS), enumerate(LAYER_PRESSURES)
+    ):
+        for draw in range(CELLS_DRAWN):
+            key = ("periodic cell", CUT, SUMMITS, MESHES, spread, p, draw, layer)
+            one = kept(folder, key, lambda spread=spread, p=p, draw=draw, layer=layer: cell(spread, p, draw, layer))
+            found[i, j, k, draw] = richardson(*one["meshes"][-2:], np.array([2, 1]))
+        own = {name: np.array([value]) for name, value in (ONES | {"sigma": spread / np.pi, "cut": CUT}).items()}
+        n, nu1, nu2, bonded = (np.array([value]) for value in layer.layer[1:])
+        on_body = law.on_body(
+            TwoLayers(n, nu1, nu2, bonded), np.zeros(1), 1 / np.array([layer.pitch]), np.ones(1), **own
+        )
+        for at, bound in enumerate((law.bind(np.ones(1), **own), on_body)):
+            spots = bound.at(np.array([[p]]))
+            laws[i, j, k, at] = np.pi * spots.A[0, 0] - CUT * spread, spots.lam[0, 0]
+    dims = ("layer", "spread", "p")
+    data = {"A": ((*dims, "draw"), np.pi * found[..., 0]), "lam": ((*dims, "draw"), found[..., 1])}
+    data |= {"law_A": ((*dims, "on"), laws[..., 0]), "law_lam": ((*dims, "on"), laws[..., 1])}
+    where = {"layer": list(LAYERS), "spread": list(LAYER_SPREADS), "p": list(LAYER_PRESSURES)}
+    return xr.Dataset(data, where | {"on": ["half_space", "layer"]})

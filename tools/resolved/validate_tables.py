@@ -1,5 +1,7 @@
 """The tables of docs/validate.md."""
 
+from itertools import product
+
 import numpy as np
 import xarray as xr
 from validate_cases import LAWS, LAYERED, QUANTITIES, THIN
@@ -175,6 +177,23 @@ def cells_table(found: xr.Dataset) -> str:
             row.append(f"{float(own['law_A'] - own['A'].mean('draw')):+.3f} ± {unsure:.3f}, λ {share:+.1%}")
         rows.append(row)
     return table(["", *(f"p = {p:g}" for p in found["p"].values)], rows)
+
+
+def layer_cells_table(found: xr.Dataset) -> str:
+    """What the mean field is off on a half-space and on the layer, by layer, σ and p."""
+    rows = []
+    for layer, spread in product(found["layer"].values, found["spread"].values):
+        some = found.sel(layer=layer, spread=spread)
+        for on, words in (("half_space", "half-space"), ("layer", "layer")):
+            row = [f"{layer}, σ = {spread:g} A*", words]
+            for p in found["p"].values:
+                one = some.sel(p=p)
+                unsure = float(one["A"].std("draw", ddof=1)) / np.sqrt(CELLS_DRAWN)
+                off = float(one["law_A"].sel(on=on) - one["A"].mean("draw"))
+                share = float(one["law_lam"].sel(on=on) / one["lam"].mean("draw")) - 1
+                row.append(f"{off:+.3f} ± {unsure:.3f}, λ {share:+.1%}")
+            rows.append(row)
+    return table(["layer", "asperities on", *(f"p = {p:g}" for p in found["p"].values)], rows)
 
 
 def thick_table(found: xr.Dataset) -> str:

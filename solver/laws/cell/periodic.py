@@ -16,6 +16,8 @@ __all__ = ["periodic_rows"]
 
 #: A solution has been found when the gap under the pressures is this part of the range of the heights; most steps.
 _CLOSED, _STEPS = 1e-9, 2000
+#: A point that joins the contact has at least this part of the mean pressure: any that is not 0.
+_JOINS = 1e-12
 #: The kernel at k = 0, which the preconditioner needs to be a number, over its value at the longest wave.
 _MEAN = 1.0
 
@@ -90,8 +92,8 @@ def response_of(shape, dx, dy, kernel):
 def pressed(depths, response, mean, start):
     """The pressures (N, M) of a period, its approach A, and whether the iteration has ended.
 
-    depths : (N, M), of the surface below its highest summit; response : of :func:`response_of`; mean : of the
-    pressures; start : (N, M), pressures to begin with, of this mean
+    depths : (N, M), of the surface below its highest summit; response : of :func:`response_of`; mean : of the pressure;
+    start : (N, M), pressures to begin with, of this mean
     """
 
     def moved(p):
@@ -125,6 +127,8 @@ def pressed(depths, response, mean, start):
         apart = (p == 0) & (residual < 0)
         restart = bool(apart.any())
         if restart:
-            p = np.where(apart, -step * residual * inverse.max(), p)
+            # the same step with what joins; a pressure of one size for all makes hard layers come and go for ever
+            joining = -step * eased(residual, touching | apart)
+            p = np.where(apart, np.maximum(joining, _JOINS * mean), p)
         p = p * (mean / p.mean())
     return p, np.nan, False

@@ -50,6 +50,22 @@ def test_on_a_half_space_it_is_the_table_of_the_square_lattice():
     assert_allclose(lam, law.lam, rtol=0.03)
 
 
+@pytest.mark.parametrize(("n", "pitch"), [(12.0, 4.0), (60.0, 5.0)])
+def test_summits_under_a_hard_layer_come_to_rest(n, pitch):
+    """A period of 16 summits of random heights, where points that joined the contact under one pressure for all came
+    and went for ever. At rest there is no gap where there is pressure, and no overlap where there is none."""
+    at = (np.arange(64) + 0.5) / 16
+    of, away = np.floor(at).astype(int), at % 1 - 0.5
+    heights = np.random.default_rng(1).uniform(0, 0.1, (4, 4))
+    depths = (away[:, None] ** 2 + away**2) / 2 + heights[of][:, of]
+    response = response_of(depths.shape, 1 / 16, 1 / 16, kernel(pitch, n, 0.3, "bonded"))
+    pressures, A, closed = pressed(depths, response, 0.05, np.full(depths.shape, 0.05))
+    gap = np.fft.irfft2(np.fft.rfft2(pressures) * response, s=depths.shape) + depths - A
+    assert closed and 0.4 < np.mean(pressures > 0) < 0.7
+    assert_allclose(gap[pressures > 0], 0, atol=1e-9)
+    assert gap.min() > -1e-9 and pressures.mean() == pytest.approx(0.05)
+
+
 def test_two_steps_and_two_sides():
     """The cell twice, with half as many points along one side; pressures in any order."""
     fine = -(np.tile(SQUARE, 2) ** 2 + SQUARE[::2, None] ** 2) / 2

@@ -153,14 +153,14 @@ def families(lattice, pitch, kernel, m):
 
 def different(lattice, pitch, kernel, m):
     """The key of each family of B cases with the first case of it, a list, and the index (B,) of that of each case."""
-    fields = [np.asarray(field).reshape(len(m), -1) for field in (rounded(pitch), m, *kernel) if _is_array(field)]
+    fields = [field.reshape(len(m), field[:1].size or 1) for field in (rounded(pitch), m, *kernel) if _is_array(field)]
     table = np.concatenate([field.astype(float) for field in fields], axis=1)
     kind = lattice, type(kernel).__name__
-    if (table == table[:1]).all():  # the most frequent batch, in a tenth of the time
+    if len(m) and (table == table[:1]).all():  # the most frequent batch, in a tenth of the time
         return [((*kind, float(table[0, 0]), table[0].tobytes()), 0)], np.zeros(len(m), dtype=int)
     first = {}
     index = [first.setdefault(row.tobytes(), (len(first), i))[0] for i, row in enumerate(table)]
-    return [((*kind, float(table[i, 0]), row), i) for row, (_, i) in first.items()], np.array(index)
+    return [((*kind, float(table[i, 0]), row), i) for row, (_, i) in first.items()], np.array(index, dtype=int)
 
 
 def _is_array(field):

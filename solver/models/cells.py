@@ -28,8 +28,8 @@ _ANGULAR = {"square_lattice": _SQUARE}
 #: places of the neighbours; and the lattice with which it is compared.
 _DISC, _LATTICE = "disc_cell", "hex_lattice"
 #: Random heights of the standard deviation _WIDE A* are deeper by _DEEPER A* than resolved ones, those of less by its
-#: square, without a layer and on one. λ and p_max err by up to _OF_LAMBDA from _LITTLE A* on (docs/validate.md, Random
-#: heights; tests/laws/heights/test_heights_on_body.py). _WIDE stands for that of a histogram.
+#: square, without a layer and on one. λ and p_max err by up to _OF_LAMBDA from _LITTLE A* on (docs/validate.md;
+#: tests/laws/heights/test_heights_on_body.py). _WIDE stands for that of a histogram.
 _WIDE, _DEEPER, _LITTLE, _OF_LAMBDA = 0.3, 0.04, 0.1, 0.08
 #: A graded layer is cut in few sublayers below asperities: A, λ and p_max err by at most this times ln of the largest
 #: over the smallest modulus (tests/stacks/test_felt.py).

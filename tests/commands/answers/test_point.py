@@ -117,7 +117,7 @@ def test_a_unit_of_something_else(capsys):
 def test_what_is_far_outside_is_said_before_it_is_solved(capsys, monkeypatch):
     """On stderr, once; what is within the model is solved without a word."""
     film = {"R": "5 mm", "layer": "PTFE", "h": "10 nm", "body": "steel 52100", "P": "5 N", "bonding": "bonded"}
-    film |= {"Nbar": "0.1 1/um^2", "Ra": "2 um"}
+    film |= {"Nbar": "0.1 1/um^2", "Ra": "2 um", "asperities_on": "half_space"}
     assert main(["point", "--json", *words(**film | {"h": "0.2 mm"})]) == 0
     assert capsys.readouterr().err == ""
 
@@ -134,7 +134,7 @@ def test_what_is_far_outside_is_said_before_it_is_solved(capsys, monkeypatch):
 def test_run_and_check_say_what_is_far_outside(tmp_path, capsys):
     """Before anything is computed."""
     text = '[model]\nR = "5 mm"\nlayer = "PTFE"\nh = "10 nm"\nbody = "steel 52100"\nbonding = "bonded"\n'
-    text += 'Nbar = "0.1 1/um^2"\nRa = "2 um"\n[axes]\nP = ["1 N", "5 N"]\n[output]\nspreads = false\n'
+    text += 'Nbar = "0.1 1/um^2"\nRa = "2 um"\nasperities_on = "half_space"\n[axes]\nP = ["1 N", "5 N"]\n[output]\nspreads = false\n'
     (tmp_path / "film.toml").write_text(text, encoding="utf-8")
     file, said = str(tmp_path / "film.toml"), "film: beware: at least half of these contacts are far outside"
     assert main(["check", file]) == 0 and said in capsys.readouterr().out

@@ -122,20 +122,26 @@ def kinds_of_laws(problem):
     return kinds
 
 
+def felt_body(part, body=None):
+    """The body that the asperities of cases feel, as :func:`law_of` has it; None where they press on a half-space."""
+    kind = kinds_of_laws(part)[0] if len(part) else _HALF_SPACE
+    if kind == _HALF_SPACE:
+        return None
+    if kind >= _GRADED:
+        return stack(part.but(sublayers=_SUBLAYERS), octaves=int(kind) - _GRADED)
+    return BODIES[str(part.base[0])](part) if body is None else body
+
+
 def law_of(part, body=None):
     """The one law of the cases with their numbers, :class:`~solver.laws.Bound`: on their bodies if the asperities feel
     these. ValueError where :func:`~solver.laws.try_out` finds a slip in a law of somebody else's.
 
     part : cases of one law on one base, and of one of :func:`kinds_of_laws`; body : theirs, if it is at hand
     """
-    law, kind = LAWS[str(part.micro[0])], kinds_of_laws(part)[0] if len(part) else _HALF_SPACE
+    law, felt = LAWS[str(part.micro[0])], felt_body(part, body)
     values = {name: getattr(part, name) for name in law.arguments}
-    if kind >= _GRADED:
-        body = stack(part.but(sublayers=_SUBLAYERS), octaves=int(kind) - _GRADED)
-    elif kind == _BODY and body is None:
-        body = BODIES[str(part.base[0])](part)
-    if kind != _HALF_SPACE:
-        return law.on_body(body.kernel, body.m, body.h, body.E, **values)
+    if felt:
+        return law.on_body(felt.kernel, felt.m, felt.h, felt.E, **values)
     E = layer_modulus(part.n) / (1 + part.m)
     try_out(law, E, values)
     return law.bind(E, **values)

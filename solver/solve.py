@@ -99,7 +99,7 @@ def _solved(problem, x, extrapolate):
     solution = replace(solution, model_error=solution.model_error + left_out(problem, solution))
     if yields:
         solution = replace(solution, plastic_share=plastic_share(problem, solution.lam[:, len(x) :]))
-    if problem.feels_layer().any():  # their radii end in the centre
+    if not extrapolate and felt.any():  # their radii end in the centre
         p_spot, r_spot = pressure_in_spots(problem, solution, solution.lam[:, -1])
         solution = replace(solution, p_spot=p_spot, r_spot=r_spot)
     profiles = {name: getattr(solution, name)[:, : len(x)] for name in ("p", "lam")}

@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from ..body import BODIES
 from ..laws import LAWS, elastic_plastic
 from ..laws.cell.members import members, peaks_of
 from ..laws.cell.peak import NARROW, U
 from ..laws.cell.summits import SUMMIT
-from ..scaling import dimensionless, law_of, of_one_law
+from ..scaling import dimensionless, felt_body, law_of, of_one_law
 
 #: Of one layer the largest pressure stays in the middle where n is at most this: L - 1 is nowhere above 1.2 there, and
 #: it leaves at 1.6 (solver/laws/cell/peak.py).
@@ -34,7 +33,7 @@ def pressure_in_spots(problem, solution, lam0):
             here, some, own = index[rows], part.take(rows), b[rows]
             unit, middle, ease = (body.E / (part.Ra * np.sqrt(part.Nbar)))[rows], p_max[here], 1.0
             if law.yielded:
-                bound = law_of(some, BODIES[str(some.base[0])](some))
+                bound = law_of(some)
                 middle, ease = elastic_plastic.in_the_middle(np.sqrt(np.pi) * own[:, None], *bound.own)
                 middle = bound.p_star * middle
             others = (p0[here] / unit,) * member.alone
@@ -67,7 +66,7 @@ def _of_one_law(problem, some):
     scaled = dimensionless(problem.take(index))
     for rows in of_one_law(scaled):
         part = scaled.take(rows)
-        yield index[rows], part, BODIES[str(part.base[0])](part)
+        yield index[rows], part, felt_body(part)
 
 
 def largest_radius(part, body, lam0, p0):

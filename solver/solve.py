@@ -12,7 +12,7 @@ from .models.graded import solve_graded
 from .models.model_error import judged
 from .models.named import model_of, solve_named
 from .models.plastic_share import has_yield, plastic_share
-from .models.range_of_law import beyond_end, radii_of
+from .models.range_of_law import beyond_end, radii_of, without_family
 from .models.table_ends import beyond_table
 from .problem import Problem
 from .scaling import dimensionless, refused
@@ -73,6 +73,7 @@ def _solved(problem, x, extrapolate):
     radii = np.append(x, radii_of(problem, yields))
     scaled, special = dimensionless(problem), shaped(problem) | (problem.w_adhesion > 0) | felt
     invalid = refused(problem, scaled) | problem.without_scheme() | unfit(scaled)
+    hopeless = ~invalid & felt & without_family(problem)
     if np.any(exact := special & (problem.base == "auto")):
         problem = problem.but(base=np.where(exact, "layered", problem.base))
     is_auto = problem.base == "auto"
@@ -83,11 +84,12 @@ def _solved(problem, x, extrapolate):
     pieces = []
     named = ~(is_judged | is_auto | graded)
     for mask, way in (is_judged, judged), (is_auto, cheapest), (graded, solve_graded), (named, solve_named):
-        index = np.flatnonzero(mask & ~invalid)
+        index = np.flatnonzero(mask & ~invalid & ~hopeless)
         if len(index):
             part = problem if len(index) == len(problem) else problem.take(index)
             pieces.append((index, way(part, radii)))
-    solution = Solution.join(*size, pieces, status=Status.INVALID_INPUT, model_used=model_of(problem))
+    unsolved = np.where(hopeless, Status.OUTSIDE_LAW, Status.INVALID_INPUT)
+    solution = Solution.join(*size, pieces, status=unsolved, model_used=model_of(problem))
     if shaped(problem).any():
         beyond = ~invalid & beyond_table(scaled, solution)
         solution = solution.refused(beyond, Status.OUTSIDE_LAW)

@@ -35,8 +35,10 @@ __all__ = [
 GROUP = "roughcoat.laws"
 #: Names that no parameter of a law can have: the attributes of a Problem, and E and nu, which `scales` gets. The
 #: package `study` adds results and its other inputs.
-_OF_PROBLEM = ("control", "value", "parameters", "of", "take", "but", "rough", "invalid", "may_pull", "without_scheme")
-_OF_PROBLEM += ("can_feel", "feels_layer")
+_OF_PROBLEM = (
+    *("control", "value", "parameters", "of", "take", "but", "rough", "invalid", "may_pull", "without_scheme"),
+    *("can_feel", "feels_layer"),
+)
 RESERVED = {*CONTROL, *_OF_PROBLEM, "E", "nu"}
 #: Laws whose functions have been tried.
 _TRIED: WeakSet[Law] = WeakSet()

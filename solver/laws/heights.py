@@ -231,12 +231,15 @@ class _Body(NamedTuple):
         cells = [family(key, kernel, m, i) for key, i in keys]
         summits = [summit(key, disc, kernel, m, i) for (key, i), disc in zip(keys, cells, strict=True)]
         numbers = [(v * np.ones(np.shape(E)))[:, None] for v in (sigma, cut)]
-        return Bound(law, p_star, A_star, (*numbers, cell.stacked(cells)[index], cell.stacked(summits)[index]))
+        return Bound(law, p_star, A_star, (*numbers, cell.stacked(cells, index), cell.stacked(summits, index)))
 
     def tables(self, sigma, cut, rows, summits):
         """As :func:`_tables`, one for each family with each sigma and cut."""
         numbers = np.concatenate([np.where(sigma > 0, sigma, 1.0), cut, cell.number(rows, "digest")], axis=1)
-        triples, first, group = np.unique(numbers, axis=0, return_index=True, return_inverse=True)
+        if len(numbers) and (numbers == numbers[0]).all():
+            triples, first, group = numbers[:1], [0], np.zeros(len(numbers), dtype=int)
+        else:
+            triples, first, group = np.unique(numbers, axis=0, return_index=True, return_inverse=True)
         keys = [(self.density, "body", *triple) for triple in triples.tolist()]
         found = [_TABLES.get(key) for key in keys]
         for i, (key, row) in enumerate(zip(keys, first, strict=True)):
@@ -244,7 +247,7 @@ class _Body(NamedTuple):
                 if len(_TABLES) >= _KEPT:
                     _TABLES.clear()
                 found[i] = _TABLES[key] = self._table(triples[i], rows[row], summits[row])
-        return np.array(found), group.ravel()
+        return np.array(found).reshape(len(keys), 2, spread.KNOTS * self.density.fine), group.ravel()
 
     def _table(self, numbers, row, summit):
         sigma, cut = numbers[:2, None, None]
@@ -255,8 +258,7 @@ class _Body(NamedTuple):
     def looked_up(self, which, y, *own):
         """As :func:`_looked_up`."""
         table, group = self.tables(*own)
-        step = spread.STEP * spread.KNOTS / table.shape[-1]
-        value, slope = spread.look_up(np.ascontiguousarray(table[:, which]), group, y, step)
+        value, slope = spread.look_up(np.ascontiguousarray(table[:, which]), group, y, spread.STEP / self.density.fine)
         return np.exp(value), slope
 
     def curve(self, y, *own):
@@ -282,9 +284,11 @@ class _Body(NamedTuple):
         few = (1.25 * np.pi * sigma / self.density.top(cut) * np.maximum(q, 0.0)) ** 0.4
         delta = np.clip(few, alike, alike + self.density.mean(cut) * sigma)
         y = np.maximum(spread.unknown(delta, q, _relief(self.density, sigma, cut)), 1e-300)
+        (table, group), goal = self.tables(*own), np.log(np.maximum(q, 1e-300))
+        table = np.ascontiguousarray(table[:, 0])
         for _ in range(_TO_TABLE):
-            now, slope = self.looked_up(0, y, *own)
-            y = y * np.exp(np.clip(np.log(np.maximum(q, 1e-300) / now) / slope, -_LONGEST, _LONGEST))
+            now, slope = spread.look_up(table, group, y, spread.STEP / self.density.fine)
+            y = y * np.exp(np.clip((goal - now) / slope, -_LONGEST, _LONGEST))
         return where_positive(q, np.where(sigma > 0, y, level))
 
     def area(self, y, q, *own):

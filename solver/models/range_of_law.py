@@ -4,6 +4,7 @@ import numpy as np
 
 from ..kernels.two_layers import layer_modulus
 from ..laws import LAWS
+from ..laws.cell.family import MOST
 from ..laws.cell.law import end
 from ..scaling import dimensionless, law_of, of_one_law
 from ..status import Status
@@ -12,6 +13,8 @@ from ..status import Status
 #: edge, where a hard film presses most.
 _S = np.append(np.geomspace(1e-5, 0.09, 40), np.linspace(0.1, 1, 41))
 RADII = np.sqrt((1 - _S) * (1 + _S))
+#: Pitches that are above MOST h by no more than this are left to the law.
+_EPS = 1e-9
 #: Each of so many of these is enough for the largest pressure, of asperities that feel the body.
 _FEW = 4
 #: Near the edge p is below the first row of a table, p1, and A and λ are guesses. That changes a, P, D, p(0), p_max and
@@ -38,6 +41,11 @@ def outside_law(problem, solution):
         largest = np.maximum(p0, np.fmax.reduce(solution.p[index], axis=1, initial=0.0))
         outside[index] = (p0 < law.least * E) | (largest > law.most * E)
     return outside
+
+
+def without_family(problem):
+    """(B,) bool: the pitch is so many times the thickness of the layer that no law of asperities on a body knows it."""
+    return problem.Nbar * (MOST * problem.h) ** 2 < 1 - _EPS
 
 
 def beyond_end(problem, solution):

@@ -20,11 +20,11 @@ BARS = ("estimated error / rtol, median of the cell", "iterations, largest of th
 BINS = 24
 _MANY = 10_000  # cases in a map from which on converged ones are drawn as smaller points
 #: FAILED: status of a failed case -> its colour; COLOURS: the same of all statuses.
-_FAILURES = [status for status in Status if status not in (Status.CONVERGED, *NO_SOLUTION)]
-#: Statuses without a solution that occur without adhesion.
-_WITHOUT = [status for status in NO_SOLUTION if status != Status.PULLED_OFF]
+_FAILURES = [s for s in Status if s not in (Status.CONVERGED, Status.OUTSIDE_LAW, *NO_SOLUTION)]
+#: Statuses without a solution that occur without adhesion; also where the law of asperities on a layer has ended.
+_WITHOUT = [*(status for status in NO_SOLUTION if status != Status.PULLED_OFF), Status.OUTSIDE_LAW]
 FAILED = dict(zip(_FAILURES, ("#d55e00", "#cc79a7", "black", "#e69f00", "#0072b2", "#009e73"), strict=False))
-COLOURS = {Status.CONVERGED: "0.85"} | dict(zip(_WITHOUT, ("0.4", "#56b4e9"), strict=True)) | FAILED
+COLOURS = {Status.CONVERGED: "0.85"} | dict(zip(_WITHOUT, ("0.4", "#56b4e9", "#f0e442"), strict=True)) | FAILED
 ITERATIONS = (1, 5, 10, 15, 20, 30, 50, 100, 200, 500)
 
 
@@ -118,7 +118,7 @@ def legend(panels, images, present: np.ndarray) -> None:
     figure.legend(handles=handles, loc="outside lower left", ncols=2, fontsize=7)
 
 
-SHARES = "n/a", "lift-off", "converged", "above rtol", "failed"
+SHARES = "n/a", "lift-off", "outside law", "converged", "above rtol", "failed"
 NUMBERS = "error 50% | .1e; error 99.9% | .1e; error max | .1e; iterations | .0f; max | .0f"
 
 
@@ -131,7 +131,8 @@ NUMBERS = "error 50% | .1e; error 99.9% | .1e; error max | .1e; iterations | .0f
 )
 def shares(*studies: xr.Dataset) -> list[tuple]:
     """Random cases far beyond any scene: share of the cases that have no solution (the thin layer does not apply, the
-    punch lifts off), shares of the others, error over rtol and iterations of the converged ones.
+    punch lifts off, the law of asperities on the layer has ended), shares of the others, error over rtol and iterations
+    of the converged ones.
 
     A row for each base and law. Of the cases that have a solution it tells how many converged, missed rtol, failed
     otherwise.

@@ -12,11 +12,11 @@ from solver.status import NO_SOLUTION
 
 from ..arrays import xarray_later as xr
 from ..arrays.labelled import Labelled, as_xarray
-from ..inputs.asperities import USED, used
 from ..inputs.definition import Definition
 from ..inputs.grid import along, unflatten
 from ..inputs.identity import law_versions
 from ..inputs.laws import COMMENT
+from ..inputs.punch.asperities import USED, used
 from ..inputs.scene.scene import bare_variable
 from ..inputs.vocabulary import (
     BY_INPUT,

@@ -18,7 +18,7 @@ from solver.problem import feels
 from solver.scaling import law_of, of_one_law
 
 from ..arrays import xarray_later as xr
-from ..inputs.asperities import USED
+from ..inputs.punch.asperities import USED
 from ..inputs.scene.scales import without_unit
 from ..inputs.vocabulary import CONTROLS, NUMERICS, ROWS, VOCABULARY, attributes, parameters_of
 from ..rules import rule

@@ -1,21 +1,29 @@
 """Study files: TOML text -> a checked, frozen Definition with the digest of what determines its numbers."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..specimen.foreign import plain
 from ..terminal import counted, shown
-from .grid import Grid
+from .grid import Grid, along
+from .punch.asperities import many_bodies
 from .request import MOST_MESSAGES
-from .vocabulary import finite, names
+from .vocabulary import among, finite, names
 
 POINTS = 33  # of a profile, unless the study says it
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a mistake, so `run` wants --yes
 MOST_VALUES = 5_000_000_000  # 40 GB: no larger grid is allowed, it can be cut into several studies
 DTYPES = ("float64", "float32")
 PER_CASE = 16  # numbers of a case besides the profiles, roughly
+#: Cases in a block: ordinary ones, those that take some milliseconds each, those that may take ten seconds each.
+#: A block is some seconds of work. A run that is killed loses the blocks in work.
+USUAL, SLOW, SLOWEST = 8000, 1000, 100
+#: On the exact layer a case with a larger n, or a smaller rtol, may need a mesh that no other case can use.
+_STIFF, _FINE = 1e3, 1e-9
+_MANY_NODES = 96  # the most that the solver begins with by itself; with more a case takes some milliseconds
 
 
 class StudyError(ValueError):
@@ -131,3 +139,13 @@ def profile_points(x, errors: list[str]) -> np.ndarray:
     if len(radii) < 2 or radii[0] != 0 or radii[-1] != 1 or (np.diff(radii) <= 0).any():
         errors.append(f"x = {shown(points)}: a list must increase from 0 to 1, both included")
     return radii
+
+
+def usual_block(grid: Grid) -> int:
+    """Number of cases in a block, unless the study says it. The slowest kind of case in the grid decides."""
+    n, rtol, nodes = (along(grid, name) for name in ("n", "rtol", "nodes"))
+    layered = among(("base", ("layered", "auto")), partial(along, grid)).any()
+    approximated = (along(grid, "scheme") == "picard").any()
+    if layered and (approximated or (n > _STIFF).any() or (rtol < _FINE).any()):
+        return SLOWEST
+    return SLOW if approximated or (nodes > _MANY_NODES).any() or many_bodies(grid) else USUAL

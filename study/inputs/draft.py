@@ -5,7 +5,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from . import asperities
 from .checks import (
     dimensions_that_differ,
     equal_cases,
@@ -19,7 +18,7 @@ from .checks import (
 )
 from .grid import Grid, as_array, equal_values
 from .laws import fitted, law_names, wants_a_fit
-from .punch import shapes, sticking
+from .punch import asperities, shapes, sticking
 from .request import Input, Request
 from .sample import sampled, values_of_axis
 from .scene.names import INFINITE

@@ -3,26 +3,14 @@
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from functools import partial
 from itertools import product
 
 import numpy as np
 
-from solver.problem import feels
-
 from ..terminal import shown
-from .vocabulary import VOCABULARY, Parameter, among, are_within, check, finite
+from .vocabulary import VOCABULARY, Parameter, are_within, check, finite
 
 LONGEST_AXIS = 1_000_000
-#: Cases in a block: ordinary ones, those that take some milliseconds each, those that may take ten seconds each.
-#: A block is some seconds of work. A run that is killed loses the blocks in work.
-USUAL, SLOW, SLOWEST = 8000, 1000, 100
-#: On the exact layer a case with a larger n, or a smaller rtol, may need a mesh that no other case can use.
-_STIFF, _FINE = 1e3, 1e-9
-_MANY_NODES = 96  # the most that the solver begins with by itself; with more a case takes some milliseconds
-#: What the law of asperities that feel the body depends on, which takes some 10 ms for each. Where a body and a pitch
-#: have at least so many cases that is little.
-_OF_BODIES, _FEW_CASES = ("h", "n", "m", "nu1", "nu2", "bonding", "Nbar"), 20
 SHOWN = 3  # wrong values of one parameter that get a message each; the others are counted
 
 
@@ -65,11 +53,6 @@ def along(grid: Grid, name: str) -> np.ndarray:
     if len(dims) > 1:
         array = array.transpose(sorted(range(len(dims)), key=lambda i: list(grid.sizes).index(dims[i])))
     return array.reshape([size if dim in dims else 1 for dim, size in grid.sizes.items()])
-
-
-def felt(grid: Grid) -> np.ndarray:
-    """bool, along the dimensions of the grid: the cases whose asperities feel what lies below the surface."""
-    return feels(*(along(grid, name) for name in ("base", "micro", "asperities_on", "Nbar", "h")))
 
 
 def columns(grid: Grid, index: np.ndarray) -> dict[str, np.ndarray]:
@@ -119,25 +102,6 @@ def box(shape: tuple[int, ...], most: int) -> list[int]:
             break
         inner *= shape[axis]
     return lengths
-
-
-def usual_block(grid: Grid) -> int:
-    """Number of cases in a block, unless the study says it. The slowest kind of case in the grid decides."""
-    n, rtol, nodes = (along(grid, name) for name in ("n", "rtol", "nodes"))
-    layered = among(("base", ("layered", "auto")), partial(along, grid)).any()
-    approximated = (along(grid, "scheme") == "picard").any()
-    if layered and (approximated or (n > _STIFF).any() or (rtol < _FINE).any()):
-        return SLOWEST
-    return SLOW if approximated or (nodes > _MANY_NODES).any() or many_bodies(grid) else USUAL
-
-
-def many_bodies(grid: Grid) -> bool:
-    """Whether asperities feel bodies, or stand at pitches, of which there are more than a few for each case."""
-    if not felt(grid).any():
-        return False
-    names = [name for name in grid.values if name in _OF_BODIES or name.startswith("layers.")]
-    dims = {dim for name in names for dim in grid.values[name][0]}
-    return _FEW_CASES * math.prod(grid.sizes[dim] for dim in dims) > grid.size > _FEW_CASES
 
 
 def unflatten(grid: Grid, flat: np.ndarray) -> np.ndarray:

@@ -21,8 +21,8 @@ from solver.numerics.profiles import identity as profile_identity
 from solver.parameters import uses
 from solver.shapes.table import identity as shape_identity
 
-from .asperities import stand_apart
 from .grid import Grid, along
+from .punch.asperities import stand_apart
 from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY, parameters_of_layers
 
 #: Strengths, with which answers are compared: no case depends on them, but the flags in a results file do.

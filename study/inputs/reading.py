@@ -17,13 +17,11 @@ from typing import Any
 from solver.numerics.userfile import NoFile, opened
 
 from ..terminal import on_one_line, shown
-from . import asperities
-from .definition import LARGE, MOST_VALUES, Definition, StudyError, refusal, settings
+from .definition import LARGE, MOST_VALUES, Definition, StudyError, refusal, settings, usual_block
 from .draft import Draft
-from .grid import usual_block
 from .identity import digest_of, law_versions
 from .laws import results_of
-from .punch import sticking
+from .punch import asperities, sticking
 from .punch.stresses import none_in
 from .request import MOST_MESSAGES, Request
 from .scene.layers import axes_in, in_layers

@@ -20,8 +20,8 @@ from ..files.examine import Condition, Identity, examine, stamp, statuses
 from ..files.parts_folder import DIVIDED, FIRST
 from ..files.results_file import write
 from ..files.seal import is_whole
-from ..inputs.definition import LARGE, Definition
-from ..inputs.grid import cut_out, usual_block, windows
+from ..inputs.definition import LARGE, Definition, usual_block
+from ..inputs.grid import cut_out, windows
 from ..inputs.vocabulary import NOT_RUN
 from .blocks import Store, count_statuses
 

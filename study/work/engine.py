@@ -28,8 +28,9 @@ from solver.compiled.library import core
 from solver.compiled.newton import BASES, TAKEN
 
 from ..data.dataset import failed_cases
-from ..inputs.definition import Definition
-from ..inputs.grid import USUAL, along, many_bodies, usual_block
+from ..inputs.definition import USUAL, Definition, usual_block
+from ..inputs.grid import along
+from ..inputs.punch.asperities import many_bodies
 from ..terminal import counted
 from . import cases
 from .cases import Failure, can_travel, guarded, parcel

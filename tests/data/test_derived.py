@@ -33,6 +33,7 @@ def made(**variables) -> xr.Dataset:
 
 
 EXACT = {"model_used": np.int8(Model.LAYERED), "model_error": 0.0}
+ON_HALF_SPACE = {"asperities_on": "half_space"}
 
 
 @pytest.mark.parametrize(
@@ -56,7 +57,9 @@ EXACT = {"model_used": np.int8(Model.LAYERED), "model_error": 0.0}
         ({"lam0": 0.2, "Ra": None}, 0),
         ({"a": 0.19, "h": 5.01e-4, "lam0": 1e-4}, 0),
         ({"a": 0.19, "h": 4.99e-4, "lam0": 1e-4}, 128),
-        ({"a": 0.19, "h": 4.99e-4, "lam0": 1e-4, "base": "auto", "model_used": np.int8(Model.LAYER_ALONE)}, 128),
+        ({"a": 0.19, "h": 4.99e-4, "lam0": 1e-4, "base": "auto", **ON_HALF_SPACE}, 128),
+        ({"a": 0.19, "h": 4.99e-4, "lam0": 1e-4, "base": "auto"}, 0),
+        ({"a": 0.19, "h": 4.99e-4, "lam0": 1e-4, "base": "auto", "micro": "power_law"}, 128),
         ({"a": 0.19, "h": 4.99e-4, "micro": "smooth"}, 0),
         ({"a": 0.19, "h": 4.99e-4, "lam0": 1e-4, "base": "half_space", "model_used": np.int8(Model.HALF_SPACE)}, 0),
         ({"lam0": 0.2, "Ra": 1e-9, "micro": "smooth"}, 0),
@@ -77,7 +80,9 @@ EXACT = {"model_used": np.int8(Model.LAYERED), "model_error": 0.0}
         ({"D": 1.1e-3, "p0": 0.051, "base": "half_space", "model_used": np.int8(Model.HALF_SPACE)}, 0),
         ({"n": 0.999}, 0),
         ({"base": "layered", "n": 1.0, "h": 0.03, **EXACT}, 0),
-        ({"base": "layered", "Nbar": 1.0, **EXACT}, 2 | 4 | 128),
+        ({"base": "layered", "Nbar": 1.0, **EXACT, **ON_HALF_SPACE}, 2 | 4 | 128),
+        ({"base": "layered", "Nbar": 1.0, **EXACT}, 2),
+        ({"lam0": 0.39, "Nbar": 0.9e4 * 0.4 / np.pi, "a": 0.19, "h": 0.1, "base": "layered", **EXACT}, 0),
         ({"base": "half_space", "h": 0.001, "n": 2.0, **EXACT}, 0),
         ({"base": "half_space", "h": None, "n": None, **EXACT}, 0),
         ({"micro": "smooth", "Nbar": 1.0}, 0),

@@ -76,7 +76,7 @@ def test_the_slowest_case_gives_the_usual_block(model, axes, size):
     """One is enough, wherever it stands: a block of thousands of its kind would take minutes."""
     fixed = {name: value for name, value in (SMOOTH | model).items() if name not in axes}
     tables = {"model": fixed, "axes": {"P": [1e-6, 2e-6]} | axes}
-    assert grid.usual_block(from_tables(tables, "s", "", "s").grid) == size
+    assert definition.usual_block(from_tables(tables, "s", "", "s").grid) == size
 
 
 def test_just_allowed_and_just_refused():

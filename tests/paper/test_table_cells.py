@@ -62,6 +62,7 @@ HEADS = {
         ("cases", "cases", "d"),
         ("n/a", "n/a", ".2%"),
         ("lift-off", "lift-off", ".2%"),
+        ("outside law", "outside law", ".2%"),
         ("converged", "converged", ".2%"),
         ("above rtol", "above rtol", ".2%"),
         ("failed", "failed", ".2%"),

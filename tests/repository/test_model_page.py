@@ -27,7 +27,7 @@ def rows(head: str, page: str = PAGE) -> list[list[str]]:
 
 
 def test_python_of_the_page_prints_what_stands_there(tmp_path):
-    assert len(pages.examples("docs/model.md")) == 9 and all(text for _, text in pages.examples("docs/model.md"))
+    assert len(pages.examples("docs/model.md")) == 10 and all(text for _, text in pages.examples("docs/model.md"))
     pages.check_examples("docs/model.md", tmp_path)
 
 

@@ -105,7 +105,7 @@ def test_a_layer_cut_very_near_its_surface(cut):
 def test_thin_layer_of_a_stack():
     """Its springs are the sum of those of the layers; the exact stack comes near it, as its model error says."""
     layers = [{"h": 4e-4, "n": 0.3, "bonding": "bonded"}, {"h": 6e-4, "n": 0.1, "bonding": {"cn": 1e-3, "ct": 0.0}}]
-    case = {"a": 0.1, "layers": layers, **ROUGH}
+    case = {"a": 0.1, "layers": layers, **ROUGH, "asperities_on": "half_space"}
     thin, exact = solve(Problem.of(base="thin_layer", **case)), solve(Problem.of(**case))
     assert thin.model_used == Model.THIN_STACK and thin.status == exact.status == Status.CONVERGED
     off = np.abs(thin.P / exact.P - 1)

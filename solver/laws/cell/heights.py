@@ -15,9 +15,9 @@ from .summits import at
 
 __all__ = ["angle", "means", "peak", "table"]
 
-#: Gauss points on each piece of the density, of spots and of filled cells. With them the means without a layer are
-#: those of :mod:`..spread` to 1e-9 (tests/laws/heights/test_heights_on_body.py).
-_SPOTS, _FILLED = 32, 16
+#: Gauss points on each of both parts of a piece of the density, of spots; and of filled cells. With them the means
+#: without a layer are those of :mod:`..spread` to 1e-9 (tests/laws/heights/test_heights_on_body.py).
+_SPOTS, _FILLED = 24, 16
 #: Steps of θ² at an approach: Newton's, or to the middle of what encloses it; a relative change below _LAST is the
 #: last: the next would be rounding. θ² of a filled cell.
 _STEPS, _LAST, _FULL = 30, 1e-10, (np.pi / 2) ** 2
@@ -91,13 +91,16 @@ def means(lookup, edges, density, q, delta, sigma):
     (G, P, B, F), _ = lookup.at(np.ones(1))
     filled, touching = np.exp(G) - 2 * k * B, delta + 2 * k * (1 + lookup.at(np.zeros(1))[0][2])
     theta = angle(delta - sigma * edges, k, lookup.at)  # of each edge of a piece
-    low, width = theta[:, :, 1:], theta[:, :, :-1] - theta[:, :, 1:]
+    # in two parts, for beyond the end of the series the summits are others
+    low, high = theta[:, :, 1:], theta[:, :, :-1]
+    between = np.clip(np.arcsin(lookup.end), low, high)
     tau, weight = gauss_legendre(_SPOTS)
-    of_spots = low + width * tau
+    of_spots = np.concatenate([low + (between - low) * tau, between + (high - between) * tau], axis=3)
+    weight = np.concatenate([(between - low) * weight, (high - between) * weight], axis=3)
     values, slopes = lookup.at(np.sin(of_spots))
     at_spots = spots(of_spots, k, values, slopes)
     x = (delta - at_spots.a) / sigma
-    w = weight * width * at_spots.da / sigma * density(x)
+    w = weight * at_spots.da / sigma * density(x)
 
     tau, weight = gauss_legendre(_FILLED)
     full = np.clip((delta - filled) / sigma, edges[:, :, :-1], edges[:, :, 1:])
@@ -173,7 +176,7 @@ def table(lookup, density, at_x, sigma, relief, lam):
     density : edges (1, J + 1) of its pieces, and how many times as many knots there are; at_x : x -> density
     """
     (edges, fine), y = density, spread.knots(density[1])
-    count = max(1, _AT_A_TIME // (_SPOTS * (edges.shape[1] - 1)))
+    count = max(1, _AT_A_TIME // (2 * _SPOTS * (edges.shape[1] - 1)))
 
     def of(q, delta):
         columns = [slice(first, first + count) for first in range(0, q.shape[1], count)]
@@ -205,8 +208,9 @@ def peak(rows, q, delta):
     """p_max/p* (B, m) under the highest summit, of summits of the rows (B, K), at q and δ (B, m)."""
     k = (2 / 3) * q
 
-    def series(c):
-        return tuple(zip(*(at(rows, which, c) for which in (0, 1, 3, 4)), strict=True))
+    def series(c):  # the approach has no P and no F
+        (G, dG), (B, dB), none = at(rows, 0, c), at(rows, 3, c), np.zeros_like(c)
+        return (G, none, B, none), (dG, none, dB, none)
 
     theta = angle(delta, k, series)
     (G, _), (B, _) = (at(rows, which, np.ones_like(q)) for which in (0, 3))

@@ -25,6 +25,8 @@ __all__ = [
 _AT = {name: i for i, name in enumerate(NUMBERS)}
 #: Newton steps from the guess, which is right to 1e-2 or better: the third is below rounding.
 _STEPS = 3
+#: Numbers in a row of no cases: as many as may be.
+_ANY = 64
 #: gamma and beta of g ~ gamma q^beta: few spots are lone ones, with q = (2/pi) y³ and g = y².
 EDGE = (np.pi / 2) ** (2 / 3), 2 / 3
 
@@ -36,13 +38,17 @@ def rows_of(lattice, kernel, m, h, Nbar):
     """
     with np.errstate(all="ignore"):
         members, index = families(lattice, 1 / (h * np.sqrt(Nbar)), kernel, m)
-    return stacked(members)[index]
+    return stacked(members, index)
 
 
-def stacked(members):
-    """The rows of families or summits, (G, K), as long as the longest."""
+def stacked(members, index):
+    """The rows (B, K) of families or summits, as long as the longest, by the index (B,) of each case; of one family a
+    view of one row."""
+    if not members:
+        return np.zeros((0, _ANY))
     terms = max(member.terms for member in members)
-    return np.array([member.row(terms) for member in members])
+    rows = np.array([member.row(terms) for member in members])
+    return rows[index] if len(members) > 1 else np.broadcast_to(rows, (len(index), rows.shape[1]))
 
 
 def of_spots(name, lattice, scales, **rest):

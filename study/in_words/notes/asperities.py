@@ -7,11 +7,12 @@ import numpy as np
 from solver import Status
 from solver.laws.cell.family import MOST, REACH
 from solver.models.cells import last_fraction
+from solver.models.range_of_law import without_family
 
 from ...again import Again
 from ...arrays import xarray_later as xr
-from ...inputs.asperities import USED
 from ...inputs.definition import StudyError
+from ...inputs.punch.asperities import USED
 from ...rules.rule import of_cases
 from ...terminal import rounded
 
@@ -48,13 +49,14 @@ def ended(contacts: xr.Dataset) -> list[str]:
         problem = Again.of(contacts, "summary").problem
     except StudyError:  # of a mean, say
         return []
-    last = np.full(outside.shape, np.nan)
-    last[outside] = last_fraction(problem.take(outside.ravel()))
-    early = outside & (last > 0) & (last < _EARLY * REACH)
+    index, last = np.flatnonzero(outside), np.full(outside.shape, np.nan)
+    part, far = problem.take(index), np.zeros_like(outside)
+    last.flat[index], far.flat[index] = last_fraction(part), without_family(part)
+    early = outside & ~far & (last < _EARLY * REACH)
     said = []
     if early.any():
         text = f"On a layer this soft the disc cell goes wrong where spots cover more than {rounded(last[early].min())}"
         said.append(f'{of_cases(early)}{text} of the area: micro = "hex_lattice" goes on to {REACH:g}.')
-    for where, text in ((outside & ~(last > 0), _FAR), (outside & ~early & (last > 0), _MERGED)):
+    for where, text in ((far, _FAR), (outside & ~far & ~early, _MERGED)):
         said += [f"{of_cases(where)}{text}; {_HALF_SPACE}"] * bool(where.any())
     return said

@@ -217,3 +217,18 @@ def test_a_pitch_is_rounded_below_what_matters():
     assert_allclose(family.rounded(pitch), pitch, rtol=1e-13)
     assert len({*family.rounded(np.pi * (1 + np.arange(8) * 2e-16)).tolist()}) == 1
     assert all(a < b for a, b in pairwise(family.rounded(pitch)))
+
+
+@pytest.mark.parametrize("name", [*LATTICES, "elastic_plastic", "normal_heights"])
+def test_a_batch_of_no_cases(name):
+    """Also one whose cases have all been taken away."""
+    one = np.ones(1)
+    numbers = {"hardness": one, "yield_strength": one / 2.84, "nu": 0.3 * one, "sigma": one, "cut": 4 * one}
+    for size in (0, 1):
+        values = {key: numbers.get(key, one)[:size] for key in LAWS[name].arguments}
+        few = (v[:size] for v in (3 * one, 0.3 * one, 0.3 * one, one > 0))
+        bound = LAWS[name].on_body(TwoLayers(*few), 0 * one[:size], one[:size], one[:size], **values)
+        bound = bound.take(np.zeros(0, dtype=int))
+        y = np.zeros((0, 5))
+        assert bound.evaluate(y).q.shape == bound.guess(y).shape == bound.peak(y, y).shape == (0, 5)
+        assert bound.area(y, y).shape == (0, 5) and law.end(bound).shape == (0,)

@@ -20,6 +20,8 @@ from study.rules.rule import RULES, validity_of
 
 BALL = {"R": "5 mm", "punch": "steel 52100", "P": "5 N", "Ra": "2 um", "bonding": "bonded"}
 FILM = BALL | {"layer": "PTFE", "h": "10 nm", "body": "steel 52100", "Nbar": "0.1 1/um^2"}
+FILM |= {"asperities_on": "half_space"}
+SPOTS = ("Nbar", "Ra", "asperities_on")
 LINING = FILM | {"h": "0.2 mm"}
 SIZE = 300
 
@@ -75,8 +77,9 @@ ORDINARY = {
     "lining": LINING,
     "thin layer": FILM | {"base": "thin_layer", "bonding": "frictionless"},
     "hard film": FILM | {"layer": "DLC a-C:H"},
-    "smooth film": {name: FILM[name] for name in FILM if name not in ("Nbar", "Ra")} | {"micro": "smooth"},
+    "smooth film": {name: FILM[name] for name in FILM if name not in SPOTS} | {"micro": "smooth"},
     "half-space": {"R": "5 mm", "E2": "1 GPa", "P": "5 N", "Nbar": "0.1 1/um^2", "Ra": "2 um", "base": "half_space"},
+    "of no law": FILM | {"asperities_on": "auto"},  # a pitch of more than 300 h
     "one of three": LINING | {"h": ["10 nm", "0.2 mm", "0.3 mm"]},
     "without units": {"P": 1e-5, "h": 2e-6, "n": 0.003, "Nbar": 2.5e6, "Ra": 4e-4},
 }

@@ -11,7 +11,7 @@ import study
 from study.rules.assumptions import HARDEST, SEEN
 from study.rules.rule import RULES
 
-SPARSE = {"P": 1e-5, "h": 0.002, "n": 2.0, "Ra": 0.004, "x": 2}
+SPARSE = {"P": 1e-5, "h": 0.002, "n": 2.0, "Ra": 0.004, "x": 2, "asperities_on": "half_space"}
 MASKS = ("spot_not_small_against_h", "pitch_not_small_against_h")
 
 
@@ -62,7 +62,7 @@ def test_far_below_and_beyond_what_was_measured():
 def test_a_pitch_of_cases_that_keep_to_the_assumption_does_not_count():
     """Sparse sharp asperities have spots that are small against the layer, whatever their pitch."""
     rows = [{"Nbar": 1 / (0.5 * 0.002) ** 2, "Ra": 0.004}, {"Nbar": 1 / (4 * 0.002) ** 2, "Ra": 1e-7}]
-    found = study.solve(cases=rows, P=1e-5, h=0.002, n=2.0, x=2)
+    found = study.solve(cases=rows, P=1e-5, h=0.002, n=2.0, x=2, asperities_on="half_space")
     assert (found.validity & 4).values.tolist() == [4, 0]
     (doubt,) = (text for text in study.in_words.doubts(found) if RULES[MASKS[0]].sentence in text)
     assert doubt.startswith("1 of 2 cases: ") and "Here the pitch 1/sqrt(Nbar) is 0.5 h" in doubt

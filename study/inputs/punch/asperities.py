@@ -1,5 +1,6 @@
 """What the asperities of a study press on: the coated body itself, or a half-space of the layer's material."""
 
+import math
 from functools import partial
 from typing import Any
 
@@ -8,16 +9,34 @@ import numpy as np
 from solver.laws import LAWS
 from solver.laws.own_table import PREFIX
 from solver.parameters import one_of
-from solver.problem import FELT, can_feel, far_apart
+from solver.problem import FELT, can_feel, far_apart, feels
 
-from ..terminal import shown
-from .grid import Grid, along, felt
-from .vocabulary import cases_with
+from ...terminal import shown
+from ..grid import Grid, along
+from ..vocabulary import cases_with
 
 #: What asperities have pressed on, value of `asperities_used` -> its name.
 USED = ("none", "half_space", "layer")
 #: Bases whose `model_error` is that of the exact layer, though asperities on them do not feel it.
 _THIN = ("thin_layer", "thin_stack")
+
+#: What the law of asperities that feel the body depends on, which takes some 10 ms for each. Where a body and a pitch
+#: have at least so many cases that is little.
+_OF_BODIES, _FEW_CASES = ("h", "n", "m", "nu1", "nu2", "bonding", "Nbar"), 20
+
+
+def felt(grid: Grid) -> np.ndarray:
+    """bool, along the dimensions of the grid: the cases whose asperities feel what lies below the surface."""
+    return feels(*(along(grid, name) for name in ("base", "micro", "asperities_on", "Nbar", "h")))
+
+
+def many_bodies(grid: Grid) -> bool:
+    """Whether asperities feel bodies, or stand at pitches, of which there are more than a few for each case."""
+    if not felt(grid).any():
+        return False
+    names = [name for name in grid.values if name in _OF_BODIES or name.startswith("layers.")]
+    dims = {dim for name in names for dim in grid.values[name][0]}
+    return _FEW_CASES * math.prod(grid.sizes[dim] for dim in dims) > grid.size > _FEW_CASES
 
 
 def is_said(grid: Grid) -> bool:

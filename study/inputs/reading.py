@@ -104,7 +104,8 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
-    micro, some_feel = grid.values["micro"][1] if "micro" in grid.values else (), not errors and bool(asperities.felt(grid).any())
+    micro = grid.values["micro"][1] if "micro" in grid.values else ()
+    some_feel = not errors and bool(asperities.felt(grid).any())
     results = results_of(micro, "w_adhesion" in grid.values, some_feel)
     stresses += names("spot_stress") if stresses and some_feel else ()
     definition = Definition(

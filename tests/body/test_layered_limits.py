@@ -60,7 +60,7 @@ def test_no_layer(micro, nu):
 def test_thin_layer_at_its_rate(micro, bonding):
     """D at a given load: third order in h without friction, where L has no term in u², second order when bonded."""
     h = HERTZ_RADIUS * 2.0 ** -np.arange(5, 9)
-    case = {"P": LOAD, "h": h, "bonding": bonding, "micro": micro, **FIXED}
+    case = {"P": LOAD, "h": h, "bonding": bonding, "micro": micro, "asperities_on": "half_space", **FIXED}
     layered, thin = one(base="layered", **case), one(base="thin_layer", **case)
     for name in ("D",) if micro == "smooth" else ("D", "p0"):
         error = np.abs(getattr(thin, name) / getattr(layered, name) - 1)
@@ -101,7 +101,7 @@ def test_substrate_at_first_order(n, bonding, nu1, nu2):
 def test_incompressible_film_at_third_order(micro):
     """ν = 1/2, bonded: L = n + (2/3)(1 - n²)u³, so D, p(0) differ from those of the substrate by h³."""
     n, h = 0.5, HERTZ_RADIUS * 2.0 ** -np.arange(4, 8)
-    rough = {"micro": micro, "P": LOAD, **FIXED}
+    rough = {"micro": micro, "P": LOAD, "asperities_on": "half_space", **FIXED}
     film = one(h=h, n=n, nu1=0.5, nu2=0.5, bonding="bonded", base="layered", **rough)
     # asperities of the substrate's modulus that yield as those of the film
     softer = {"B": MAIN["B"] * n ** -MAIN["beta"]} if micro == "power_law" else {}

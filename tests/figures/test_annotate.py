@@ -65,7 +65,7 @@ def test_each_assumption_has_its_words_and_its_grey(mask):
     axes = Figure().subplots()
     words = "layer_not_thin few_spots spot_not_small_against_h n_not_below_one spots_merging strain_not_small"
     words += " asperity_strain_not_small pitch_not_small_against_h wide_in_cup body_yields asperities_yield"
-    words += " slope_not_small not_jkr interior_tension"
+    words += " spot_lifts_off slope_not_small not_jkr interior_tension"
     attributes = {"flag_masks": np.array(list(WORDS)), "flag_meanings": words}
     flags = xr.DataArray([0, mask, 0], dims="P", attrs=attributes)
     shade_violations(axes, np.array([1e-5, 2e-5, 4e-5]), {"7": flags})

@@ -40,6 +40,7 @@ WORDS = {  # of the legend, by the masks of `validity`
     256: r"wide in a cup, $a > 0.2\,\min(|R_1|, |R_2|)$",
     512: "a body would yield",
     1024: "asperities would yield",
+    16384: "spots lift off",
     2048: r"slope $f'(a) > 0.4$",
     4096: "not JKR",
     8192: "tension inside",

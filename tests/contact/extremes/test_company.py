@@ -17,7 +17,11 @@ NUMBERS = (*JUDGED, "A0", "dP_dD", "p", "lam")
 def mixed(size, seed):
     """Cases of every base, law, bonding and tolerance in one batch, some of them invalid or outside the model."""
     rng = np.random.default_rng(seed)
-    case = random_cases(size, seed) | {"nu1": np.where(rng.random(size) < 0.1, 0.5, 0.3)}
+    case = (
+        random_cases(size, seed)
+        | {"asperities_on": np.full(size, "half_space")}
+        | {"nu1": np.where(rng.random(size) < 0.1, 0.5, 0.3)}
+    )
     case["nu2"] = rng.uniform(0.1, 0.5, size)
     case["h"] = np.maximum(case["h"], 5e-3)  # a thinner exact layer is a difference of large terms
     for name, choices in {

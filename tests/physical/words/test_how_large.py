@@ -29,8 +29,8 @@ def test_the_table_is_that_of_the_page():
     page = (ROOT / "docs/validate.md").read_text(encoding="utf-8")
     head, _, *rows = re.search(r"\| pitch/h \| 1 \|(?:.*\n)(?:\|.*\n)+", page)[0].splitlines()
     cells = [[float(cell.strip(" %")) for cell in row.split("|")[2:-1]] for row in (head, *rows)]
-    assert dict(zip(cells[0], zip(*cells[1:], strict=True), strict=True)) == SEEN
-    assert f"four layers, n = 0.1 to {HARDEST}" in page
+    assert dict(zip(cells[0], zip(*cells[1:3], strict=True), strict=True)) == SEEN
+    assert f"5 layers, n = 0.2 to {HARDEST}" in page
 
 
 @pytest.mark.parametrize("pitch", [1.5, 2.5, 3.0, 5.0])
@@ -46,7 +46,7 @@ def test_the_error_comes_with_its_size(pitch):
         assert named == pytest.approx(pitch, rel=0.05)
         for i, error in enumerate((of_A, of_p_max)):
             assert 0.95 * SEEN[below][i] <= error <= 1.05 * SEEN[above][i]
-        assert sentence.endswith(" at worst.") and "docs/validate.md (n from 0.1 to 5)" in sentence
+        assert sentence.endswith(" at worst.") and "docs/validate.md (n from 0.2 to 20)" in sentence
 
 
 def test_far_below_and_beyond_what_was_measured():
@@ -54,9 +54,9 @@ def test_far_below_and_beyond_what_was_measured():
     assert near.endswith(
         " Here the pitch 1/sqrt(Nbar) is 0.5 h: up to h nothing of it was seen in the test cases of docs/validate.md."
     )
-    for sentence in said(at(12.0)):
-        assert "is 12 h, more than in the test cases" in sentence and "at 6 h missed A[p] by about 51 %" in sentence
-    assert all(sentence.endswith("at worst; a harder layer errs more.") for sentence in said(at(3.0, n=20.0)))
+    for sentence in said(at(24.0)):
+        assert "is 24 h, more than in the test cases" in sentence and "at 16 h missed A[p] by about 89 %" in sentence
+    assert all(sentence.endswith("at worst; a harder layer errs more.") for sentence in said(at(3.0, n=50.0)))
 
 
 def test_a_pitch_of_cases_that_keep_to_the_assumption_does_not_count():

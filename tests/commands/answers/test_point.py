@@ -134,7 +134,8 @@ def test_what_is_far_outside_is_said_before_it_is_solved(capsys, monkeypatch):
 def test_run_and_check_say_what_is_far_outside(tmp_path, capsys):
     """Before anything is computed."""
     text = '[model]\nR = "5 mm"\nlayer = "PTFE"\nh = "10 nm"\nbody = "steel 52100"\nbonding = "bonded"\n'
-    text += 'Nbar = "0.1 1/um^2"\nRa = "2 um"\nasperities_on = "half_space"\n[axes]\nP = ["1 N", "5 N"]\n[output]\nspreads = false\n'
+    text += 'Nbar = "0.1 1/um^2"\nRa = "2 um"\nasperities_on = "half_space"\n'
+    text += '[axes]\nP = ["1 N", "5 N"]\n[output]\nspreads = false\n'
     (tmp_path / "film.toml").write_text(text, encoding="utf-8")
     file, said = str(tmp_path / "film.toml"), "film: beware: at least half of these contacts are far outside"
     assert main(["check", file]) == 0 and said in capsys.readouterr().out

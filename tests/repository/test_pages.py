@@ -40,7 +40,7 @@ def test_the_page_of_speeds_is_that_of_its_command():
 
 
 def test_the_page_of_resolved_spheres_is_that_of_its_numbers():
-    """What `make validate` has solved, which takes hours, is in docs/validate.nc; the page is written of it anew."""
+    """What `make validate` has solved, which takes minutes, is in docs/validate.nc; the page is written of it anew."""
     with xr.open_datatree(ROOT / "docs/validate.nc") as tree:
         written = resolved({name: tree[name].to_dataset().load() for name in tree.children})
     assert pages.same(written.split(), TEXT["docs/validate.md"].split())

@@ -21,7 +21,7 @@ from ..scaling import dimensionless, law_of, of_one_law
 #: a thin layer is left as it is.
 _EXACT = ("layered", "stack")
 #: The mean over the angle errs by this part, times 2 λ to a power, in A, λ or p_max of resolved cells
-#: (tests/models/test_cells.py): of a square lattice, and of a hexagonal one, whose waves the disc cell has.
+#: (tests/models/test_errors_on_layers.py): of a square lattice, and of a hexagonal one, whose waves the disc cell has.
 _SQUARE, _HEX = (0.03, 3.5), (1e-3, 4.0)
 _ANGULAR = {"square_lattice": _SQUARE}
 #: The law that stands for one without a body of its own, as the power law is fitted to it, and for those that have no

@@ -50,7 +50,8 @@ CONVERGING = [file for file in STUDIES if file.stem != "picard_domain"]
 def test_every_study_runs_and_converges(results, file):
     found = opened(results / f"{file.stem}.nc")
     refused = (found["status"] == 4) & (found["base"] == "thin_layer")
-    assert ((found["status"] == 0) | refused).all()
+    beyond = (found["status"] == 10) & (found["base"] == "layered")  # the law of asperities that feel the layer
+    assert ((found["status"] == 0) | refused | beyond).all()
     assert bool(refused.any()) == file.stem.startswith("validity")
     assert float(found["error"].max()) <= float(found["rtol"])
 
@@ -209,7 +210,7 @@ def test_captions_of_all_figures_that_have_results(results, tmp_path, monkeypatc
     assert (float(found["P"].min()), float(found["P"].max())) == pytest.approx((1e-14, 1e-3))
     (path,) = draw("captions", tmp_path, tmp_path)
     said = re.findall(r"^[*]{2}(\w+)\.", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
-    assert said == ["fig01", "fig02", "fig09", "fig09_lattice", "yielding"], "of what is there"
+    assert said == ["fig01", "fig02", "fig09", "fig09_lattice", "substrate", "yielding"], "of what is there"
 
 
 @pytest.mark.parametrize(

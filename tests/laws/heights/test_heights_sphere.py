@@ -43,7 +43,7 @@ def test_spheres_of_random_heights():
 def test_periodic_cells():
     """Two draws on a coarse mesh: the law is 0.04 A* too deep, and has λ to 5 %. Equal heights are 0.15 A* deeper."""
     law = LAWS["normal_heights"].at(0.03, 1.0, **heights.ONES, sigma=0.3 / np.pi, cut=heights.CUT)
-    A, lam = np.mean([heights.cell(0.3, 0.03, draw, (124,))["meshes"][0] for draw in range(2)], axis=0)
+    A, lam = np.mean([heights.cell(0.3, 0.03, draw, meshes=(124,))["meshes"][0] for draw in range(2)], axis=0)
     assert 0.02 < np.pi * (law.A - A) - heights.CUT * 0.3 < 0.06
     assert abs(law.lam / lam - 1) < 0.05
 

@@ -258,3 +258,8 @@ def test_curves_of_a_study_are_whole_or_not_there(monkeypatch, capsys):
     monkeypatch.setattr(PdfFile, "finalize", full)
     assert main(["plot", "line", "--run", "--x", "P", "--y", "a"]) == 1
     assert "No space left on device" in capsys.readouterr().err and not Path("figures").exists()
+
+
+def test_the_program_is_both_of_its_packages():
+    root = Path(study.__file__).parent
+    assert {*record.PACKAGES} == {root, root.parent / "solver"}

@@ -189,3 +189,10 @@ def test_options_that_mean_nothing_are_refused(file, option, message):
     """A part that is none computed nothing, without a word, and the names of statuses were tried by nobody."""
     with pytest.raises(study.StudyError, match=message):
         load(file).run(**option)
+
+
+def test_a_progress_that_is_none_is_refused_where_nothing_is_left_to_compute(file):
+    """Before anything is looked at: the same call means the same, whatever is on disk."""
+    load(file).run()
+    with pytest.raises(study.StudyError, match=r'progress = "yes": must be True, False or None'):
+        load(file).run(progress="yes")

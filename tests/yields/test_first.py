@@ -256,3 +256,12 @@ def test_asperities_are_as_weak_as_the_weaker_and_unknown_if_one_is():
     assert loads[0].P_Ya.item() == pytest.approx(loads[1].P_Ya.item(), rel=1e-9)
     unknown = next(name for name in study.materials.names() if np.isnan(study.materials.strength_of(name)))
     assert of_bodies("asperities", punch=unknown, body=hard.name, **rough).found_Ya.item() == 2
+
+
+def test_the_names_of_loads_say_which_body_yields():
+    body = study.first_yield(Y2=0.01, nu2=0.3, **BARE)
+    assert body.P_Y2.long_name == "load at which the body first yields"
+    asperities = of_bodies(
+        "asperities", punch="steel 52100", body="steel 316L", R="5 mm", base="half_space", Nbar="0.1 1/um^2", Ra="20 um"
+    )
+    assert asperities.P_Ya.long_name == "load at which the asperities first yield"

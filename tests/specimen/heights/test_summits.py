@@ -42,3 +42,12 @@ def test_gaps_are_no_area(method):
     assert_allclose(part.Nbar, whole.Nbar, rtol=0.05)
     assert_allclose(part.summits / whole.summits, 2 / 3, rtol=0.05)
     assert_allclose(part.Ra, whole.Ra, rtol=0.02)
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_summits_between_two_lags_need_both(first):
+    """Rows are 2/3 of a column apart: neighbours are 1.5 rows away, between lag 1, where every row of numbers has gaps
+    beside it, and lag 2, where it has none."""
+    z = np.cos(np.add.outer(np.arange(40.0), 2 * np.arange(40.0)) / 4)
+    z[first::2] = np.nan
+    assert summits.counted_summits(z, (1.0, 1.5)) is None

@@ -14,6 +14,7 @@ import subprocess
 import sys
 import sysconfig
 import threading
+from cProfile import Profile
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -69,18 +70,19 @@ class Trace:
 
     def __init__(self, folder: Path):
         self.inside, self.functions, self.tests = f"{folder}/", {}, {}
-        self._codes, self._processes = {}, False
+        self._profilers, self._processes = [], False
         sys.addaudithook(self._audit)
 
     def pytest_runtest_protocol(self, item, nextitem):
-        self._codes, self._processes = {}, False
-        threading.settrace(self._call)
-        sys.settrace(self._call)
+        self._profilers, self._processes = [], False
+        threading.setprofile(self._profile)
+        self._profile()
 
     def pytest_runtest_logfinish(self, nodeid, location):
-        sys.settrace(None)
-        threading.settrace(None)
-        places = [(code.co_filename, code.co_firstlineno) for code in list(self._codes.values())]
+        threading.setprofile(None)
+        sys.setprofile(None)
+        codes = {entry.code for profiler in self._profilers for entry in profiler.getstats()}
+        places = [(code.co_filename, code.co_firstlineno) for code in codes if not isinstance(code, str)]
         places = [(file.removeprefix(self.inside), line) for file, line in places if file.startswith(self.inside)]
         places = [place for place in places if not place[0].startswith(("tests/", "tools/"))]
         numbers = [self.functions.setdefault(place, len(self.functions)) for place in places]
@@ -90,8 +92,12 @@ class Trace:
         asking = {item.nodeid for item in items if "results" in getattr(item, "fixturenames", ())}
         self.tests |= {node: {"results": True} for node in asking}
 
-    def _call(self, frame, event, argument):
-        self._codes[id(frame.f_code)] = frame.f_code  # its own hash takes long
+    def _profile(self, *_):
+        """Profile the thread that calls, from now on: a profiler in C, which takes a fifth more where a trace in Python
+        takes several times as long."""
+        profiler = Profile(subcalls=False, builtins=False)
+        self._profilers.append(profiler)
+        profiler.enable()
 
     def _audit(self, event, arguments):
         self._processes |= event in BEGIN

@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 from conftest import opened
 from literature_page import page
+from matplotlib.figure import Figure
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
@@ -16,7 +17,7 @@ from solver import Problem, solve
 from solver.kernels.closed_form import layered_kernel
 from study.figures.registry import entry
 from study.studies.literature import compared, formulas
-from study.studies.literature.figures import SHOWN_AT, STYLES
+from study.studies.literature.figures import SHOWN_AT, STYLES, frame
 
 A = 0.01
 NU = (0.0, 0.3, 0.45, 0.5)
@@ -180,3 +181,11 @@ def test_what_is_decided_is_drawn_from_the_results(results):
 def test_one_colour_is_one_formula():
     colours = [colour for colour, _ in STYLES.values()]
     assert len(set(colours)) == len(colours) == 12
+
+
+def test_errors_are_drawn_in_percent():
+    axes = Figure().subplots()
+    axes.plot([1, 10], [1e-3, 1.0], label="formula")
+    frame(axes, "error of the load")
+    shown = axes.yaxis.get_major_formatter()
+    assert [shown(value, 0) for value in (1e-3, 0.05, 10.0)] == ["0.1 %", "5 %", "1000 %"]

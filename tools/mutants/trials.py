@@ -14,9 +14,9 @@ import subprocess
 import sys
 import sysconfig
 import threading
-from cProfile import Profile
 from collections import defaultdict
 from collections.abc import Iterator
+from cProfile import Profile
 from dataclasses import dataclass
 from pathlib import Path
 

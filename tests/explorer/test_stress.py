@@ -66,12 +66,13 @@ def contacts(many: int) -> list[dict]:
 
 
 def of_program(case: dict):
-    """The contact by `study.solve`."""
+    """The contact by `study.solve`, with asperities on a half-space, as the page has them."""
     given = {"a": case["value"], "m": case["m"], "nu2": case["nu2"], "x": 2}
     given |= {"micro": "disc_cell", "Nbar": 250_000, "Ra": 0.004} if case["rough"] else {"micro": "smooth"}
     if case["layered"]:
         given |= {name: case[name] for name in ("h", "n", "nu1")} | {"base": "layered"}
         given |= {"bonding": "bonded" if case["bonded"] else "frictionless"}
+        given |= {"asperities_on": "half_space"} if case["rough"] else {}
     else:
         given |= {"base": "half_space"}
     return study.solve(**given)

@@ -26,7 +26,7 @@ SIZE = {"half_space": 150, "thin_layer": 40, "layered": 8}
 CONVERGED = dict.fromkeys(ALL_KINDS, 0.999)
 NUMBERS = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "residual", "error", "p", "lam")
 WITH_NUMBERS = {Status.CONVERGED, Status.TOLERANCE_NOT_MET}
-NO_SOLUTION = {Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF}
+NO_SOLUTION = {Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF, Status.OUTSIDE_LAW}
 
 #: By law, a case of a sample with n above 1e3 that one rule for all panels of the convolution gets wrong.
 STIFF_FILMS = {"smooth": [286], "disc_cell": [36], "power_law": [3]}

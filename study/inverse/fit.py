@@ -27,7 +27,7 @@ from .fits.model import HERTZ, Model
 from .fits.parts import Part, fit_part, forget
 from .fits.points.region import inside, region
 from .fits.said import said
-from .fits.sticking.branch import planned
+from .fits.tables.branch import planned
 from .no_pull import joined, without
 
 #: Curves at a time, of what sticks too, and their points are filled up to a multiple of this.

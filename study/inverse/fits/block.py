@@ -16,9 +16,9 @@ from .points.parts import parts_of
 from .points.thinned import LONG, Thinned, thinned
 from .points.worth import worth_of
 from .starts import best_of, starts_of
-from .sticking.labels import Points
-from .sticking.ladder import Ladder
-from .tables import Table
+from .sticking_points import Points
+from .tables.ratio_table import Table
+from .tables.term_table import Ladder
 
 _ROUGHLY = (
     1e-4  # how sure a search from one of several starts is, some 0.03 of a spread; the best one goes on to the end

@@ -6,10 +6,10 @@ import numpy as np
 
 from ...inputs.punch.shapes import ANGLES
 from .model import HERTZ
-from .sticking.branch import Loads, branch
-from .sticking.labels import Points
-from .sticking.ladder import Ladder
-from .tables import STEP, WIDE, Places, Table
+from .sticking_points import Points
+from .tables.branch import Loads, branch
+from .tables.ratio_table import STEP, WIDE, Places, Table
+from .tables.term_table import Ladder
 
 _TILES = 4  # along ln u: from the largest depth down, more than _REACH
 _REACH = np.log(800.0)  # below 1/800 of twice the range of x the curve goes on as a power of x

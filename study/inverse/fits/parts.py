@@ -6,8 +6,8 @@ import numpy as np
 
 from .asked import Asked
 from .block import fit_block
-from .sticking.ladder import Ladder
-from .tables import Table
+from .tables.ratio_table import Table
+from .tables.term_table import Ladder
 
 #: Call -> its table. Several, for calls in several threads; worker processes end after a while, and their tables.
 _tables: dict[str, Table | Ladder] = {}

@@ -9,7 +9,7 @@ from study.inverse.fits.curve import Curve
 from study.inverse.fits.intervals import covariance_of
 from study.inverse.fits.least_squares import HUBER, Data, minimise, scale
 from study.inverse.fits.model import Model
-from study.inverse.fits.tables import Table
+from study.inverse.fits.tables.ratio_table import Table
 
 GEL = {"R": "5 um", "nu1": 0.49, "h": "1.5 um", "E2": "70 GPa", "nu2": 0.2, "bonding": "bonded", "micro": "smooth"}
 CURVES, POINTS, DEEP = 12, 120, 0.8e-6  # m

@@ -11,9 +11,9 @@ from numpy.testing import assert_allclose
 import study
 from study.inverse.fits.asked import asked
 from study.inverse.fits.curve import Curve
-from study.inverse.fits.sticking.branch import branch
-from study.inverse.fits.sticking.labels import Points
-from study.inverse.fits.sticking.ladder import Ladder
+from study.inverse.fits.sticking_points import Points
+from study.inverse.fits.tables.branch import branch
+from study.inverse.fits.tables.term_table import Ladder
 
 GEL = {"R": "5 um", "punch": "rigid", "nu1": 0.45, "E2": "20 kPa", "nu2": 0.45, "h": "3 um", "bonding": "bonded"}
 GEL |= {"micro": "smooth"}

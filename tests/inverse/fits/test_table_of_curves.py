@@ -5,7 +5,7 @@ import pytest
 
 from study.inputs.reading import from_call
 from study.inverse.fits.model import HERTZ, Model
-from study.inverse.fits.tables import STEP, WIDE, Places, Table
+from study.inverse.fits.tables.ratio_table import STEP, WIDE, Places, Table
 
 GEL = {"R": "5 um", "nu1": 0.45, "h": "1.5 um", "E2": "1 MPa", "nu2": 0.3, "bonding": "bonded", "E1": "1 MPa"}
 ROUGH = {"R": "50 um", "micro": "disc_cell", "Nbar": "1 1/um^2", "Ra": "1 um"}

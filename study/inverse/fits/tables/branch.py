@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..model import Model
-from .ladder import LENGTH, STEP, Ladder
+from .term_table import LENGTH, STEP, Ladder
 
 _RAMP, _LEAST_RAMP = 0.25, 0.01
 _NEWTON, _TURN = 5, 12  # steps of the searches for a depth and for the turn

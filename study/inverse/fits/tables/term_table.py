@@ -8,8 +8,8 @@ coordinates of unknown inputs it has Chebyshev points.
 import numpy as np
 
 from ..model import Model, is_ratio
-from ..tables import WIDE, Chebyshev, weights_of, width
-from .parts import Parts, is_modulus
+from .ratio_table import WIDE, Chebyshev, weights_of, width
+from .terms import Parts, is_modulus
 
 _LATTICE = 16
 STEP = WIDE / _LATTICE

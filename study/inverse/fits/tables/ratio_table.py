@@ -7,7 +7,7 @@ _LATTICE points, between which a cubic is drawn; along the others it has Chebysh
 
 import numpy as np
 
-from .model import HERTZ, Model, is_ratio
+from ..model import HERTZ, Model, is_ratio
 
 WIDE = np.log(16.0)  # of a tile, of a logarithm; of a Poisson ratio:
 _WIDE_RATIO = 0.25

@@ -17,8 +17,8 @@ from .points.thinned import LONG, Thinned, thinned
 from .points.worth import worth_of
 from .starts import best_of, starts_of
 from .sticking_points import Points
-from .tables.ratio_table import Table
-from .tables.term_table import Ladder
+from .tables.ratio_table import RatioTable
+from .tables.term_table import TermTable
 
 _ROUGHLY = (
     1e-4  # how sure a search from one of several starts is, some 0.03 of a spread; the best one goes on to the end
@@ -54,7 +54,7 @@ class _Posed(NamedTuple):
 
 
 def fit_block(
-    asked: Asked, table: Table | Ladder, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
+    asked: Asked, table: RatioTable | TermTable, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
 ) -> dict[str, Any]:
     """Fit curves (B, n), NaN where there is no point. Every curve has more points than unknowns.
 
@@ -104,7 +104,7 @@ def fit_block(
     return numbers | {"fit": np.where(there, best.model * curve.high[:, None], np.nan)}
 
 
-def _posed(asked: Asked, table: Table | Ladder, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None) -> _Posed:
+def _posed(asked: Asked, table: RatioTable | TermTable, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None) -> _Posed:
     model, there = asked.model, np.isfinite(x) & np.isfinite(y)
     top = np.where(there, y, -np.inf).max(axis=1) - np.where(there, y, np.inf).min(axis=1)
     largest, least = np.where(there, x, -np.inf).max(axis=1), np.where(there, x, np.inf).min(axis=1)

@@ -8,8 +8,8 @@ from ...inputs.punch.shapes import ANGLES
 from .model import HERTZ
 from .sticking_points import Points
 from .tables.branch import Loads, branch
-from .tables.ratio_table import STEP, WIDE, Places, Table
-from .tables.term_table import Ladder
+from .tables.ratio_table import STEP, WIDE, Places, RatioTable
+from .tables.term_table import TermTable
 
 _TILES = 4  # along ln u: from the largest depth down, more than _REACH
 _REACH = np.log(800.0)  # below 1/800 of twice the range of x the curve goes on as a power of x
@@ -27,7 +27,7 @@ class Curve:
     ends : whether retractions have no load beyond the end of the branch; if not, a ramp tells a search where to go
     """
 
-    table: Table | Ladder
+    table: RatioTable | TermTable
     x: np.ndarray
     wide: np.ndarray
     high: np.ndarray
@@ -74,7 +74,7 @@ class Curve:
         The third value has its derivatives by the inputs `moved` of the model, (moved, B, n), if `moved` is true.
         """
         model, values = self.table.model, self.values(p)
-        if isinstance(self.table, Ladder):
+        if isinstance(self.table, TermTable):
             return self._sticking(self.table, p, values, moved)
         depth = self.x - (p[:, [self.names.index("D0")]] * self.wide[:, None] if "D0" in self.shifts else 0.0)
         inside = depth > 0
@@ -102,7 +102,7 @@ class Curve:
         return F, by, np.array(others)
 
     def _sticking(
-        self, ladder: Ladder, p: np.ndarray, values: dict, moved: bool
+        self, ladder: TermTable, p: np.ndarray, values: dict, moved: bool
     ) -> tuple[np.ndarray, dict, np.ndarray]:
         """`contact` of what sticks; without adhesion at points that do not stick."""
         model, parts = ladder.model, ladder.parts

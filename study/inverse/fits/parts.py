@@ -6,11 +6,11 @@ import numpy as np
 
 from .asked import Asked
 from .block import fit_block
-from .tables.ratio_table import Table
-from .tables.term_table import Ladder
+from .tables.ratio_table import RatioTable
+from .tables.term_table import TermTable
 
 #: Call -> its table. Several, for calls in several threads; worker processes end after a while, and their tables.
-_tables: dict[str, Table | Ladder] = {}
+_tables: dict[str, RatioTable | TermTable] = {}
 _MOST = 8
 
 
@@ -34,7 +34,7 @@ def fit_part(part: Part) -> dict[str, Any]:
         for oldest in list(_tables)[: max(0, len(_tables) - _MOST + 1)]:
             forget(oldest)
         model = part.question.model
-        table = _tables[part.call] = Ladder(model) if model.sticks else Table(model)
+        table = _tables[part.call] = TermTable(model) if model.sticks else RatioTable(model)
     with np.errstate(all="ignore"):
         return fit_block(part.question, table, part.x, part.y, part.sigma)
 

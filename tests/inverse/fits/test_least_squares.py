@@ -9,7 +9,7 @@ from study.inverse.fits.curve import Curve
 from study.inverse.fits.intervals import covariance_of
 from study.inverse.fits.least_squares import HUBER, Data, minimise, scale
 from study.inverse.fits.model import Model
-from study.inverse.fits.tables.ratio_table import Table
+from study.inverse.fits.tables.ratio_table import RatioTable
 
 GEL = {"R": "5 um", "nu1": 0.49, "h": "1.5 um", "E2": "70 GPa", "nu2": 0.2, "bonding": "bonded", "micro": "smooth"}
 CURVES, POINTS, DEEP = 12, 120, 0.8e-6  # m
@@ -17,7 +17,7 @@ CURVES, POINTS, DEEP = 12, 120, 0.8e-6  # m
 
 def table(*unknowns):
     definition = from_call({**GEL, "E1": "5 kPa", "D": "1 um"}, [], False, {"output": {"profiles": False}})
-    return Table(Model.of(definition, "D", "P", unknowns, ()))
+    return RatioTable(Model.of(definition, "D", "P", unknowns, ()))
 
 
 def measured(*unknowns, noise=0.01, outliers=0.0, seed=47):

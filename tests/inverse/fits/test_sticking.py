@@ -13,7 +13,7 @@ from study.inverse.fits.asked import asked
 from study.inverse.fits.curve import Curve
 from study.inverse.fits.sticking_points import Points
 from study.inverse.fits.tables.branch import branch
-from study.inverse.fits.tables.term_table import Ladder
+from study.inverse.fits.tables.term_table import TermTable
 
 GEL = {"R": "5 um", "punch": "rigid", "nu1": 0.45, "E2": "20 kPa", "nu2": 0.45, "h": "3 um", "bonding": "bonded"}
 GEL |= {"micro": "smooth"}
@@ -51,7 +51,7 @@ def curve_of(inputs, free, **options):
     question = asked(free, inputs, "D", "P", usual)
     model = question.model
     p = [float(model.coordinate(name, model.value(name))) for name in model.unknowns]
-    curve = Curve(Ladder(model), DEPTHS[None], np.array([1e-6]), np.array([1e-8]), question.shifts)
+    curve = Curve(TermTable(model), DEPTHS[None], np.array([1e-6]), np.array([1e-8]), question.shifts)
     return curve, np.array([[*p, *np.zeros(len(question.shifts))]])
 
 

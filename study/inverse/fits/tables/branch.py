@@ -1,4 +1,4 @@
-"""Loads of B curves at n depths on the stable branch of a :class:`.ladder.Ladder`, and their derivatives.
+"""Loads of B curves at n depths on the stable branch of a :class:`.term_table.TermTable`, and their derivatives.
 
 The branch goes from large radii down to the last radius at which the depth turns. A depth-controlled punch is pulled
 off there; others come off before. Beyond it the load goes to 0 within _RAMP of what adhesion takes of the depth. No
@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..model import Model
-from .term_table import LENGTH, STEP, Ladder
+from .term_table import LENGTH, STEP, TermTable
 
 _RAMP, _LEAST_RAMP = 0.25, 0.01
 _NEWTON, _TURN = 5, 12  # steps of the searches for a depth and for the turn
@@ -165,7 +165,7 @@ def _loads(rows: np.ndarray, depth: np.ndarray, cell: np.ndarray, off: tuple) ->
 
 def planned(model: Model, values: dict[str, np.ndarray], depth: np.ndarray) -> np.ndarray:
     """Loads (B, n) at depths (B, n) for values (1, 1) of the unknown inputs; 0 beyond the end of the branch."""
-    ladder, out = Ladder(model), np.full(depth.shape, np.nan)
+    ladder, out = TermTable(model), np.full(depth.shape, np.nan)
     for number, row in enumerate(depth):
         x = np.where(np.isfinite(row), row, np.nanmax(row))[None]
         made = branch(ladder.rows(values, x.max(axis=1)), x)

@@ -54,7 +54,7 @@ def weights_of(axes: list[Chebyshev], s: np.ndarray, by: np.ndarray) -> np.ndarr
     return np.array([_products(factor, len(s)) for factor in factors])
 
 
-class Table:
+class RatioTable:
     """Tiles of a model, made on demand. Not for several threads."""
 
     def __init__(self, model: Model):

@@ -1,4 +1,4 @@
-"""A table of the :class:`.parts.Parts` of a model over the contact radius, made where it is needed.
+"""A table of the :class:`.terms.Terms` of a model over the contact radius, made where it is needed.
 
 Tiles lie on a fixed lattice, so that the numbers of a curve do not depend on which other curves there are. Along x, the
 logarithm of the radius, a tile has _LATTICE points with values and slopes, between which a cubic is drawn; along the
@@ -9,7 +9,7 @@ import numpy as np
 
 from ..model import Model, is_ratio
 from .ratio_table import WIDE, Chebyshev, weights_of, width
-from .terms import Parts, is_modulus
+from .terms import Terms, is_modulus
 
 _LATTICE = 16
 STEP = WIDE / _LATTICE
@@ -30,11 +30,11 @@ def _width(name: str) -> float:
     return _WIDE_MODULUS if is_modulus(name) else width(name) if is_ratio(name) else _WIDE
 
 
-class Ladder:
+class TermTable:
     """Tiles of a model, made on demand. Not for several threads."""
 
     def __init__(self, model: Model):
-        self.model, self.parts = model, Parts.of(model)
+        self.model, self.parts = model, Terms.of(model)
         self.axes = self.parts.axes
         count, moduli = min(len(self.axes), 3), [is_modulus(name) for name in self.axes]
         self.points = [Chebyshev((_OF_MODULI if modulus else _POINTS)[count]) for modulus in moduli]

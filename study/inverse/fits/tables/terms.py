@@ -39,7 +39,7 @@ def is_modulus(name: str) -> bool:
     return name.rpartition(".")[2].startswith("E")
 
 
-class Parts(NamedTuple):
+class Terms(NamedTuple):
     """How the parts of a model depend on its inputs.
 
     powers : name of a factor, "E", "w", "length", "R", "cotangent" -> its power (4,) in each part
@@ -53,7 +53,7 @@ class Parts(NamedTuple):
     length: str
 
     @classmethod
-    def of(cls, model: Model) -> "Parts":
+    def of(cls, model: Model) -> "Terms":
         values, numbers = model.scene.values, model.scene.parameters
         law = numbers.get("adhesion", "jkr")
         powers = _USUAL | (_DMT if law == "dmt" else {})

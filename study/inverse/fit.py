@@ -23,8 +23,8 @@ from .fits.answer import answered
 from .fits.asked import Asked, asked
 from .fits.block import FitStatus
 from .fits.least_squares import AT_LEAST
-from .fits.model import HERTZ, Model
-from .fits.parts import Part, fit_part, forget
+from .fits.model import HERTZ, CurveModel
+from .fits.parts import Task, fit_task, forget
 from .fits.points.region import inside, region
 from .fits.said import said
 from .fits.tables.branch import planned
@@ -192,20 +192,20 @@ def _fits(question: Asked, blocks: list, arrays: tuple, there: np.ndarray) -> It
     """The curves of each block and their fits, by the processors that may be used."""
     call = f"{os.getpid()} {next(_calls)}"
     parts = [
-        Part(call, question, *(None if A is None else _packed(A, there, filled, points) for A in arrays))
+        Task(call, question, *(None if A is None else _packed(A, there, filled, points) for A in arrays))
         for _, filled, points in blocks
     ]
     of_users = laws_of_users(np.array([question.model.scene.parameters.get("micro", "disc_cell")]))
     try:
-        with closing(computed_tasks(fit_part, parts, can_leave=not of_users)) as results:
+        with closing(computed_tasks(fit_task, parts, can_leave=not of_users)) as results:
             for number, fits in results:
                 # a process that was killed, or what it raised: then it is raised here
-                yield blocks[number][0], fit_part(parts[number]) if isinstance(fits, Failure) else fits
+                yield blocks[number][0], fit_task(parts[number]) if isinstance(fits, Failure) else fits
     finally:
         forget(call)
 
 
-def _columns(source: Any, model: Model, plan: bool) -> xr.Dataset:
+def _columns(source: Any, model: CurveModel, plan: bool) -> xr.Dataset:
     """The curves; of a plan x alone."""
     names = [model.x] if plan else [model.x, model.y]
     data = measured(source, len(names))
@@ -217,7 +217,7 @@ def _columns(source: Any, model: Model, plan: bool) -> xr.Dataset:
     return data[names]
 
 
-def _arrays(data: xr.Dataset, model: Model, sigma: Any) -> tuple:
+def _arrays(data: xr.Dataset, model: CurveModel, sigma: Any) -> tuple:
     """x, y and the standard deviations of y over (curve, point); NaN for y of a plan."""
     X = data[model.x].values
     Y = data[model.y].values if model.y in data else np.full(X.shape, np.nan)

@@ -126,7 +126,7 @@ def _said(error: BaseException) -> str:
     return f"afmformats cannot read it: {first}"
 
 
-class Curve(NamedTuple):
+class ForceCurve(NamedTuple):
     """A curve of afmformats, the factor of its force, and the spring constant (N/m), None if nobody knows it."""
 
     data: Any
@@ -134,7 +134,7 @@ class Curve(NamedTuple):
     spring_constant: float | None
 
 
-def _loaded(afmformats: Any, path: Path, reading: Reading) -> list[Curve]:
+def _loaded(afmformats: Any, path: Path, reading: Reading) -> list[ForceCurve]:
     """The curves, with the cantilever of the call."""
     known = {"spring constant": reading.spring_constant, "sensitivity": reading.sensitivity}
     known = {key: value for key, value in known.items() if value is not None}
@@ -148,11 +148,11 @@ def _loaded(afmformats: Any, path: Path, reading: Reading) -> list[Curve]:
         if "sensitivity" in factors and "sensitivity" not in about:
             raise StudyError([f"{path.as_posix()}: the file does not say with which sensitivity its force was made"])
         factor = float(np.prod([known[key] / about[key] for key in factors if key in about]))
-        curves.append(Curve(data, factor, known.get("spring constant", about.get("spring constant"))))
+        curves.append(ForceCurve(data, factor, known.get("spring constant", about.get("spring constant"))))
     return curves
 
 
-def _columns(loaded: list[Curve], reading: Reading, where: str) -> dict[str, tuple[np.ndarray, str]]:
+def _columns(loaded: list[ForceCurve], reading: Reading, where: str) -> dict[str, tuple[np.ndarray, str]]:
     """The chosen curves, filled up with NaN to the longest. Raises StudyError."""
     if not loaded:
         raise StudyError([f"{where}: has no force curve"])
@@ -178,7 +178,7 @@ def place(curve: Any, curves: int, where: str) -> int:
     return int(curve)
 
 
-def _of_curve(curve: Curve, part: str) -> tuple[np.ndarray, np.ndarray]:
+def _of_curve(curve: ForceCurve, part: str) -> tuple[np.ndarray, np.ndarray]:
     """Depth and load of one part of one curve."""
     data, factor, spring_constant = curve
     names = [name for name in ("tip position", "height (measured)", "height (piezo)") if name in data.columns]

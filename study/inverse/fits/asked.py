@@ -17,7 +17,7 @@ from ...inputs.scene.layers import short
 from ...inputs.vocabulary import BODIES, CONTROLS, ROWS, parameters_of, scene_of, suggest
 from ...specimen.quantities import has_unit, quantity
 from ...terminal import shown
-from .model import PAIRS, Model, is_ratio
+from .model import PAIRS, CurveModel, is_ratio
 
 MOST = 3  # unknown inputs
 ROUGHNESS = ("Nbar", "Ra", "sigma", "cut", "B", "beta")
@@ -36,14 +36,14 @@ class Asked:
 
     model : the curve, with its unknown inputs: free ones, then those with a prior
     bounds : free input -> (low, high) in SI; other free inputs have bounds that follow from each curve
-    priors : input with ± in the call, free ones too -> (coordinate, its spread), as the unknowns of `Model`
+    priors : input with ± in the call, free ones too -> (coordinate, its spread), as the unknowns of `CurveModel`
     spreads : other input -> its spread in its coordinate
     shifts : unknowns after the inputs
     called : free input -> its name in the call, "layers.1.E1" of E1
     call : arguments of `study.solve`: stand-ins for unknown inputs without a value, and for x
     """
 
-    model: Model
+    model: CurveModel
     free: tuple[str, ...]
     bounds: dict[str, tuple[float, float]]
     priors: dict[str, tuple[float, float]]
@@ -106,7 +106,7 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     priors = tuple(name for name in priors if name in scene.spreads)  # ± 0 is exact
     unknowns = (*names, *(name for name in priors if name not in names))
     moved = tuple(name for name in scene.spreads if name not in unknowns and name not in CONTROLS)
-    model = Model.of(definition, x, y, unknowns, moved)
+    model = CurveModel.of(definition, x, y, unknowns, moved)
     if model.sticks and (x, y) != ("D", "P"):
         way = 'of what sticks the load over the depth is fitted: x = "D", y = "P"'
         raise StudyError([f"x = {shown(x)}, y = {shown(y)}: {way}"])
@@ -245,6 +245,6 @@ def _stand_in(name: str, bounds: dict) -> str | float | None:
     return _MODULUS if name in ("E1", "E2") else 0.3 if is_ratio(name) else None
 
 
-def _log_spread(model: Model, name: str) -> float:
+def _log_spread(model: CurveModel, name: str) -> float:
     spread = float(model.scene.spreads[name])
     return spread if is_ratio(name) else spread / model.value(name)

@@ -9,14 +9,14 @@ from scipy import special
 from solver.numerics.codes import Codes
 
 from .asked import Asked
-from .curve import Curve
+from .curve import MeasuredCurves
 from .intervals import covariance_of, profiles
-from .least_squares import SURE, Data, Fit, inverse, minimise, normal
+from .least_squares import SURE, Data, Minimum, inverse, minimise, normal
 from .points.parts import parts_of
 from .points.thinned import LONG, Thinned, thinned
 from .points.worth import worth_of
 from .starts import best_of, starts_of
-from .sticking_points import Points
+from .sticking_points import StickingPoints
 from .tables.ratio_table import RatioTable
 from .tables.term_table import TermTable
 
@@ -45,7 +45,7 @@ class _Posed(NamedTuple):
     """Curves as a problem of least squares: all points, and fewer if the curves are long."""
 
     asked: Asked
-    curve: Curve
+    curve: MeasuredCurves
     data: Data
     few: Thinned | None
     starts: list
@@ -104,13 +104,15 @@ def fit_block(
     return numbers | {"fit": np.where(there, best.model * curve.high[:, None], np.nan)}
 
 
-def _posed(asked: Asked, table: RatioTable | TermTable, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None) -> _Posed:
+def _posed(
+    asked: Asked, table: RatioTable | TermTable, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
+) -> _Posed:
     model, there = asked.model, np.isfinite(x) & np.isfinite(y)
     top = np.where(there, y, -np.inf).max(axis=1) - np.where(there, y, np.inf).min(axis=1)
     largest, least = np.where(there, x, -np.inf).max(axis=1), np.where(there, x, np.inf).min(axis=1)
     wide = np.where(largest - least > 0, largest - least, largest) if "D0" in asked.shifts else largest
     x = np.where(there, x, largest[:, None])
-    curve = Curve(table, x, wide, top, asked.shifts)
+    curve = MeasuredCurves(table, x, wide, top, asked.shifts)
     with np.errstate(divide="ignore", invalid="ignore"):
         w = np.where(there, 1.0 if sigma is None else top[:, None] / np.where(there, sigma, 1.0), 0.0)
     y = np.where(there, y, 0.0)
@@ -123,7 +125,9 @@ def _posed(asked: Asked, table: RatioTable | TermTable, x: np.ndarray, y: np.nda
     starts, low, high = starts_of(asked, of, points.w > 0, points.y * top[:, None], top, least)
     data, points = (part._replace(low=low, high=high, center=none.copy()) for part in (data, points))
     if model.sticks:
-        curve, of = (replace(c, points=Points.of(c.x, d.y, d.w, k, d.huber)) for c, d in ((curve, data), (of, points)))
+        curve, of = (
+            replace(c, points=StickingPoints.of(c.x, d.y, d.w, k, d.huber)) for c, d in ((curve, data), (of, points))
+        )
         starts = best_of(of, points, starts)
     variance = prior = np.ones(len(x))
     if asked.priors:
@@ -139,7 +143,7 @@ def _posed(asked: Asked, table: RatioTable | TermTable, x: np.ndarray, y: np.nda
 
 
 def _scatter(
-    curve: Curve, data: Data, start: np.ndarray, columns: list[int], center: np.ndarray, unknown: bool
+    curve: MeasuredCurves, data: Data, start: np.ndarray, columns: list[int], center: np.ndarray, unknown: bool
 ) -> tuple[np.ndarray, np.ndarray]:
     """The variance (B,) of the points, if it is unknown, else 1, and what a prior counts it as, from a fit with the
     inputs `columns` at their priors: points that hang together are so many fewer, and must not overrule it."""
@@ -157,7 +161,7 @@ def _count(asked: Asked, data: Data) -> np.ndarray:
     return (data.w > 0).sum(axis=1) - asked.model.sticks
 
 
-def _searched(posed: _Posed) -> tuple[Fit, np.ndarray, np.ndarray]:
+def _searched(posed: _Posed) -> tuple[Minimum, np.ndarray, np.ndarray]:
     """The best fits, of all points, and the costs (starts, B) and unknowns (starts, B, k) at which searches from all
     starts have ended, of fewer points if there are many."""
     curve, data = (posed.few.curve, posed.few.data) if posed.few else (posed.curve, posed.data)
@@ -176,7 +180,7 @@ def _searched(posed: _Posed) -> tuple[Fit, np.ndarray, np.ndarray]:
     return best, costs, places
 
 
-def _to_the_ends(posed: _Posed, few: tuple[Curve, Data], p: np.ndarray, minima: tuple) -> tuple:
+def _to_the_ends(posed: _Posed, few: tuple[MeasuredCurves, Data], p: np.ndarray, minima: tuple) -> tuple:
     """The costs and unknowns of searches, of retractions those without a ramp beyond the end of the branch.
 
     Each point that passes the end makes the cost jump, and a search from one side does not see the other. So it begins
@@ -212,7 +216,7 @@ class _Ends(NamedTuple):
     several: np.ndarray
 
 
-def _intervals(posed: _Posed, best: Fit, minima: tuple, ends: _Ends, sd: np.ndarray, above: np.ndarray) -> _Ends:
+def _intervals(posed: _Posed, best: Minimum, minima: tuple, ends: _Ends, sd: np.ndarray, above: np.ndarray) -> _Ends:
     """Intervals of the inputs by profiles, if they are asked for; the others stay.
 
     above : (B, inputs), by how much the cost at the ends of the interval of an input is above the least one
@@ -245,7 +249,7 @@ def _intervals(posed: _Posed, best: Fit, minima: tuple, ends: _Ends, sd: np.ndar
     return ends._replace(low=low, high=high, open=bound.any(axis=(1, 2)))
 
 
-def _share(curve: Curve, fit: Fit) -> np.ndarray:
+def _share(curve: MeasuredCurves, fit: Minimum) -> np.ndarray:
     """The depth below the contact point of each point over that of the deepest, (B, n); 0 before the contact, and
     hardly above it where a contact sticks before that depth."""
     depth = curve.x
@@ -255,7 +259,7 @@ def _share(curve: Curve, fit: Fit) -> np.ndarray:
     return np.maximum(share, 1e-9 * (curve.contact(fit.p)[0] != 0)) if curve.table.model.sticks else share
 
 
-def _no_contact(curve: Curve, data: Data, best: Fit, count: np.ndarray, k: int) -> np.ndarray:
+def _no_contact(curve: MeasuredCurves, data: Data, best: Minimum, count: np.ndarray, k: int) -> np.ndarray:
     """Whether a straight line fits as well: the model lowers its sum of squares by no more than chance would, in all
     but one of a thousand curves."""
     w2 = data.w**2
@@ -272,7 +276,7 @@ def _no_contact(curve: Curve, data: Data, best: Fit, count: np.ndarray, k: int) 
     return ~(special.fdtri(more, free, _SURE) < F) & np.isfinite(best.cost)
 
 
-def _propagated(asked: Asked, curve: Curve, data: Data, best: Fit) -> np.ndarray:
+def _propagated(asked: Asked, curve: MeasuredCurves, data: Data, best: Minimum) -> np.ndarray:
     """The covariance (B, k, k) that the spreads of other inputs make: the unknowns follow each of them."""
     k = best.p.shape[1]
     whole = np.zeros((len(best.p), k, k))

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...inputs.punch.shapes import ANGLES
 from .model import HERTZ
-from .sticking_points import Points
+from .sticking_points import StickingPoints
 from .tables.branch import Loads, branch
 from .tables.ratio_table import STEP, WIDE, Places, RatioTable
 from .tables.term_table import TermTable
@@ -16,7 +16,7 @@ _REACH = np.log(800.0)  # below 1/800 of twice the range of x the curve goes on 
 
 
 @dataclass
-class Curve:
+class MeasuredCurves:
     """B curves of n points. Their unknowns are the inputs of the model, then D0/wide, P0/high and tilt wide/high.
 
     table : of the model
@@ -32,14 +32,14 @@ class Curve:
     wide: np.ndarray
     high: np.ndarray
     shifts: tuple[str, ...]
-    points: Points | None = None
+    points: StickingPoints | None = None
     ends: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
         return (*self.table.model.unknowns, *self.shifts)
 
-    def take(self, index: np.ndarray) -> "Curve":
+    def take(self, index: np.ndarray) -> "MeasuredCurves":
         """Some of the curves."""
         points = self.points and self.points.take(index)
         return replace(self, x=self.x[index], wide=self.wide[index], high=self.high[index], points=points)

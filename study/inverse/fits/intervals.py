@@ -4,14 +4,14 @@ from typing import Any
 
 import numpy as np
 
-from .least_squares import HUBER, Data, Fit, inverse, minimise, normal, scale
+from .least_squares import HUBER, Data, Minimum, inverse, minimise, normal, scale
 
 _INNER, _INNER_SURE = 30, 1e-4  # steps of an inner fit, and by what part of the mean square it may be off
 _OUTWARD, _BETWEEN = 24, 8  # steps of the walk to the limit, and between its last two places
 _PRECISE = 2e-3  # of the width of an interval
 
 
-def covariance_of(data: Data, fit: Fit, variance: np.ndarray) -> np.ndarray:
+def covariance_of(data: Data, fit: Minimum, variance: np.ndarray) -> np.ndarray:
     """The covariance (B, k, k) of the unknowns, from the curvature at the minimum. Under Huber's loss it is the
     "sandwich" of two curvatures, which holds for errors that are not normal too.
 
@@ -34,7 +34,7 @@ def covariance_of(data: Data, fit: Fit, variance: np.ndarray) -> np.ndarray:
 def profiles(
     curve: Any,
     data: Data,
-    best: Fit,
+    best: Minimum,
     ends: list[tuple[np.ndarray, np.ndarray]],
     limit: np.ndarray,
     first: np.ndarray,
@@ -62,7 +62,7 @@ def profiles(
 
 def _walk(
     of: tuple[Any, Data],
-    best: Fit,
+    best: Minimum,
     begin: tuple[np.ndarray, np.ndarray],
     limit: np.ndarray,
     step: np.ndarray,

@@ -42,7 +42,7 @@ class Data(NamedTuple):
         return Data(*(array[index] for array in self[:6]), self.huber)
 
 
-class Fit(NamedTuple):
+class Minimum(NamedTuple):
     """Where the search ended: unknowns p (B, k), cost (B,), model (B, n) and its derivatives J (B, n, k), the weights
     (B, n) of the residuals' squares, and whether it ended by itself (B,)."""
 
@@ -53,14 +53,14 @@ class Fit(NamedTuple):
     weights: np.ndarray
     ended: np.ndarray
 
-    def take(self, index: np.ndarray) -> "Fit":
+    def take(self, index: np.ndarray) -> "Minimum":
         """Those of some curves."""
-        return Fit(*(array[index] for array in self))
+        return Minimum(*(array[index] for array in self))
 
 
 def minimise(
     curve: Any, data: Data, p: np.ndarray, held: np.ndarray | None = None, steps: int = STEPS, sure: float = SURE
-) -> Fit:
+) -> Minimum:
     """Minimise the sum of the squares of w (y - curve(p)), from p on, within the bounds.
 
     curve : p -> values (B, n) and derivatives (B, n, k), NaN where there is none; `take(index)` has some of the curves
@@ -69,7 +69,7 @@ def minimise(
     """
     held = np.zeros(p.shape, bool) if held is None else held
     model, J = curve(p)
-    fit = Fit(p.copy(), np.zeros(len(p)), model, J, *weighed(data, p, model)[:1], np.zeros(len(p), bool))
+    fit = Minimum(p.copy(), np.zeros(len(p)), model, J, *weighed(data, p, model)[:1], np.zeros(len(p), bool))
     fit.cost[:] = weighed(data, p, model)[1]
     count = np.maximum((data.w > 0).sum(axis=1), 1)
     left, damping = np.flatnonzero(np.isfinite(fit.cost)), np.full(len(p), 1e-3)
@@ -106,7 +106,7 @@ def minimise(
     return fit
 
 
-def _step(data: Data, fit: Fit, held: np.ndarray, damping: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _step(data: Data, fit: Minimum, held: np.ndarray, damping: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where a damped step leads, within the bounds, and by how much it should lower the cost."""
     p, eye = fit.p, np.eye(fit.p.shape[1], dtype=bool)
     A, slope = normal(data, p, fit.model, fit.J, fit.weights)

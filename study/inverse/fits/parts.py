@@ -14,7 +14,7 @@ _tables: dict[str, RatioTable | TermTable] = {}
 _MOST = 8
 
 
-class Part(NamedTuple):
+class Task(NamedTuple):
     """Some curves of a call: x, y (B, n) and the standard deviations of y, as `fit_block` takes them.
 
     call : a word that no other call of the same process has
@@ -27,16 +27,16 @@ class Part(NamedTuple):
     sigma: np.ndarray | None
 
 
-def fit_part(part: Part) -> dict[str, Any]:
+def fit_task(task: Task) -> dict[str, Any]:
     """What `fit_block` returns of these curves."""
-    table = _tables.get(part.call)
+    table = _tables.get(task.call)
     if table is None:
         for oldest in list(_tables)[: max(0, len(_tables) - _MOST + 1)]:
             forget(oldest)
-        model = part.question.model
-        table = _tables[part.call] = TermTable(model) if model.sticks else RatioTable(model)
+        model = task.question.model
+        table = _tables[task.call] = TermTable(model) if model.sticks else RatioTable(model)
     with np.errstate(all="ignore"):
-        return fit_block(part.question, table, part.x, part.y, part.sigma)
+        return fit_block(task.question, table, task.x, task.y, task.sigma)
 
 
 def forget(call: str) -> None:

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from .asked import DECADE, Asked
-from .curve import Curve
+from .curve import MeasuredCurves
 from .least_squares import Data, weighed
 from .model import HERTZ, is_ratio
 
@@ -21,7 +21,7 @@ _HERTZ = {("D", "P"): 4 / 3, ("P", "a"): 0.75 ** (1 / 3), ("a", "dP_dD"): 2.0}
 
 
 def starts_of(
-    asked: Asked, curve: Curve, there: np.ndarray, y: np.ndarray, top: np.ndarray, least: np.ndarray
+    asked: Asked, curve: MeasuredCurves, there: np.ndarray, y: np.ndarray, top: np.ndarray, least: np.ndarray
 ) -> tuple:
     """A list of unknowns (B, k), at each of which a search begins, and their bounds (B, k)."""
     model, names, B = asked.model, curve.names, len(y)
@@ -87,7 +87,7 @@ def _of_sticking(asked, curve, p, low, high, about):
     return list(started.reshape(size, *p.shape))
 
 
-def best_of(curve: Curve, data: Data, starts: list) -> list:
+def best_of(curve: MeasuredCurves, data: Data, starts: list) -> list:
     """The starts (B, k) whose curves are nearest to the points."""
     most = _BEST if len(curve.table.model.unknowns) <= 2 else 2 * _BEST
     if len(starts) <= most:
@@ -122,7 +122,7 @@ def _with_modulus(asked, curve, p, low, high, x, load):
     return p
 
 
-def _contact_points(asked: Asked, curve: Curve, there: np.ndarray, y: np.ndarray, q: float) -> tuple:
+def _contact_points(asked: Asked, curve: MeasuredCurves, there: np.ndarray, y: np.ndarray, q: float) -> tuple:
     """First values (B,) of D0 and P0, the depth and load of the deepest point above them, and x at half of that load.
 
     P0 is the mean of the first tenth of the points. D0 follows from the depths at 10 and 50 % of the load, as if the

@@ -19,7 +19,7 @@ import numpy as np
 _LEAST = 0.1
 
 
-class Points(NamedTuple):
+class StickingPoints(NamedTuple):
     """y and weights w (B, n) of curves, the order (B, n) of their depths, how many of the deepest are in contact (B,),
     and whether errors count by themselves, (B,), or by their squares."""
 
@@ -31,15 +31,15 @@ class Points(NamedTuple):
     retracts: np.ndarray
 
     @classmethod
-    def of(cls, x: np.ndarray, y: np.ndarray, w: np.ndarray, unknowns: int, robust: bool) -> "Points":
+    def of(cls, x: np.ndarray, y: np.ndarray, w: np.ndarray, unknowns: int, robust: bool) -> "StickingPoints":
         there = w > 0
         order = np.argsort(np.where(there, x, np.inf), axis=1, kind="stable")
         count = there.sum(axis=1)
         least = np.maximum((_LEAST * count).astype(int), np.minimum(unknowns + 1, count))
         return cls(y, w, order, count - least, np.full(len(x), robust), retractions(x, w))
 
-    def take(self, index: np.ndarray) -> "Points":
-        return Points(*(array[index] for array in self))
+    def take(self, index: np.ndarray) -> "StickingPoints":
+        return StickingPoints(*(array[index] for array in self))
 
     def in_contact(
         self, load: np.ndarray, free: np.ndarray, base: np.ndarray, must: np.ndarray | None = None

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from study.inputs.reading import from_call
-from study.inverse.fits.model import HERTZ, Model
+from study.inverse.fits.model import HERTZ, CurveModel
 from study.inverse.fits.tables.ratio_table import STEP, WIDE, Places, RatioTable
 
 GEL = {"R": "5 um", "nu1": 0.45, "h": "1.5 um", "E2": "1 MPa", "nu2": 0.3, "bonding": "bonded", "E1": "1 MPa"}
@@ -25,7 +25,7 @@ ABSCISSA = {"D": ("1 nm", 3e-9, 3e-7), "P": ("1 nN", 1e-9, 1e-6), "a": ("1 nm", 
 def test_as_the_solver(name):
     given, unknowns, (x, y), tolerance = CASES[name]
     text, low, high = ABSCISSA[x]
-    model = Model.of(from_call(given | {x: text}, [], False, {}), x, y, unknowns, ())
+    model = CurveModel.of(from_call(given | {x: text}, [], False, {}), x, y, unknowns, ())
     random = np.random.default_rng(1)
     values = {"E1": np.exp(random.uniform(np.log(1e5), np.log(1e7), 25))}
     values |= {"h": np.exp(random.uniform(np.log(5e-7), np.log(5e-6), 25))} if "h" in unknowns else {}

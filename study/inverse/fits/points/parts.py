@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..curve import Curve
-from ..least_squares import Data, Fit, minimise
+from ..curve import MeasuredCurves
+from ..least_squares import Data, Minimum, minimise
 from .worth import Worth
 
 #: Parts of the depth below the contact point, of equal width.
@@ -11,7 +11,7 @@ PARTS = 4
 _STEPS, _ENOUGH = 12, 3  # steps of the search, and points without which a part says nothing
 
 
-def parts_of(curve: Curve, data: Data, best: Fit, share: np.ndarray, worth: Worth) -> np.ndarray:
+def parts_of(curve: MeasuredCurves, data: Data, best: Minimum, share: np.ndarray, worth: Worth) -> np.ndarray:
     """The first unknown (B, PARTS) of points from each part of the depth, for fits whose points do not agree: those
     whose intervals are wider for it, or in which it changes with the depth. NaN elsewhere, and at a bound.
 

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from ..model import Model
+from ..model import CurveModel
 
 #: Bodies at least as stiff, in Pa, flow below a sharp tip, whatever they are made of: the mean pressure of the elastic
 #: contact, E* cot(half_angle)/2, is 0.18 E* under a Berkovich tip, and their hardness is at most some 0.1 E*. Rubbers
@@ -15,7 +15,7 @@ _POINTED = ("berkovich", "vickers", "cube_corner")
 _TANGENT = 3.0  # a blunt cone is sharp where the contact is so many times as wide as its ball
 
 
-def flows(model: Model, modulus: np.ndarray, contacts: xr.Dataset) -> np.ndarray:
+def flows(model: CurveModel, modulus: np.ndarray, contacts: xr.Dataset) -> np.ndarray:
     """Which contacts (M,) of a fit are those of a sharp tip in a body that flows below it.
 
     modulus : (M,) in Pa, of what is touched

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..curve import Curve
-from ..least_squares import Data, Fit
+from ..curve import MeasuredCurves
+from ..least_squares import Data, Minimum
 
 #: Curves of up to so many points are fitted as they are; of longer ones so many blocks.
 LONG, _BLOCKS = 1024, 512
@@ -21,18 +21,18 @@ class Thinned(NamedTuple):
     """Averages (B, _BLOCKS) of the points of B curves, and the number (B, n) of the block of each point; points without
     weight are in none, -1."""
 
-    curve: Curve
+    curve: MeasuredCurves
     data: Data
     blocks: np.ndarray
 
-    def about(self, best: Fit, curve: Curve, data: Data) -> "Thinned":
+    def about(self, best: Minimum, curve: MeasuredCurves, data: Data) -> "Thinned":
         """The averages, so moved that their residuals from the model are the averages of those at `best`."""
         averages, _ = _averages(self.blocks, data.w**2, [data.y - best.model])
         model, _ = self.curve(best.p)
         return self._replace(data=self.data._replace(y=model + averages[0]))
 
 
-def thinned(curve: Curve, data: Data) -> Thinned:
+def thinned(curve: MeasuredCurves, data: Data) -> Thinned:
     """The :class:`Thinned` of curves with points in any order. Under Huber's loss one point stands for each block: an
     average would spread an outlier."""
     n = curve.x.shape[1]

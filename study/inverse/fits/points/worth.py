@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
-from ..least_squares import Data, Fit, huber_limit, inverse, normal
+from ..least_squares import Data, Minimum, huber_limit, inverse, normal
 from .noise import noise_of
 
 #: Level at which an unknown changes with the depth, and the least change that is worth a sentence.
@@ -34,7 +34,9 @@ class Worth(NamedTuple):
     changes: np.ndarray
 
 
-def worth_of(x: np.ndarray, data: Data, fit: Fit, variance: np.ndarray, prior: np.ndarray, share: np.ndarray) -> Worth:
+def worth_of(
+    x: np.ndarray, data: Data, fit: Minimum, variance: np.ndarray, prior: np.ndarray, share: np.ndarray
+) -> Worth:
     """The :class:`Worth` of fits at x (B, n).
 
     variance : (B,) of a point of weight 1, if points are independent

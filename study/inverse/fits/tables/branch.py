@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model import Model
+from ..model import CurveModel
 from .term_table import LENGTH, STEP, TermTable
 
 _RAMP, _LEAST_RAMP = 0.25, 0.01
@@ -163,7 +163,7 @@ def _loads(rows: np.ndarray, depth: np.ndarray, cell: np.ndarray, off: tuple) ->
     return Loads(np.where(np.isfinite(D), part * P, np.nan), slope, _by_rows(rows, cells, t, of_parts), of_parts)
 
 
-def planned(model: Model, values: dict[str, np.ndarray], depth: np.ndarray) -> np.ndarray:
+def planned(model: CurveModel, values: dict[str, np.ndarray], depth: np.ndarray) -> np.ndarray:
     """Loads (B, n) at depths (B, n) for values (1, 1) of the unknown inputs; 0 beyond the end of the branch."""
     ladder, out = TermTable(model), np.full(depth.shape, np.nan)
     for number, row in enumerate(depth):

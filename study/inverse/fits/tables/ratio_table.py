@@ -1,13 +1,13 @@
 """A table of y(x; unknown inputs) that is read a million times: polynomials on tiles, made where they are needed.
 
-What is tabulated is g = ln(y/Hertz's y) over ln u and the coordinates of the unknown inputs (`Model`). Tiles lie on a
-fixed lattice, so that the numbers of a curve do not depend on which other curves there are. Along ln u a tile has
+What is tabulated is g = ln(y/Hertz's y) over ln u and the coordinates of the unknown inputs (`CurveModel`). Tiles lie on
+a fixed lattice, so that the numbers of a curve do not depend on which other curves there are. Along ln u a tile has
 _LATTICE points, between which a cubic is drawn; along the others it has Chebyshev points.
 """
 
 import numpy as np
 
-from ..model import HERTZ, Model, is_ratio
+from ..model import HERTZ, CurveModel, is_ratio
 
 WIDE = np.log(16.0)  # of a tile, of a logarithm; of a Poisson ratio:
 _WIDE_RATIO = 0.25
@@ -57,7 +57,7 @@ def weights_of(axes: list[Chebyshev], s: np.ndarray, by: np.ndarray) -> np.ndarr
 class RatioTable:
     """Tiles of a model, made on demand. Not for several threads."""
 
-    def __init__(self, model: Model):
+    def __init__(self, model: CurveModel):
         self.model, self.tiles, self.stacks = model, {}, {}
         axes = 1 + len(model.axes)
         self.chebyshev = Chebyshev(_POINTS[min(axes, 4)])

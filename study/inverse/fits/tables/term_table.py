@@ -7,7 +7,7 @@ coordinates of unknown inputs it has Chebyshev points.
 
 import numpy as np
 
-from ..model import Model, is_ratio
+from ..model import CurveModel, is_ratio
 from .ratio_table import WIDE, Chebyshev, weights_of, width
 from .terms import Terms, is_modulus
 
@@ -33,7 +33,7 @@ def _width(name: str) -> float:
 class TermTable:
     """Tiles of a model, made on demand. Not for several threads."""
 
-    def __init__(self, model: Model):
+    def __init__(self, model: CurveModel):
         self.model, self.parts = model, Terms.of(model)
         self.axes = self.parts.axes
         count, moduli = min(len(self.axes), 3), [is_modulus(name) for name in self.axes]

@@ -16,7 +16,7 @@ from solver.smooth_contact.adhesion.apart import apart
 
 from ....inputs.scene.scales import with_unit
 from ....inputs.vocabulary import PARAMETERS
-from ..model import Model, is_ratio
+from ..model import CurveModel, is_ratio
 
 #: Powers of E, w, of the length that is the unit of a, and of R in P₀, D₀, pull_P and pull_D.
 _USUAL = {"E": (1, 0, 0.5, -0.5), "w": (0, 0, 0.5, 0.5)}
@@ -47,13 +47,13 @@ class Terms(NamedTuple):
     length : the input that is the unit of the radius: "h" or "R"
     """
 
-    model: Model
+    model: CurveModel
     powers: dict[str, np.ndarray]
     axes: tuple[str, ...]
     length: str
 
     @classmethod
-    def of(cls, model: Model) -> "Terms":
+    def of(cls, model: CurveModel) -> "Terms":
         values, numbers = model.scene.values, model.scene.parameters
         law = numbers.get("adhesion", "jkr")
         powers = _USUAL | (_DMT if law == "dmt" else {})

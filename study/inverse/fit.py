@@ -20,14 +20,14 @@ from ..work.engine import computed_tasks
 from ..work.progress import Progress, screen_of
 from .curves import measured
 from .fits.answer import answered
-from .fits.asked import Asked, asked
 from .fits.block import FitStatus
 from .fits.least_squares import AT_LEAST
 from .fits.model import HERTZ, CurveModel
-from .fits.parts import Task, fit_task, forget
 from .fits.points.region import inside, region
+from .fits.question import Question, read_question
 from .fits.said import said
 from .fits.tables.branch import planned
+from .fits.tasks import Task, fit_task, forget
 from .no_pull import joined, without
 
 #: Curves at a time, of what sticks too, and their points are filled up to a multiple of this.
@@ -110,7 +110,7 @@ def fit(
     options = {"contact_point": contact_point, "baseline": baseline, "tilt": tilt, "sigma": sigma, "loss": loss}
     options |= {"intervals": intervals, "level": level, "plan": plan}
     parameters = {name: value for name, value in parameters.items() if value is not None}
-    question = asked(free, parameters, x, y, options)
+    question = read_question(free, parameters, x, y, options)
     limits = region(depth, x)
     data = _columns(curves, question.model, plan)
     X, Y, S = _arrays(data, question.model, sigma)
@@ -129,7 +129,7 @@ def fit(
     return _as_called(fitted.assign_attrs(said(question, fitted)), question.called)
 
 
-def _within(question: Asked, arrays: tuple, there: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
+def _within(question: Question, arrays: tuple, there: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
     """The points that count where only a part of the depth does. The contact point from which it counts is that of a
     fit of all points, then that of the points that count, until these stay."""
     first, every = replace(question, intervals=None), there
@@ -160,7 +160,7 @@ def _with_and_without(fitted: xr.Dataset, arrays: tuple, call: tuple, low: float
     return joined(fitted, plain, low)
 
 
-def _every(question: Asked, arrays: tuple, there: np.ndarray, screen: Any) -> tuple[dict[int, tuple], np.ndarray]:
+def _every(question: Question, arrays: tuple, there: np.ndarray, screen: Any) -> tuple[dict[int, tuple], np.ndarray]:
     """For each curve that is fitted the fits of its block and its place among them; and the status of the others, or
     -1."""
     X, Y, _ = arrays
@@ -181,14 +181,14 @@ def _every(question: Asked, arrays: tuple, there: np.ndarray, screen: Any) -> tu
     return rows, np.where((status < 0) & ~np.isin(np.arange(len(X)), list(rows)), NOT_RUN, status)
 
 
-def _contact_points(question: Asked, rows: dict[int, tuple]) -> dict[int, float]:
+def _contact_points(question: Question, rows: dict[int, tuple]) -> dict[int, float]:
     """The contact point in m of each curve that has one."""
     place = len(question.model.unknowns)
     lost = (FitStatus.INVALID_INPUT, FitStatus.NO_CONTACT)
     return {c: fits["p"][i, place] * fits["wide"][i] for c, (fits, i) in rows.items() if fits["status"][i] not in lost}
 
 
-def _fits(question: Asked, blocks: list, arrays: tuple, there: np.ndarray) -> Iterator[tuple[np.ndarray, dict]]:
+def _fits(question: Question, blocks: list, arrays: tuple, there: np.ndarray) -> Iterator[tuple[np.ndarray, dict]]:
     """The curves of each block and their fits, by the processors that may be used."""
     call = f"{os.getpid()} {next(_calls)}"
     parts = [
@@ -237,7 +237,7 @@ def _arrays(data: xr.Dataset, model: CurveModel, sigma: Any) -> tuple:
     return X, Y, S
 
 
-def _planned(question: Asked, X: np.ndarray) -> np.ndarray:
+def _planned(question: Question, X: np.ndarray) -> np.ndarray:
     """The curve of the assumed values."""
     model = question.model
     values = {name: np.full(1, model.value(name)) for name in model.unknowns}
@@ -260,7 +260,7 @@ def _usable(X: np.ndarray, Y: np.ndarray, there: np.ndarray, unknowns: int, anyw
     return enough & spread[0] & spread[1] & ((ends[0][1] > 0) | anywhere)
 
 
-def _stiffness(X: np.ndarray, Y: np.ndarray, question: Asked) -> np.ndarray:
+def _stiffness(X: np.ndarray, Y: np.ndarray, question: Question) -> np.ndarray:
     """A rough modulus of each curve, in any unit: curves that are alike in it share the tiles of a table."""
     q, e, _ = HERTZ[question.model.x, question.model.y][0]
     with warnings.catch_warnings(), np.errstate(all="ignore"):

@@ -13,10 +13,10 @@ from ...inputs.scene.layers import moduli_of
 from ...inputs.vocabulary import NOT_RUN, ROWS
 from ...rules.rule import RULES
 from ...solving import solve
-from .asked import Asked
 from .block import FitStatus
 from .points.parts import PARTS
 from .points.sharp import flows
+from .question import Question
 
 #: At most so many curves have all places solved at once: a call costs more than some hundred contacts.
 _FEW = 8
@@ -24,7 +24,7 @@ _HALVINGS = 4  # of the depth, to the place where the first assumption fails: it
 
 
 def answered(
-    question: Asked, rows: dict, status: np.ndarray, X: np.ndarray, Y: np.ndarray, there: np.ndarray, plan: bool
+    question: Question, rows: dict, status: np.ndarray, X: np.ndarray, Y: np.ndarray, there: np.ndarray, plan: bool
 ) -> xr.Dataset:
     model, C = question.model, len(X)
     names = (*model.unknowns, *question.shifts)
@@ -76,7 +76,7 @@ def answered(
     return fitted.merge(_validity(question, fitted, value, X, there))
 
 
-def _of_points(question: Asked, rows: dict, status: np.ndarray, count: np.ndarray) -> dict[str, tuple]:
+def _of_points(question: Question, rows: dict, status: np.ndarray, count: np.ndarray) -> dict[str, tuple]:
     """Variables that say how far the points agree with the fit (docs/fit.md, Points that do not agree).
 
     count : (curve,) of points
@@ -108,7 +108,7 @@ def _of_points(question: Asked, rows: dict, status: np.ndarray, count: np.ndarra
     return variables | {f"{name}_over_depth": (("curve", "part"), parts, about)}
 
 
-def _from_priors(question: Asked, names: tuple, value: np.ndarray) -> dict[str, tuple]:
+def _from_priors(question: Question, names: tuple, value: np.ndarray) -> dict[str, tuple]:
     """Of each input with a prior, how far it is from that."""
     variables = {}
     for name, (center, sd) in question.priors.items():
@@ -132,9 +132,11 @@ def _end(p: float, end: float, more: float) -> float:
     return p + np.sign(end - p) * np.hypot(end - p, more)
 
 
-def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndarray, there: np.ndarray) -> xr.Dataset:
-    """What the deepest contact of each fitted curve violates of the assumptions of the model, and up to which x none
-    is."""
+def _validity(
+    question: Question, fitted: xr.Dataset, value: np.ndarray, X: np.ndarray, there: np.ndarray
+) -> xr.Dataset:
+    """Variables over `curve`: which assumptions of the model the deepest contact of a fit violates, and the x up to which
+    none is violated."""
     model = question.model
     deepest = np.where(there, X, -np.inf).max(axis=1, initial=-np.inf)
     D0 = fitted["D0"].values if "D0" in fitted else np.zeros(len(X))
@@ -178,7 +180,7 @@ def _hold(contacts: xr.Dataset) -> np.ndarray:
     return (contacts["validity"].values == 0) & (contacts["status"].values != Status.OUTSIDE_LAW)
 
 
-def _all_parts(question: Asked, value: np.ndarray, x: np.ndarray) -> np.ndarray:
+def _all_parts(question: Question, value: np.ndarray, x: np.ndarray) -> np.ndarray:
     """(M, 1 + parts) bool: no assumption is violated at a part of the depths x (M,)."""
     parts = np.arange(1, 2**_HALVINGS)
     every = np.repeat(value, len(parts), axis=0), (x[:, None] * parts / 2**_HALVINGS).ravel()
@@ -186,7 +188,7 @@ def _all_parts(question: Asked, value: np.ndarray, x: np.ndarray) -> np.ndarray:
     return np.pad(good.reshape(len(x), -1), ((0, 0), (1, 0)))
 
 
-def _contacts(question: Asked, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
+def _contacts(question: Question, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
     """Contacts of the unknown inputs `value` (M, k) at x (M,), over `curve`."""
     model, scene = question.model, question.model.scene
     values = model.within({name: value[:, i] for i, name in enumerate(model.unknowns)})

@@ -8,13 +8,13 @@ from scipy import special
 
 from solver.numerics.codes import Codes
 
-from .asked import Asked
 from .curve import MeasuredCurves
 from .intervals import covariance_of, profiles
 from .least_squares import SURE, Data, Minimum, inverse, minimise, normal
 from .points.parts import parts_of
 from .points.thinned import LONG, Thinned, thinned
 from .points.worth import worth_of
+from .question import Question
 from .starts import best_of, starts_of
 from .sticking_points import StickingPoints
 from .tables.ratio_table import RatioTable
@@ -44,7 +44,7 @@ class FitStatus(Codes):
 class _Posed(NamedTuple):
     """Curves as a problem of least squares: all points, and fewer if the curves are long."""
 
-    asked: Asked
+    question: Question
     curve: MeasuredCurves
     data: Data
     few: Thinned | None
@@ -54,7 +54,7 @@ class _Posed(NamedTuple):
 
 
 def fit_block(
-    asked: Asked, table: RatioTable | TermTable, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
+    question: Question, table: RatioTable | TermTable, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
 ) -> dict[str, Any]:
     """Fit curves (B, n), NaN where there is no point. Every curve has more points than unknowns.
 
@@ -65,27 +65,28 @@ def fit_block(
     x and y (wide and top, (B,)) in which D0, P0 and tilt are, what the residuals say (:class:`.points.worth.Worth`)
     and the first unknown by parts of the contact (`parts`, (B, PARTS)).
     """
-    posed = _posed(asked, table, x, y, sigma)
+    posed = _posed(question, table, x, y, sigma)
     curve, data, there = posed.curve, posed.data, np.isfinite(x) & np.isfinite(y)
     best, costs, places = _searched(posed)
-    count, k = _count(asked, data), best.p.shape[1]
+    count, k = _count(question, data), best.p.shape[1]
     variance = posed.variance
-    if sigma is None and not asked.priors:
+    if sigma is None and not question.priors:
         variance = best.cost / np.maximum(count - k, 1)
     share = _share(curve, best)
     worth = worth_of(curve.x, data, best, variance, posed.prior, share)
-    freedom = worth.freedom - asked.model.sticks
-    tail = (1 + asked.level) / 2
+    freedom = worth.freedom - question.model.sticks
+    tail = (1 + question.level) / 2
     t = special.stdtrit(np.maximum(freedom, 1), tail)
     t = t if sigma is None else np.where(worth.factors > 1, t, special.ndtri(tail))
     root = np.sqrt(worth.factors)
     covariance = covariance_of(data, best, variance) * root[:, :, None] * root[:, None, :]
     sd = np.sqrt(np.einsum("bii->bi", covariance))
     sides = _Ends(best.p - t * sd, best.p + t * sd, np.zeros(len(x), bool), np.zeros(len(x), bool))
-    above = (t**2 * variance[:, None] * worth.factors)[:, : len(asked.model.unknowns)]
+    above = (t**2 * variance[:, None] * worth.factors)[:, : len(question.model.unknowns)]
     sides = _intervals(posed, best, (costs, places), sides, sd, above)
     at_bound = ((best.p <= data.low) | (best.p >= data.high))[:, : above.shape[1]].any(axis=1)
-    no_contact = _no_contact(curve, data, best, count, k) & (asked.model.x == "D")  # else the contact is not in doubt
+    # of curves over a load or a radius the contact is not in doubt
+    no_contact = _no_contact(curve, data, best, count, k) & (question.model.x == "D")
     status = np.select(
         [no_contact, ~best.ended, at_bound, sides.open, sides.several],
         [
@@ -99,30 +100,30 @@ def fit_block(
     )
     status = np.where(np.isfinite(best.cost), status, FitStatus.INVALID_INPUT)
     numbers = {"p": best.p, "low": sides.low, "high": sides.high, "covariance": covariance, "t": t, "status": status}
-    numbers |= {"propagated": _propagated(asked, curve, data, best), "wide": curve.wide, "top": curve.high}
+    numbers |= {"propagated": _propagated(question, curve, data, best), "wide": curve.wide, "top": curve.high}
     numbers |= {"parts": parts_of(curve, data, best, share, worth), **worth._asdict()}
     return numbers | {"fit": np.where(there, best.model * curve.high[:, None], np.nan)}
 
 
 def _posed(
-    asked: Asked, table: RatioTable | TermTable, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
+    question: Question, table: RatioTable | TermTable, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
 ) -> _Posed:
-    model, there = asked.model, np.isfinite(x) & np.isfinite(y)
+    model, there = question.model, np.isfinite(x) & np.isfinite(y)
     top = np.where(there, y, -np.inf).max(axis=1) - np.where(there, y, np.inf).min(axis=1)
     largest, least = np.where(there, x, -np.inf).max(axis=1), np.where(there, x, np.inf).min(axis=1)
-    wide = np.where(largest - least > 0, largest - least, largest) if "D0" in asked.shifts else largest
+    wide = np.where(largest - least > 0, largest - least, largest) if "D0" in question.shifts else largest
     x = np.where(there, x, largest[:, None])
-    curve = MeasuredCurves(table, x, wide, top, asked.shifts)
+    curve = MeasuredCurves(table, x, wide, top, question.shifts)
     with np.errstate(divide="ignore", invalid="ignore"):
         w = np.where(there, 1.0 if sigma is None else top[:, None] / np.where(there, sigma, 1.0), 0.0)
     y = np.where(there, y, 0.0)
     k = len(curve.names)
     none = np.zeros((len(x), k))
-    data = Data(y / top[:, None], w, none, none, none, none.copy(), asked.loss == "huber")
+    data = Data(y / top[:, None], w, none, none, none, none.copy(), question.loss == "huber")
     long = x.shape[1] > LONG and bool((there.sum(axis=1) > LONG).all())
     few = thinned(curve, data) if long else None
     of, points = (few.curve, few.data) if few else (curve, data)
-    starts, low, high = starts_of(asked, of, points.w > 0, points.y * top[:, None], top, least)
+    starts, low, high = starts_of(question, of, points.w > 0, points.y * top[:, None], top, least)
     data, points = (part._replace(low=low, high=high, center=none.copy()) for part in (data, points))
     if model.sticks:
         curve, of = (
@@ -130,16 +131,16 @@ def _posed(
         )
         starts = best_of(of, points, starts)
     variance = prior = np.ones(len(x))
-    if asked.priors:
-        columns = [model.unknowns.index(name) for name in asked.priors]
-        center, sd = np.array(list(asked.priors.values())).T
+    if question.priors:
+        columns = [model.unknowns.index(name) for name in question.priors]
+        center, sd = np.array(list(question.priors.values())).T
         variance, prior = _scatter(curve, data, starts[0], columns, center, sigma is None)
         for each in (data, points):
             each.center[:, columns] = center
         data.stiffness[:, columns] = prior[:, None] / sd**2
         points = points._replace(stiffness=data.stiffness)
     few = few and few._replace(curve=of, data=points)
-    return _Posed(asked, curve, data, few, starts, variance, prior)
+    return _Posed(question, curve, data, few, starts, variance, prior)
 
 
 def _scatter(
@@ -156,9 +157,9 @@ def _scatter(
     return variance, variance * worth.factors[:, : len(curve.table.model.unknowns)].max(axis=1)
 
 
-def _count(asked: Asked, data: Data) -> np.ndarray:
+def _count(question: Question, data: Data) -> np.ndarray:
     """Points (B,). Of what sticks, the point above which the others are in contact counts like an unknown."""
-    return (data.w > 0).sum(axis=1) - asked.model.sticks
+    return (data.w > 0).sum(axis=1) - question.model.sticks
 
 
 def _searched(posed: _Posed) -> tuple[Minimum, np.ndarray, np.ndarray]:
@@ -172,7 +173,7 @@ def _searched(posed: _Posed) -> tuple[Minimum, np.ndarray, np.ndarray]:
     fits = minimise(curve.take(every), data.take(every), np.concatenate(starts), sure=rough)
     costs, places = fits.cost.reshape(len(starts), -1), fits.p.reshape(len(starts), B, -1)
     best = fits.take(costs.argmin(axis=0) * B + np.arange(B))
-    if posed.asked.model.sticks and posed.curve.points.retracts.any():
+    if posed.question.model.sticks and posed.curve.points.retracts.any():
         costs, places = _to_the_ends(posed, (curve, data), best.p, (costs, places))
         best = best._replace(p=places[costs.argmin(axis=0), np.arange(B)])
     if posed.few or len(starts) > 1:
@@ -187,7 +188,7 @@ def _to_the_ends(posed: _Posed, few: tuple[MeasuredCurves, Data], p: np.ndarray,
     about the best unknowns p (B, k) of the search with a ramp: with other works of adhesion, or values of the first
     unknown if that is known, for which the others are fitted first.
     """
-    (curve, data), model, (costs, places) = few, posed.asked.model, minima
+    (curve, data), model, (costs, places) = few, posed.question.model, minima
     place = model.unknowns.index("w_adhesion") if "w_adhesion" in model.unknowns else 0
     count, B = len(_ABOUT), len(p)
     every, begin = np.tile(np.arange(B), count), np.tile(p, (count, 1))
@@ -230,7 +231,7 @@ def _intervals(posed: _Posed, best: Minimum, minima: tuple, ends: _Ends, sd: np.
     within = costs <= least + above.max(axis=1)
     apart = np.abs(places[:, :, :inputs] - best.p[:, :inputs]) > np.maximum(sd[:, :inputs], _SAME)
     ends = ends._replace(several=(within & apart.any(axis=2)).any(axis=0))
-    if posed.asked.intervals != "profile" or data.huber:
+    if posed.question.intervals != "profile" or data.huber:
         return ends
     if posed.few:
         best = minimise(curve, data, best.p)
@@ -276,16 +277,16 @@ def _no_contact(curve: MeasuredCurves, data: Data, best: Minimum, count: np.ndar
     return ~(special.fdtri(more, free, _SURE) < F) & np.isfinite(best.cost)
 
 
-def _propagated(asked: Asked, curve: MeasuredCurves, data: Data, best: Minimum) -> np.ndarray:
+def _propagated(question: Question, curve: MeasuredCurves, data: Data, best: Minimum) -> np.ndarray:
     """The covariance (B, k, k) that the spreads of other inputs make: the unknowns follow each of them."""
     k = best.p.shape[1]
     whole = np.zeros((len(best.p), k, k))
-    if not asked.model.moved:
+    if not question.model.moved:
         return whole
     _, _, others = curve.contact(best.p, moved=True)
     A, _ = normal(data, best.p, best.model, best.J, best.weights)
     A = inverse(A)
-    for name, by in zip(asked.model.moved, others, strict=True):
-        follows = -np.einsum("bij,bnj,bn,bn->bi", A, best.J, best.weights, by) * asked.spreads[name]
+    for name, by in zip(question.model.moved, others, strict=True):
+        follows = -np.einsum("bij,bnj,bn,bn->bi", A, best.J, best.weights, by) * question.spreads[name]
         whole += follows[:, :, None] * follows[:, None, :]
     return whole

@@ -8,10 +8,10 @@ import xarray as xr
 from ...in_words.inputs import given
 from ...in_words.sentences import assumed
 from ...solving import solve
-from .asked import Asked
+from .question import Question
 
 
-def said(question: Asked, fitted: xr.Dataset) -> dict[str, str]:
+def said(question: Question, fitted: xr.Dataset) -> dict[str, str]:
     """Attributes of a Dataset of `fit`: `given`, the inputs that are not free; `assumed`, the defaults that stand for
     inputs which were not given, and may be far from them, if there are any."""
     with warnings.catch_warnings():

@@ -9,8 +9,8 @@ from measured_curves import solved, status
 from numpy.testing import assert_allclose
 
 import study
-from study.inverse.fits.asked import asked
 from study.inverse.fits.curve import MeasuredCurves
+from study.inverse.fits.question import read_question
 from study.inverse.fits.sticking_points import StickingPoints
 from study.inverse.fits.tables.branch import branch
 from study.inverse.fits.tables.term_table import TermTable
@@ -48,7 +48,7 @@ def curve_of(inputs, free, **options):
     usual = {"contact_point": True, "baseline": True, "tilt": False, "sigma": None, "loss": "linear"}
     usual |= {"intervals": "profile", "level": 0.95, "plan": False} | options
     inputs = {name: value for name, value in inputs.items() if value is not None}
-    question = asked(free, inputs, "D", "P", usual)
+    question = read_question(free, inputs, "D", "P", usual)
     model = question.model
     p = [float(model.coordinate(name, model.value(name))) for name in model.unknowns]
     curve = MeasuredCurves(TermTable(model), DEPTHS[None], np.array([1e-6]), np.array([1e-8]), question.shifts)

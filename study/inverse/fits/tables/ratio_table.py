@@ -1,7 +1,7 @@
 """A table of y(x; unknown inputs) that is read a million times: polynomials on tiles, made where they are needed.
 
-What is tabulated is g = ln(y/Hertz's y) over ln u and the coordinates of the unknown inputs (`CurveModel`). Tiles lie on
-a fixed lattice, so that the numbers of a curve do not depend on which other curves there are. Along ln u a tile has
+What is tabulated is g = ln(y/Hertz's y) over ln u and the coordinates of the unknown inputs (`CurveModel`). Tiles lie
+on a fixed lattice, so that the numbers of a curve do not depend on which other curves there are. Along ln u a tile has
 _LATTICE points, between which a cubic is drawn; along the others it has Chebyshev points.
 """
 

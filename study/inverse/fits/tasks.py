@@ -4,8 +4,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .asked import Asked
 from .block import fit_block
+from .question import Question
 from .tables.ratio_table import RatioTable
 from .tables.term_table import TermTable
 
@@ -21,7 +21,7 @@ class Task(NamedTuple):
     """
 
     call: str
-    question: Asked
+    question: Question
     x: np.ndarray
     y: np.ndarray
     sigma: np.ndarray | None

@@ -31,7 +31,7 @@ DECADE = np.log(10.0)
 
 
 @dataclass(frozen=True)
-class Asked:
+class Question:
     """A checked call.
 
     model : the curve, with its unknown inputs: free ones, then those with a prior
@@ -56,7 +56,7 @@ class Asked:
     call: dict[str, Any]
 
 
-def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
+def read_question(free: Any, parameters: dict, x: str, y: str, options: dict) -> Question:
     """Check a call. Raises StudyError before any curve is read."""
     errors = _choices(x, y, options)
     names, texts = _listed(free, errors), dict(free) if isinstance(free, dict) else {}
@@ -133,7 +133,7 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     ]
     shifts = shifts if x == "D" else []
     about = (options["loss"], options["intervals"], float(options["level"]))
-    return Asked(model, names, bounds, prior, spread, tuple(shifts), *about, called, call)
+    return Question(model, names, bounds, prior, spread, tuple(shifts), *about, called, call)
 
 
 def _in_layers(parameters: dict) -> dict[str, Any]:

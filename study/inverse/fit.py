@@ -19,13 +19,11 @@ from ..work.cases import Failure, laws_of_users
 from ..work.engine import computed_tasks
 from ..work.progress import Progress, screen_of
 from .curves import measured
-from .fits.answer import answered
+from .fits.answer import answered, said
 from .fits.block import FitStatus
 from .fits.least_squares import AT_LEAST
 from .fits.model import HERTZ, CurveModel
-from .fits.points.region import inside, region
-from .fits.question import Question, read_question
-from .fits.said import said
+from .fits.question import Question, inside, read_question, region
 from .fits.tables.branch import planned
 from .fits.tasks import Task, fit_task, forget
 from .no_pull import joined, without

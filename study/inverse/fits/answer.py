@@ -9,13 +9,15 @@ import xarray as xr
 from solver import Status
 
 from ...in_words.fits import NAMES_OF_SHIFTS
+from ...in_words.inputs import given
+from ...in_words.sentences import assumed
 from ...inputs.scene.layers import moduli_of
 from ...inputs.vocabulary import NOT_RUN, ROWS
 from ...rules.rule import RULES
 from ...solving import solve
 from .block import FitStatus
+from .model import CurveModel
 from .points.parts import PARTS
-from .points.sharp import flows
 from .question import Question
 
 #: At most so many curves have all places solved at once: a call costs more than some hundred contacts.
@@ -135,8 +137,8 @@ def _end(p: float, end: float, more: float) -> float:
 def _validity(
     question: Question, fitted: xr.Dataset, value: np.ndarray, X: np.ndarray, there: np.ndarray
 ) -> xr.Dataset:
-    """Variables over `curve`: which assumptions of the model the deepest contact of a fit violates, and the x up to which
-    none is violated."""
+    """Variables over `curve`: which assumptions of the model the deepest contact of a fit violates, and the x up to
+    which it violates none."""
     model = question.model
     deepest = np.where(there, X, -np.inf).max(axis=1, initial=-np.inf)
     D0 = fitted["D0"].values if "D0" in fitted else np.zeros(len(X))
@@ -218,3 +220,48 @@ def _contacts(question: Question, value: np.ndarray, x: np.ndarray) -> xr.Datase
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return solve(**arrays, x=2, profiles=False, progress=False)
+
+
+#: Bodies at least as stiff, in Pa, flow below a sharp tip, whatever they are made of: the mean pressure of the elastic
+#: contact, E* cot(half_angle)/2, is 0.18 E* under a Berkovich tip, and their hardness is at most some 0.1 E*. Rubbers
+#: and gels, which do not flow, are softer than 0.1 GPa.
+HARD = 1e9
+#: cot(half_angle)/2 of tips that count as sharp: hardness over E* is above this in few metals.
+_BLUNT = 0.02
+_POINTED = ("berkovich", "vickers", "cube_corner")
+_TANGENT = 3.0  # a blunt cone is sharp where the contact is so many times as wide as its ball
+
+
+def flows(model: CurveModel, modulus: np.ndarray, contacts: xr.Dataset) -> np.ndarray:
+    """Which contacts (M,) of a fit are those of a sharp tip in a body that flows below it.
+
+    modulus : (M,) in Pa, of what is touched
+    contacts : the contacts at the deepest points, of `solve`
+    """
+    numbers = model.scene.parameters
+    shape = numbers.get("shape", "paraboloid")
+    if (model.x, model.y) != ("D", "P") or shape not in (*_POINTED, "cone", "blunt_cone"):
+        return np.zeros(len(modulus), bool)
+    hard = modulus >= HARD
+    if shape in _POINTED:
+        return hard
+    angle = contacts["half_angle"].values if "half_angle" in contacts else numbers["half_angle"]
+    slope = 1 / np.tan(np.radians(np.asarray(angle, float)))
+    if shape == "blunt_cone":
+        hard &= contacts["a"].values > _TANGENT * model.scene.values["tip_radius"] * slope
+    return hard & (slope / 2 > _BLUNT)
+
+
+def said(question: Question, fitted: xr.Dataset) -> dict[str, str]:
+    """Attributes of a Dataset of `fit`: `given`, the inputs that are not free; `assumed`, the defaults that stand for
+    inputs which were not given, and may be far from them, if there are any."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        contact = solve(**question.call, x=2, profiles=False, progress=False)
+    free = [name for name in question.free if name in fitted]  # of a plan none: these are its assumed values
+    for name in free:  # what is assumed depends on how soft the layer is
+        if np.isfinite(value := fitted[name].median().item()):
+            contact[name] = contact[name].copy(data=value)
+    words = {"given": "\n".join(given(contact, free))}
+    doubts = [f"Assumed: {sentence}" for sentence in assumed(contact)]
+    return words | ({"assumed": "\n".join(doubts)} if doubts else {})

@@ -17,8 +17,8 @@ from ...rules.rule import RULES
 from ...solving import solve
 from .block import FitStatus
 from .model import CurveModel
-from .points.parts import PARTS
 from .question import Question
+from .residuals import PARTS
 
 #: At most so many curves have all places solved at once: a call costs more than some hundred contacts.
 _FEW = 8

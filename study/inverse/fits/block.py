@@ -8,16 +8,15 @@ from scipy import special
 
 from solver.numerics.codes import Codes
 
+from .averages import LONG, Thinned, thinned
 from .curve import MeasuredCurves
 from .intervals import covariance_of, profiles
 from .least_squares import SURE, Data, Minimum, inverse, minimise, normal
-from .points.parts import parts_of
-from .points.thinned import LONG, Thinned, thinned
-from .points.worth import worth_of
 from .question import Question
+from .residuals import parts_of, worth_of
 from .starts import best_of, starts_of
-from .sticking_points import StickingPoints
 from .tables.ratio_table import RatioTable
+from .tables.sticking_points import StickingPoints
 from .tables.term_table import TermTable
 
 _ROUGHLY = (
@@ -62,7 +61,7 @@ def fit_block(
 
     Returns the unknowns p (B, k), the ends low and high of their intervals, their covariance (B, k, k) and what the
     spreads of other inputs add to it (`propagated`), Student's t (B, k), status (B,), the fit of y (B, n), the units of
-    x and y (wide and top, (B,)) in which D0, P0 and tilt are, what the residuals say (:class:`.points.worth.Worth`)
+    x and y (wide and top, (B,)) in which D0, P0 and tilt are, what the residuals say (:class:`.residuals.Worth`)
     and the first unknown by parts of the contact (`parts`, (B, PARTS)).
     """
     posed = _posed(question, table, x, y, sigma)

@@ -6,9 +6,9 @@ import numpy as np
 
 from ...inputs.punch.shapes import ANGLES
 from .model import HERTZ
-from .sticking_points import StickingPoints
 from .tables.branch import Loads, branch
 from .tables.ratio_table import STEP, WIDE, Places, RatioTable
+from .tables.sticking_points import StickingPoints
 from .tables.term_table import TermTable
 
 _TILES = 4  # along ln u: from the largest depth down, more than _REACH

@@ -11,8 +11,8 @@ from numpy.testing import assert_allclose
 import study
 from study.inverse.fits.curve import MeasuredCurves
 from study.inverse.fits.question import read_question
-from study.inverse.fits.sticking_points import StickingPoints
 from study.inverse.fits.tables.branch import branch
+from study.inverse.fits.tables.sticking_points import StickingPoints
 from study.inverse.fits.tables.term_table import TermTable
 
 GEL = {"R": "5 um", "punch": "rigid", "nu1": 0.45, "E2": "20 kPa", "nu2": 0.45, "h": "3 um", "bonding": "bonded"}

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..curve import MeasuredCurves
-from ..least_squares import Data, Minimum
+from .curve import MeasuredCurves
+from .least_squares import Data, Minimum
 
 #: Curves of up to so many points are fitted as they are; of longer ones so many blocks.
 LONG, _BLOCKS = 1024, 512

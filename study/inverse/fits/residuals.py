@@ -1,8 +1,9 @@
-"""The covariance of the residuals of a curve, from the residuals themselves.
+"""The residuals of fits: how many independent points they are worth, and whether an unknown changes with the depth.
 
 Points that lie close together are off together: drift, feedback, and a model that is not quite right, leave waves in
 the residuals. Points that are counted as independent then seem to say far more than they do. The residuals, averaged
-in at most _MOST blocks along x, are taken for the sum of white noise and of noise whose correlation decays:
+in at most _MOST blocks along x, are taken for the sum of white noise and of noise whose correlation decays. Their
+covariance is
 
     cov(i, j) = v ((1 - s) delta_ij + s exp(-|i - j|/l)).
 
@@ -16,6 +17,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
+from .curve import MeasuredCurves
+from .least_squares import Data, Minimum, huber_limit, inverse, minimise, normal
+
 #: Blocks of points. With 100 to 10,000 points and correlations of neighbours of 0.5 to 0.95, 95 % intervals hold 94 to
 #: 98 % (tests/inverse/misfit/test_correlated_noise.py).
 _MOST = 128
@@ -28,8 +32,20 @@ _LIKELIER = 6.0
 #: Standard deviations of the correlation of neighbours below which the likelihood is not asked, and above which, of
 #: single points, their noise is not white whatever the likelihood of the blocks says.
 _LAGS, _SURE_LAGS = 2.0, 3.5
-#: Level of the test that the misfit in contact is larger than the noise before it, and least points on either side.
-_SURE, _ASIDE = 0.999, 10
+#: Level of the tests that the misfit in contact is larger than the noise before it, and that an unknown changes with the
+#: depth.
+_SURE = 0.999
+#: The first test needs so many points on either side.
+_ASIDE = 10
+#: A smaller change of an unknown is not worth a sentence.
+_LEAST = 0.03
+#: Residuals below this part of the range of y are those of the table of the model.
+_EXACT = 2e-5
+#: Freedom of Student's t that is left where hardly a point is independent of the others.
+_FREEDOM = 2.0
+#: Parts of the depth below the contact point, of equal width.
+PARTS = 4
+_STEPS, _ENOUGH = 12, 3  # steps of the search in a part, and points without which a part says nothing
 
 
 class Noise(NamedTuple):
@@ -44,6 +60,24 @@ class Noise(NamedTuple):
     middle: np.ndarray | None
     ratio: float
     larger: bool
+
+
+class Worth(NamedTuple):
+    """How much the points of B fits say.
+
+    factors : (B, k), by what the variance of each unknown is larger than with independent points
+    freedom : (B, k) of Student's t
+    ratio, larger : (B,) of :class:`Noise`
+    change, changes : (B,) the relative change of the first unknown from the beginning of the contact to the deepest
+        point, and whether it is sure and worth a word
+    """
+
+    factors: np.ndarray
+    freedom: np.ndarray
+    ratio: np.ndarray
+    larger: np.ndarray
+    change: np.ndarray
+    changes: np.ndarray
 
 
 @lru_cache(maxsize=32)
@@ -149,3 +183,89 @@ def _likeliest(E: np.ndarray, D: np.ndarray, waves: bool, more: float) -> tuple[
         if twice[best] > largest:
             largest, likeliest = twice[best], (spectra[best], vectors, float(squares[best]) / (n - k))
     return likeliest
+
+
+def worth_of(
+    x: np.ndarray, data: Data, fit: Minimum, variance: np.ndarray, prior: np.ndarray, share: np.ndarray
+) -> Worth:
+    """The :class:`Worth` of fits at x (B, n).
+
+    variance : (B,) of a point of weight 1, if points are independent
+    prior : (B,) times the stiffness of a prior this is the variance of its slope
+    share : (B, n) of the depth, 0 before the contact
+    """
+    B, k = fit.p.shape
+    rows = Worth(*(np.ones((B, k)) for _ in range(2)), *(np.full(B, value) for value in (np.nan, False, 0.0, False)))
+    A = inverse(normal(data, fit.p, fit.model, fit.J, fit.weights)[0])
+    residual = np.where(data.w > 0, data.w * (data.y - fit.model), 0.0)
+    limit = huber_limit(data, fit.model)
+    residual = residual if limit is None else np.clip(residual, -limit, limit)
+    off = np.sqrt((np.where(data.w > 0, data.y - fit.model, 0.0) ** 2).mean(axis=1))
+    for b in np.flatnonzero(off > _EXACT):
+        there = data.w[b] > 0
+        e, X = residual[b, there], (data.w[b, :, None] * fit.J[b])[there]
+        noise = noise_of(x[b, there], e, X, share[b, there] > 0)
+        rows.ratio[b], rows.larger[b] = noise.ratio, noise.larger
+        if noise.middle is not None:
+            of_points = float(e @ e) / max(len(e) - k, 1) if data.huber else variance[b]
+            usual = of_points * (X.T @ X + np.diag(data.stiffness[b]))
+            rows.factors[b] = _factors(A[b], usual, noise.middle + np.diag(data.stiffness[b] * prior[b]))
+        rows.change[b], rows.changes[b] = _change(x[b, there], e, X, share[b, there])
+    count = (data.w > 0).sum(axis=1)[:, None]
+    honest = np.maximum(count / rows.factors - k, np.minimum(count - k, _FREEDOM))
+    return rows._replace(freedom=np.where(rows.factors == 1, count - k, honest))
+
+
+def _factors(A: np.ndarray, usual: np.ndarray, whole: np.ndarray) -> np.ndarray:
+    """(k,), at least 1, by the covariance A whole A (a "sandwich") over that of independent points."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        factors = np.einsum("ij,jk,ik->i", A, whole, A) / np.einsum("ij,jk,ik->i", A, usual, A)
+    return np.where(np.isfinite(factors), np.maximum(factors, 1.0), 1.0)
+
+
+def _change(x: np.ndarray, e: np.ndarray, X: np.ndarray, share: np.ndarray) -> tuple[float, bool]:
+    """By how much the logarithm of the first unknown changes along the contact: a further unknown of the fit, at the
+    size that lowers the residuals most."""
+    z = X[:, 0] * np.where(share > 0, share - 0.5, 0.0)
+    wide = np.column_stack([z, X])
+    size = np.sqrt(np.maximum((wide**2).sum(axis=0), 1e-300))
+    A = inverse(((wide / size).T @ (wide / size))[None])[0] / size / size[:, None]
+    follows = A @ (wide.T @ e)
+    freedom = len(e) - wide.shape[1]
+    if freedom < 1 or not np.isfinite(follows).all():
+        return 0.0, False
+    left = e - wide @ follows
+    variance = float(left @ left) / freedom * A[0, 0]
+    change, t = float(follows[0]), special.stdtrit(freedom, (1 + _SURE) / 2)
+    if abs(change) < _LEAST or change**2 < t**2 * variance:
+        return change, False
+    noise = noise_of(x, left, wide, share > 0)
+    if noise.middle is not None:
+        honest = float(A[0] @ noise.middle @ A[0])
+        freedom = max(len(e) * variance / max(honest, variance) - wide.shape[1], _FREEDOM)
+        t = special.stdtrit(freedom, (1 + _SURE) / 2)
+        variance = max(honest, variance)
+    return change, bool(change**2 > t**2 * variance)
+
+
+def parts_of(curve: MeasuredCurves, data: Data, best: Minimum, share: np.ndarray, worth: Worth) -> np.ndarray:
+    """The first unknown (B, PARTS) of points from each part of the depth, for fits whose points do not agree: those
+    whose intervals are wider for it, or in which it changes with the depth. NaN elsewhere, and at a bound.
+
+    share : (B, n) of the depth, 0 before the contact
+    """
+    value = np.full((len(best.p), PARTS), np.nan)
+    rows = np.flatnonzero((worth.factors > 1).any(axis=1) | worth.changes)
+    if not len(rows):
+        return value
+    every, part = np.repeat(rows, PARTS), np.tile(np.arange(PARTS), len(rows))
+    inside = (share[every] > part[:, None] / PARTS) & (share[every] <= (part[:, None] + 1) / PARTS)
+    some = data.take(every)
+    some = some._replace(w=np.where(inside, some.w, 0.0), stiffness=0 * some.stiffness)
+    held = np.ones((len(every), best.p.shape[1]), bool)
+    held[:, 0] = False
+    fit = minimise(curve.take(every), some, best.p[every], held, _STEPS)
+    p = fit.p[:, 0]
+    good = ((some.w > 0).sum(axis=1) >= _ENOUGH) & (p > some.low[:, 0]) & (p < some.high[:, 0]) & np.isfinite(fit.cost)
+    value[every, part] = np.where(good, p, np.nan)
+    return value

@@ -13,10 +13,10 @@ from ..inputs.definition import StudyError
 from ..inputs.vocabulary import NOT_RUN, ROWS
 from ..specimen.foreign import plain
 from ..work.progress import screen_of
-from .design_answer import STATUSES, Answer, answered, searched, solutions, solved
-from .design_asked import wanted
 from .design_cases import Wanted
 from .design_messages import messages
+from .design_question import read_wanted
+from .design_search import STATUSES, Outcome, answered, searched, solutions, solved
 
 
 def design(
@@ -71,12 +71,12 @@ def design(
     begun, stream = time.monotonic(), screen_of(plain(progress))
     if cases is not None and not (isinstance(cases, list) and cases and all(isinstance(row, dict) for row in cases)):
         raise StudyError(["design: cases must be a list of dictionaries, at least one"])
-    want = wanted(targets, by, parameters, cases or [], same_piece, correlations)
+    want = read_wanted(targets, by, parameters, cases or [], same_piece, correlations)
     pieces = searched(want, stream, begun)
     t = solutions(want, pieces)
     contacts, change = solved(want, t, stream)
-    answer = answered(want, pieces, t, change, stream)
-    designed = contacts.assign(_variables(want, answer, contacts))
+    outcome = answered(want, pieces, t, change, stream)
+    designed = contacts.assign(_variables(want, outcome, contacts))
     designed, left_out = with_coordinates(designed, parameters)
     beyond = doubts(designed) if want.definition.scene else beside_rules(designed)
     left_out += ["\n".join(["a contact found is beyond what the model describes:", *beyond])] * bool(beyond)
@@ -85,19 +85,19 @@ def design(
     return designed
 
 
-def _variables(want: Wanted, answer: Answer, contacts: xr.Dataset) -> dict[str, xr.Variable]:
+def _variables(want: Wanted, outcome: Outcome, contacts: xr.Dataset) -> dict[str, xr.Variable]:
     """What a design has beside its contacts."""
     name, dims = want.name, contacts["status"].dims
     unit = ROWS[name].unit if want.definition.scene else ""
     about = {"units": unit} if unit not in ("", "1") else {}
     about |= {key: contacts[name].attrs[key] for key in ("scale",) if key in contacts[name].attrs}
-    x, change = want.x_of(answer.t), answer.change
+    x, change = want.x_of(outcome.t), outcome.change
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.where(change.spread == 0, 0.0, change.spread / want.level / change.by_input)
     numbers = {
         f"{name}_spread": (np.abs(x) * relative, f"standard deviation of {name}, from the spreads of other inputs"),
-        f"{name}_low": (want.x_of(answer.low), f"{name} below, where {want.target} is one standard deviation off"),
-        f"{name}_high": (want.x_of(answer.high), f"{name} above, where {want.target} is one standard deviation off"),
+        f"{name}_low": (want.x_of(outcome.low), f"{name} below, where {want.target} is one standard deviation off"),
+        f"{name}_high": (want.x_of(outcome.high), f"{name} above, where {want.target} is one standard deviation off"),
     }
     shape = contacts["status"].shape
     variables = {
@@ -109,7 +109,7 @@ def _variables(want: Wanted, answer: Answer, contacts: xr.Dataset) -> dict[str, 
         "flag_values": np.array([*range(len(STATUSES)), NOT_RUN], dtype=np.int8),
         "flag_meanings": " ".join((*STATUSES, "not_run")),
     }
-    texts = np.array(messages(want, answer, contacts.assign(variables)), dtype=object).reshape(shape[:-1])
-    variables["design_status"] = xr.Variable(dims[:-1], answer.status.reshape(shape[:-1]), flags)
+    texts = np.array(messages(want, outcome, contacts.assign(variables)), dtype=object).reshape(shape[:-1])
+    variables["design_status"] = xr.Variable(dims[:-1], outcome.status.reshape(shape[:-1]), flags)
     variables["message"] = xr.Variable(dims[:-1], texts.astype(str), {"long_name": "what was found"})
     return variables

@@ -32,8 +32,8 @@ _LIKELIER = 6.0
 #: Standard deviations of the correlation of neighbours below which the likelihood is not asked, and above which, of
 #: single points, their noise is not white whatever the likelihood of the blocks says.
 _LAGS, _SURE_LAGS = 2.0, 3.5
-#: Level of the tests that the misfit in contact is larger than the noise before it, and that an unknown changes with the
-#: depth.
+#: Level of the tests that the misfit in contact is larger than the noise before it, and that an unknown changes with
+#: the depth.
 _SURE = 0.999
 #: The first test needs so many points on either side.
 _ASIDE = 10

@@ -42,7 +42,7 @@ class Change(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Answer:
+class Outcome:
     """What was found, over the cases and their solutions.
 
     t, low, high : (B, n) solutions, and where the result is a spread off
@@ -126,7 +126,7 @@ def solved(want: Wanted, t: np.ndarray, stream: TextIO | None = None) -> tuple[x
     return contacts, Change(contacts[f"{want.target}_spread"].values.reshape(t.shape), by_input, shares)
 
 
-def answered(want: Wanted, pieces: list[Piece], t: np.ndarray, change: Change, stream: TextIO | None) -> Answer:
+def answered(want: Wanted, pieces: list[Piece], t: np.ndarray, change: Change, stream: TextIO | None) -> Outcome:
     """The answer: with the ends of each solution, its status and what is reached."""
     low, high = np.where(change.spread == 0, t, np.nan), np.where(change.spread == 0, t, np.nan)
     status, reach = np.full(want.size, NOT_RUN, np.int8), np.full((want.size, 4), np.nan)
@@ -141,7 +141,7 @@ def answered(want: Wanted, pieces: list[Piece], t: np.ndarray, change: Change, s
 
     if np.any(change.spread > 0):
         _each(f"the ± of {counted(want.size, 'design')}", [rows for rows, _, _ in pieces], search, stream)
-    return Answer(t, low, high, status, reach, change)
+    return Outcome(t, low, high, status, reach, change)
 
 
 def _status(want: Wanted, t: np.ndarray, reach: np.ndarray) -> np.ndarray:

@@ -21,7 +21,9 @@ _EXAMPLE = 'such as {"p_max": "180 MPa"}'
 _BOUNDS = 'such as by={"h": ("1 um", "1 mm")}'
 
 
-def wanted(targets: Any, by: Any, parameters: dict, rows: list[dict], same_piece: Any, correlations: Any) -> Wanted:
+def read_wanted(
+    targets: Any, by: Any, parameters: dict, rows: list[dict], same_piece: Any, correlations: Any
+) -> Wanted:
     """The design that a call asks for. Raises StudyError for what it cannot have, before anything is computed."""
     target, value = _target(targets)
     written, bounds = _looked_for(by)

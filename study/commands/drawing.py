@@ -21,7 +21,7 @@ from ..inputs.places import is_study, study_file
 from ..terminal import answer, on_one_line, say
 from ..work.second import Second
 from .computing import completed
-from .rows import results_of, write_rows
+from .spreadsheet import results_of, write_rows
 
 log = logging.getLogger(__name__)
 KINDS = {"plot": "figure", "table": "table"}

@@ -110,7 +110,7 @@ def test_study_imports_what_is_declared(path):
     allowed = {"numpy", "scipy", "xarray", "netCDF4", "dask", "matplotlib", "pint", "solver", "study"}
     allowed |= {"SurfaceTopography"} if path.name == "scan_files.py" else set()
     allowed |= {"pandas"} if path.name == "labelled.py" else set()  # of which xarray makes its indexes
-    allowed |= {"rows.py": {"openpyxl"}, "__main__.py": {"argcomplete"}}.get(path.name, set())
+    allowed |= {"spreadsheet.py": {"openpyxl"}, "__main__.py": {"argcomplete"}}.get(path.name, set())
     allowed |= {"roughcoat"} if path.name in ("cluster.py", "lazy.py") else set()  # so that a worker takes our packages
     allowed |= {"roughcoat", "lmfit"} if path.name == "nanite_layer.py" else set()  # nanite loads it, and has lmfit
     assert tops(path) - set(sys.stdlib_module_names) <= allowed

@@ -11,7 +11,7 @@ from ..inputs.definition import StudyError
 from ..specimen import materials, roughness
 from ..specimen.quantities import quantity
 from ..terminal import answer, program, shown
-from . import ending
+from . import signals
 from .arguments import SWITCH, assignment
 
 
@@ -29,9 +29,9 @@ def docs(_, name: str) -> int:
         return answer(*lines, f"\nOpen one with `{program()} docs NAME`.")
     text = pages.page(name)
     if sys.stdout is not None and sys.stdout.isatty():
-        ending.state.elsewhere = True  # Ctrl-C is the pager's
+        signals.state.elsewhere = True  # Ctrl-C is the pager's
         pydoc.pager(text)
-        ending.state.elsewhere = False
+        signals.state.elsewhere = False
         return 0
     return answer(text.rstrip("\n"))
 

@@ -14,8 +14,8 @@ from ..inputs.definition import StudyError
 from ..inputs.vocabulary import CONTROLS, NOT_RUN
 from ..inverse.design import design as designed_by
 from ..terminal import answer, say
-from .ending import INTERRUPTED
 from .point import as_numbers, described, number, number_or_text, parameters_of
+from .signals import INTERRUPTED
 
 _RANGE = re.compile(r"\s*\.\.\s*")
 _RESULTS = ("p0", "p_max", "Ar_An", "dP_dD", "P_off")  # which are never inputs

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .data.units import from_physical, readable, reduced_modulus, to_physical
     from .derivatives import sensitivities
     from .fields import extremes, stresses
-    from .figures.lines import plot
+    from .figures.plots import plot
     from .figures.registry import drawing, figure, table
     from .figures.stresses.picture import plot_stresses
     from .files.results_file import open_results
@@ -100,7 +100,7 @@ _HOME = {
     "reduced_modulus": "data.units",
     "summary": "in_words",
     "readable": "data.units",
-    "plot": "figures.lines",
+    "plot": "figures.plots",
     "plot_stresses": "figures.stresses.picture",
     "figure": "figures.registry",
     "table": "figures.registry",

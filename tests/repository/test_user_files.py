@@ -46,7 +46,7 @@ OWN = {
     "study/terminal.py": "the null device",
     "study/data/provenance.py": "the name of the processor",
     "study/catalogue.py": "pictures that are drawn by hand, in the book",
-    "study/figures/beside.py": "scripts that the door has opened before, and those of the package",
+    "study/figures/figure_files.py": "scripts that the door has opened before, and those of the package",
     "study/figures/record.py": "the record of drawn figures, whose kind and size it has looked at",
     "study/files/": "results: whoever reads them looks for pipes and folders (tests/files/test_unusable.py)",
     "study/work/processes.py": "the pipe to a process of its own",

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 import study
 from study.__main__ import main
 from study.figures.labels import axis_label, stated, value_text, written
-from study.figures.lines import drawn, spaced_by_factors
+from study.figures.plots import drawn, spaced_by_factors
 from study.inputs.definition import StudyError
 
 AXES = {"P": [1e-6, 1e-5, 1e-4], "n": [0.2, 0.5], "bonding": ["frictionless", "bonded"]}

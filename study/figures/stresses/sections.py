@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from ...in_words.inputs import is_rigid
 from ...specimen import quantities
 from ..labels import multiple
-from .places import Region, Stresses
+from .regions import Region, Stresses
 
 NAMES = {"layer": "mises1", "body": "mises2"}  # the extremes that the sections mark
 #: One colour for one stress: name -> symbol without friction, symbol with it, colour, dashes.

@@ -1,38 +1,26 @@
-"""What a figure can show of a dataset, which may be that of another program; results that several figures show."""
+"""Results that figures show: measured ones, which no study file makes, and what can be drawn of a dataset."""
 
-import os
+import hashlib
 from math import prod
 from numbers import Real
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import xarray as xr
 
-from ..files.results_file import open_results
+from solver import NUMERICS_VERSION
+
+from ..data.provenance import provenance
+from ..files.examine import examine
+from ..files.results_file import open_results, write
 from ..inputs.definition import StudyError
+from .registry import Measured, entry
 
 MOST_POINTS = 20_000_000  # numbers of a quantity, whose curves matplotlib draws in some seconds: more is a mistake
 #: Kinds of types of numpy whose values are neither real numbers nor texts.
 _NOT_DRAWN = {"M": "dates", "m": "spans of time", "c": "complex numbers", "S": "bytes", "V": "compound values"}
-#: Bytes in memory of results that are kept while a program draws. Some twenty studies have figures.
-SMALL = 20_000_000
-_kept: dict[Path, tuple[tuple, xr.Dataset]] = {}
 _IN_LABELS = ("units", "long_name", "scale")  # attributes
-
-
-def opened(path: Path) -> xr.Dataset:
-    """The results in a file. Those that are small are kept for the next figure that needs them, until the file is
-    another one."""
-    path = Path(os.path.abspath(path))
-    place = path.stat()
-    stamp = place.st_mtime_ns, place.st_size, place.st_ino
-    if path not in _kept or _kept[path][0] != stamp:
-        _kept.pop(path, None)
-        dataset = open_results(path)
-        if dataset.nbytes > SMALL:
-            return dataset
-        _kept[path] = stamp, dataset
-    return _kept[path][1].copy()
 
 
 def drawable(dataset: xr.Dataset, names: tuple[str, ...]) -> xr.Dataset:
@@ -75,3 +63,35 @@ def _reason(name: str, variable: xr.Variable) -> str:
 def why_none(y: str, values: xr.DataArray) -> str:
     """Why no case has a number to draw."""
     return f"{y} is infinite" if np.isinf(values).any() else "status says what became of each"
+
+
+def results(name: str, folder, force: bool = False, command: str = "") -> xr.Dataset:
+    """The measurements in FOLDER/NAME.nc. If they are missing, damaged or of another plan, they are made anew.
+
+    force : make them anew in any case
+
+    A damaged file is kept aside. Raises Unusable for a file that roughcoat has not written, StudyError for the cases of
+    a study, and for a name that nothing measures.
+    """
+    measured, path = entry("measured", name), Path(folder) / f"{name}.nc"
+    condition = examine(path)
+    if condition.kind in ("foreign", "unreadable"):
+        condition.raise_if_bad()
+    if condition.sizes:
+        raise StudyError([f"{path}: holds the cases of a study: move it away, or use --results DIR"])
+    if force or not condition.good or condition.digest != digest(measured.plan()):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write(described(measured.measure(), name, measured, command), path, condition)
+    return open_results(path)
+
+
+def described(dataset: xr.Dataset, name: str, measured: Measured, command: str) -> xr.Dataset:
+    """Measurements with the provenance that all results have; the plan stands for the study file."""
+    plan = measured.plan()
+    about = SimpleNamespace(title=measured.title, name=name, text=plan, digest=digest(plan))
+    return dataset.assign_attrs(provenance(about, command))
+
+
+def digest(plan: str) -> str:
+    """sha256 of a plan and the numerics."""
+    return hashlib.sha256((NUMERICS_VERSION + plan).encode()).hexdigest()

@@ -11,7 +11,7 @@ from ...again import Again, refuse_without_stresses
 from ...fields import residual_stress, units_of
 from ...in_words.inputs import is_rigid
 from ...inputs.definition import StudyError
-from .places import Region, Stresses, one_contact, yield_strengths
+from .regions import Region, Stresses, one_contact, yield_strengths
 
 #: Depths in the layer and in the body; radii, of which the edge of the spot is one; how deep the body is shown, in
 #: pitches.

@@ -11,7 +11,7 @@ from children import PATIENCE, run_forked
 import study
 from study.__main__ import main
 from study.commands.arguments import proposed
-from study.figures import beside, registry
+from study.figures import figure_files, registry
 
 GOOD = """
 [model]
@@ -139,7 +139,7 @@ def test_files_beside_it_are_imported_and_count(monkeypatch):
 
 
 def names_of(text: str) -> set[tuple[str, str]]:
-    return {*beside.names_in(put("studies/figures.py", text))}
+    return {*figure_files.names_in(put("studies/figures.py", text))}
 
 
 @pytest.mark.parametrize(
@@ -197,7 +197,7 @@ def test_a_file_that_cannot_be_used_is_told_and_the_others_are_drawn(text, said,
 
 def test_all_tells_of_a_file_that_is_no_python(monkeypatch, capsys):
     put("studies/figures.py", "def (")
-    monkeypatch.setattr("study.figures.beside.book_files", list)
+    monkeypatch.setattr("study.figures.figure_files.book_files", list)
     assert main(["plot", "all"]) == 2
     assert "studies/figures.py: is no Python: line 1: " in capsys.readouterr().err
 
@@ -225,7 +225,7 @@ def test_it_is_drawn_again_when_its_code_or_data_change():
 
 def test_the_book_is_one_of_them():
     """It has the form of a user's studies, and its code is not loaded by asking for names."""
-    files = [file.parent.name for file in beside.book_files()]
+    files = [file.parent.name for file in figure_files.book_files()]
     assert files == ["evidence", "literature", "paper", "systems"]
     loaded = {name for name in sys.modules if name.startswith("study.studies.")}
     assert {"fig03", "coatings", "validity", "literature"} <= set(registry.names("figure"))

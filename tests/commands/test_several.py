@@ -12,7 +12,7 @@ from study.__main__ import main
 from study.commands import spreadsheet
 from study.commands.point import listed
 from study.figures.formats import csv_text
-from study.in_words.columns import columns
+from study.in_words.text import columns
 
 BALL = {"R": "5 mm", "E2": "70 ± 7 GPa", "nu2": 0.33, "base": "half_space", "micro": "smooth"}
 WORDS = [f"{name}={value}" for name, value in BALL.items()]

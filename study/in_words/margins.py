@@ -80,7 +80,7 @@ class _Limit(NamedTuple):
         return self.who == "the asperities"
 
 
-class Strength(NamedTuple):
+class Margin(NamedTuple):
     """What is said of the strengths of a contact, a sentence each, and whether one of them is exceeded."""
 
     sentences: list[str]
@@ -115,11 +115,11 @@ class _Looked(NamedTuple):
     hard: bool
 
 
-def holds(case: xr.Dataset) -> Strength:
+def holds(case: xr.Dataset) -> Margin:
     """Sentences about one contact that is solved; none where nothing is known of its strengths, and it has no units."""
     looked = _looked_at(case)
     if isinstance(looked, str):
-        return Strength([looked] * bool(looked))
+        return Margin([looked] * bool(looked))
     again, compared, hard = looked.again, looked.compared, looked.hard
     far = not compared or not hard and compared[0].share < _FAR
     said = [] if far else _closest(looked, case)
@@ -127,7 +127,7 @@ def holds(case: xr.Dataset) -> Strength:
         said = [*said, _THROUGH] if said else []
     said += _needed(again, looked.lacking) if looked.lacking and hard else []
     said = [*(_flowing(case) if said else []), *said, *_of_own_law(again, said)]
-    return Strength(said, bool(compared) and compared[0].share > 1)
+    return Margin(said, bool(compared) and compared[0].share > 1)
 
 
 def closest(case: xr.Dataset) -> str:

@@ -1,16 +1,30 @@
-"""The shape of the punch and what sticks, in words."""
+"""Sentences about some contacts alone: shapes, adhesion, asperities that feel the layer, spots that unload."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from solver import Status, solve
+from solver.laws import LAWS
+from solver.laws.cell.family import MOST, REACH
+from solver.models.cells import last_fraction
+from solver.models.range_of_law import without_family
+from solver.parameters import one_of
+from solver.scaling import dimensionless, law_of
 from solver.shapes import PARABOLOID, SHAPES
 from solver.shapes.cone import KIND, PYRAMIDS
 
-from ...arrays import xarray_later as xr
-from ...inputs.vocabulary import names
-from ...specimen.quantities import readable
-from ..numbers import in_its_unit
+from ..again import Again
+from ..arrays import xarray_later as xr
+from ..inputs.definition import StudyError
+from ..inputs.punch.asperities import USED
+from ..inputs.vocabulary import names
+from ..rules.rule import of_cases
+from ..specimen.quantities import readable
+from ..terminal import rounded
+from .numbers import in_its_unit
 
 #: Results of pull-off and pull-in that a summary lists, in this order.
 OF_PULL_OFF = tuple(name for name in names("pull_off") if name != "stable")
@@ -18,6 +32,18 @@ OF_PULL_OFF = tuple(name for name in names("pull_off") if name != "stable")
 _CONES = {KIND.name: None} | {kind.name: float(kind.of(size=1).cot[0]) for kind in PYRAMIDS}
 #: Below this a correction is not worth a sentence: it is less than what the moduli of a material spread.
 _SMALL = 0.005
+#: A law that ends at less than this part of the largest contact fraction ends because the disc cell goes wrong.
+_EARLY = 0.999
+_FAR = f"The pitch of the asperities is above {MOST:g} h: what the layer does to them is not known there"
+_MERGED = (
+    f"The spots cover more than {REACH:g} of the area in the centre, or in a ring, and are no circles any more: the \
+law of asperities on the coated body ends there"
+)
+_HALF_SPACE = 'asperities_on = "half_space" has numbers, of a half-space of the layer\'s material.'
+#: The load is lowered to this part; pressures that are larger there by less than _SAME of the largest are the same.
+_LESS, _SAME = 0.9, 1e-6
+#: Radii in a that are looked at.
+_RADII = np.sin(np.linspace(0, np.pi / 2, 25))
 
 
 def sticks(contacts: xr.Dataset) -> bool:
@@ -110,3 +136,72 @@ def unit_of_length(case: xr.Dataset) -> list[str]:
         return []
     length = readable(float(case["R"]), "m")
     return [f"R, the unit of length of the profile, is not given: {scale} is taken, {length}."]
+
+
+def presses_on(case: xr.Dataset) -> str:
+    """The end of the sentence on the model: what the asperities press on, where the contact says it."""
+    if "asperities_used" not in case or case["asperities_used"] == 0:
+        return ""
+    felt = case["asperities_used"] == USED.index("layer")
+    return (
+        ", which press on the coated body itself" if felt else ", which press on a half-space of the layer's material"
+    )
+
+
+def ended(contacts: xr.Dataset) -> list[str]:
+    """Sentences on contacts at pressures that the law of asperities on their bodies does not know, and the way out."""
+    if "asperities_used" not in contacts:
+        return []
+    outside = (contacts["status"].values == Status.OUTSIDE_LAW) & (
+        contacts["asperities_used"].values == USED.index("layer")
+    )
+    if not outside.any():
+        return []
+    try:
+        problem = Again.of(contacts, "summary").problem
+    except StudyError:  # of a mean, say
+        return []
+    index, last = np.flatnonzero(outside), np.full(outside.shape, np.nan)
+    part, far = problem.take(index), np.zeros_like(outside)
+    last.flat[index], far.flat[index] = last_fraction(part), without_family(part)
+    early = outside & ~far & (last < _EARLY * REACH)
+    said = []
+    if early.any():
+        text = f"On a layer this soft the disc cell goes wrong where spots cover more than {rounded(last[early].min())}"
+        said.append(f'{of_cases(early)}{text} of the area: micro = "hex_lattice" goes on to {REACH:g}.')
+    for where, text in ((far, _FAR), (outside & ~far & ~early, _MERGED)):
+        said += [f"{of_cases(where)}{text}; {_HALF_SPACE}"] * bool(where.any())
+    return said
+
+
+def falling(contacts: xr.Dataset) -> list[str]:
+    """A sentence on contacts whose asperities yield, and whose pressure somewhere was larger at 0.9 of the load."""
+    laws = [name for name, law in LAWS.items() if law.yielded]
+    yielding = one_of(contacts["micro"].values.astype(str), laws)
+    if not yielding.any():
+        return []
+    try:
+        again = Again.of(contacts, "summary")
+    except StudyError:  # of a mean, say
+        return []
+    solved = (contacts["status"].values.ravel() == Status.CONVERGED) & one_of(again.problem.micro, laws)
+    where, index = np.zeros(len(solved), dtype=bool), np.flatnonzero(solved)
+    if len(index):
+        problem = again.problem.take(index)
+        now = solve(problem, _RADII)
+        before = solve(replace(problem, control="P", value=_LESS * now.P), _RADII)
+        r = _RADII * (now.a / before.a)[:, None]
+        p, lam = (
+            np.array([np.interp(at, _RADII, own, right=0.0) for at, own in zip(r, profile, strict=True)])
+            for profile in (before.p, before.lam)
+        )
+        yielded = np.empty(len(index))
+        for name in np.unique(problem.micro):
+            some = np.flatnonzero(problem.micro == name)
+            law = law_of(dimensionless(problem.take(some)))
+            yielded[some] = np.ravel(law.law.yielded(*law.own))
+        falls = p > now.p + _SAME * now.p.max(axis=1, keepdims=True)
+        where[index] = (falls & (lam > yielded[:, None])).any(axis=1)
+    text = "The pressure falls somewhere while the load rises: spots that have yielded there unload, and stay flatter \
+than this law has them."
+    return [of_cases(where) + text] * bool(where.any())

@@ -13,7 +13,7 @@ import numpy as np
 
 from solver.numerics.userfile import begins, checked, content, unpacked
 
-from .formats import netcdf, x3p
+from . import netcdf_heights, x3p
 from .scan import FEWEST, Scan, metres, number
 from .scan_grids import columns_of, npy_table, on_grid, scan_of, without_holes
 from .scan_headings import check_units, height_metres, stated, without_no_data
@@ -96,10 +96,10 @@ def read(
 def _of_own_format(path: Path, arguments: dict, channel: str | None, crop, how: dict) -> Scan | None:
     """The scan of a netCDF or X3P file; None if it is neither."""
     name, head = path.name, begins(path) if path.exists() else b""
-    if head.startswith(netcdf.MAGIC):
+    if head.startswith(netcdf_heights.MAGIC):
         if more := [key for key in arguments if key == "columns"]:
             raise ValueError(f"{name}: the format states its lengths itself; leave out {more[0]}")
-        heights = netcdf.read(unpacked(content(path)), arguments, channel, name)
+        heights = netcdf_heights.read(unpacked(content(path)), arguments, channel, name)
         return None if heights is None else scan_of(name, **heights._asdict(), crop=crop, how=how)
     if not head.startswith(b"PK") or (surface := x3p.read(unpacked(content(path)), name)) is None:
         return None

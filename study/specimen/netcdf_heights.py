@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..scan import UNEVEN, metres, number, spelt
+from .scan import UNEVEN, metres, number, spelt
 
 #: What a netCDF file begins with: of a classic one, and of HDF5, which version 4 is in.
 MAGIC = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF\r\n\x1a\n")

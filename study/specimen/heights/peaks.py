@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from .heights.missing import filled
+from .missing import filled
 
 #: ISO 16610-21: a Gaussian of this width, in cutoffs, lets half of a wave of the cutoff's length pass.
 ALPHA = math.sqrt(math.log(2) / math.pi)

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...terminal import rounded
-from .. import summits
-from .asperities import length
+from . import peaks
 from .form import taken_by_polynomial
-from .rows import jumps
+from .measured_asperities import length
+from .row_jumps import jumps
 
 #: Least distance of asperities in points of the scan. Those of white noise are three points apart, one in nine points.
 RESOLVED = 5
@@ -61,8 +61,8 @@ def form_doubts(z: np.ndarray, steps: tuple, form) -> Iterator[str]:
 def doubts(
     z: np.ndarray,
     steps: tuple,
-    along: list[summits.Moments],
-    asperities: summits.Asperities,
+    along: list[peaks.Moments],
+    asperities: peaks.Asperities,
     number: float,
     before: tuple[str, ...],
 ) -> Iterator[str]:
@@ -85,7 +85,7 @@ def doubts(
         yield f"slopes along one axis are {ratio} times those along the other: asperities are long, not round"
     skewness, alpha = (
         float(np.nanmean((z - np.nanmean(z)) ** 3) / np.nanstd(z) ** 3),
-        summits.bandwidth(summits.mean_moments(along)),
+        peaks.bandwidth(peaks.mean_moments(along)),
     )
     if asperities.counted is None and (abs(skewness) > SKEWED or alpha < 1.5):
         yield (
@@ -94,7 +94,7 @@ def doubts(
         )
 
 
-def _of_the_step(asperities: summits.Asperities, steps: tuple) -> Iterator[str]:
+def _of_the_step(asperities: peaks.Asperities, steps: tuple) -> Iterator[str]:
     apart = asperities.density**-0.5 / max(steps)
     if apart < RESOLVED:
         yield (
@@ -113,8 +113,8 @@ def _of_the_step(asperities: summits.Asperities, steps: tuple) -> Iterator[str]:
         )
 
 
-def _of_spikes(z: np.ndarray, steps: tuple, asperities: summits.Asperities) -> Iterator[str]:
-    usual = summits.usual_curvature(z, steps) if asperities.counted is None else asperities.usual
+def _of_spikes(z: np.ndarray, steps: tuple, asperities: peaks.Asperities) -> Iterator[str]:
+    usual = peaks.usual_curvature(z, steps) if asperities.counted is None else asperities.usual
     if asperities.curvature > SPIKED * usual:
         ratio = f"{rounded(asperities.curvature / usual)} times" if usual > 0 else "far"
         yield (

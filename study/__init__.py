@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import catalogue
-    from .adhesion.effective import effective_work
+    from .adhesion import effective_work
     from .api import Study, load
     from .data import derived, units
     from .data.dataset import decode
@@ -84,7 +84,7 @@ _HOME = {
     "design": "inverse.design",
     "feasible": "inverse.design_choice",
     "front": "inverse.design_choice",
-    "effective_work": "adhesion.effective",
+    "effective_work": "adhesion",
     "first_yield": "yields.first",
     "h_protect": "yields.protect",
     "fit": "inverse.fit",

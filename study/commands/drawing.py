@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from .. import catalogue
 from ..api import load
 from ..data.provenance import command_line
-from ..figures import results
+from ..figures import figure_results
 from ..figures.plots import drawn
 from ..figures.registry import is_measured, study_beside
 from ..figures.style import style
@@ -91,7 +91,7 @@ def table(options, name: str) -> int:
 def tradeoff(options, name: str) -> int:
     """Measure what no study file makes, of this name, and say in which file it is."""
     force = getattr(options, "force", False)  # `plot` and `table` have no such option
-    results.results(name, options.results, force=force, command=command_line())
+    figure_results.results(name, options.results, force=force, command=command_line())
     answer(f"{options.results}/{name}.nc")
     return 0
 

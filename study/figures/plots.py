@@ -18,10 +18,10 @@ from ..inputs.definition import StudyError
 from ..inputs.scene.layers import short
 from ..inputs.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
+from .figure_results import check_size, drawable, why_none
 from .fit_picture import fits
 from .labels import axis_label, legend_texts, multiple, name_of, stated, with_units, wrapped
 from .registry import Columns, joined
-from .results import check_size, drawable, why_none
 from .style import StyledFigure, as_points, shades, spaced_by_factors, style, tick_decades
 from .tornado import ORDINATE, tornado
 

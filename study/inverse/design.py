@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..carried import with_coordinates
+from ..data.coordinates import with_coordinates
 from ..in_words import beside_rules, doubts
 from ..inputs.definition import StudyError
 from ..inputs.vocabulary import NOT_RUN, ROWS

@@ -19,8 +19,8 @@ from ..work.cases import Failure, laws_of_users
 from ..work.engine import computed_tasks
 from ..work.progress import Progress, screen_of
 from .curves import measured
-from .fits.answer import answered, said
 from .fits.block import FitStatus
+from .fits.fit_dataset import answered, said
 from .fits.least_squares import AT_LEAST
 from .fits.model import HERTZ, CurveModel
 from .fits.question import Question, inside, read_question, region

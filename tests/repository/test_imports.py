@@ -31,7 +31,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives"),
-        *("in_words", "files", "store", "work", "carried", "lazy", "solving", "fields", "inverse", "adhesion"),
+        *("in_words", "files", "store", "work", "lazy", "solving", "fields", "inverse", "adhesion"),
         *("yields", "figures", "api", "catalogue", "explorer", "commands", "__main__"),
     ),
 }

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from ..scan import BLUNTEST, FEWEST, FLATTEST, Scan, number
-from . import peaks
+from . import scan_peaks
 from .form import without_form
 from .measured_asperities import Roughness, length, over
 from .row_jumps import aligned
@@ -72,7 +72,7 @@ def _cutoffs(scan: Scan, cutoff) -> list[float | None]:
     """The cutoffs, m. Raises ValueError for any that is no length or too short."""
     if cutoff is None:
         return [None]
-    least = peaks.SHORTEST * max(scan.steps)
+    least = scan_peaks.SHORTEST * max(scan.steps)
     values = [cutoff] if np.ndim(cutoff) == 0 else np.array(cutoff, dtype=object).ravel().tolist()
     if np.ndim(cutoff) > 1 or not values or len(set(values)) < len(values):
         raise ValueError(f"{scan.name}: cutoff = {cutoff}; a list must have one cutoff or more, each of them once")
@@ -117,7 +117,7 @@ def _filtered(scan: Scan, z: np.ndarray, said: str, cutoff: float | None) -> tup
     if cutoff is None:
         said += "; no low-pass, so the shortest waves are those of the instrument and the step"
     else:
-        z = peaks.low_pass(z, scan.steps, cutoff)
+        z = scan_peaks.low_pass(z, scan.steps, cutoff)
         said += f"; Gaussian low-pass (ISO 16610) with a cutoff of {length(cutoff)}, {_BORDERS}"
         if min(z.shape) < FEWEST:
             raise ValueError(
@@ -141,7 +141,7 @@ def _enough(scan: Scan, z: np.ndarray) -> None:
             f"{length(apart)}, and {min(shape)} points so far apart are on the {length(size)} along {'yx'[i]}; "
             f"at least {FEWEST} are needed"
         )
-    whole, least = peaks.whole(z, scan.steps), (FEWEST // 2) ** z.ndim
+    whole, least = scan_peaks.whole(z, scan.steps), (FEWEST // 2) ** z.ndim
     if whole < least:
         raise ValueError(
             f"{scan.name}: {whole} of {z.size} points have all their neighbours; at least {least} are needed. Give a "
@@ -151,9 +151,9 @@ def _enough(scan: Scan, z: np.ndarray) -> None:
 
 def _asperities(scan: Scan, z: np.ndarray, filtered: str, method: str, notes: tuple) -> Roughness:
     """The answer of heights without form and short waves."""
-    along = peaks.moments(z, scan.steps)
-    m = peaks.mean_moments(along)
-    asperities = peaks.gaussian_summits(m) if method == "moments" else peaks.counted_summits(z, scan.steps)
+    along = scan_peaks.moments(z, scan.steps)
+    m = scan_peaks.mean_moments(along)
+    asperities = scan_peaks.gaussian_summits(m) if method == "moments" else scan_peaks.counted_summits(z, scan.steps)
     if asperities is None or not (asperities.density > 0 and asperities.curvature > 0):
         raise ValueError(
             f"{scan.name}: no summits: none of {_points(z)} is higher than all around it. "
@@ -166,14 +166,14 @@ def _asperities(scan: Scan, z: np.ndarray, filtered: str, method: str, notes: tu
         )
     how = {
         "moments": f"spectral moments (McCool 1987) of profiles, m0 = {m.m0:.4g} m², m2 = {m.m2:.4g}, "
-        f"m4 = {m.m4:.4g} m⁻², α = {peaks.bandwidth(m):.3g}; the surface is taken to be Gaussian and isotropic",
+        f"m4 = {m.m4:.4g} m⁻², α = {scan_peaks.bandwidth(m):.3g}; the surface is taken to be Gaussian and isotropic",
         "summits": f"{asperities.counted} summits found as points above their eight neighbours"
         if z.ndim == 2
         else f"{asperities.counted} peaks found as points above their two neighbours, converted to summits of an "
         "isotropic Gaussian surface",
     }
     iso_Ra = float(np.nanmean(np.abs(z - np.nanmean(z))))
-    count = peaks.number_of(z, scan.steps, asperities.density)
+    count = scan_peaks.number_of(z, scan.steps, asperities.density)
     answer = Roughness(
         *map(float, (asperities.density, 1 / asperities.curvature, asperities.spread, iso_Ra, count)),
         method=how[method],

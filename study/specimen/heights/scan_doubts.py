@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...terminal import rounded
-from . import peaks
+from . import scan_peaks
 from .form import taken_by_polynomial
 from .measured_asperities import length
 from .row_jumps import jumps
@@ -61,8 +61,8 @@ def form_doubts(z: np.ndarray, steps: tuple, form) -> Iterator[str]:
 def doubts(
     z: np.ndarray,
     steps: tuple,
-    along: list[peaks.Moments],
-    asperities: peaks.Asperities,
+    along: list[scan_peaks.Moments],
+    asperities: scan_peaks.Asperities,
     number: float,
     before: tuple[str, ...],
 ) -> Iterator[str]:
@@ -85,7 +85,7 @@ def doubts(
         yield f"slopes along one axis are {ratio} times those along the other: asperities are long, not round"
     skewness, alpha = (
         float(np.nanmean((z - np.nanmean(z)) ** 3) / np.nanstd(z) ** 3),
-        peaks.bandwidth(peaks.mean_moments(along)),
+        scan_peaks.bandwidth(scan_peaks.mean_moments(along)),
     )
     if asperities.counted is None and (abs(skewness) > SKEWED or alpha < 1.5):
         yield (
@@ -94,7 +94,7 @@ def doubts(
         )
 
 
-def _of_the_step(asperities: peaks.Asperities, steps: tuple) -> Iterator[str]:
+def _of_the_step(asperities: scan_peaks.Asperities, steps: tuple) -> Iterator[str]:
     apart = asperities.density**-0.5 / max(steps)
     if apart < RESOLVED:
         yield (
@@ -113,8 +113,8 @@ def _of_the_step(asperities: peaks.Asperities, steps: tuple) -> Iterator[str]:
         )
 
 
-def _of_spikes(z: np.ndarray, steps: tuple, asperities: peaks.Asperities) -> Iterator[str]:
-    usual = peaks.usual_curvature(z, steps) if asperities.counted is None else asperities.usual
+def _of_spikes(z: np.ndarray, steps: tuple, asperities: scan_peaks.Asperities) -> Iterator[str]:
+    usual = scan_peaks.usual_curvature(z, steps) if asperities.counted is None else asperities.usual
     if asperities.curvature > SPIKED * usual:
         ratio = f"{rounded(asperities.curvature / usual)} times" if usual > 0 else "far"
         yield (

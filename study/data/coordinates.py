@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from .arrays import xarray_later as xr
-from .inputs.vocabulary import BODIES, ROWS
-from .specimen.foreign import plain
+from ..arrays import xarray_later as xr
+from ..inputs.vocabulary import BODIES, ROWS
+from ..specimen.foreign import plain
 
 
 def with_coordinates(dataset: xr.Dataset, parameters: dict) -> tuple[xr.Dataset, list[str]]:

@@ -8,11 +8,11 @@ from solver import Problem
 from solver.body import BODIES
 from solver.scaling import dimensionless, with_rigid_punch
 
-from ..inputs.definition import StudyError
-from ..inputs.reading import from_call
-from ..inputs.vocabulary import PARAMETERS
-from ..specimen.heights.form import without_form
-from ..specimen.scan import Scan
+from .inputs.definition import StudyError
+from .inputs.reading import from_call
+from .inputs.vocabulary import PARAMETERS
+from .specimen.heights.form import without_form
+from .specimen.scan import Scan
 
 #: Waves of a scan whose kernel is computed at a time.
 _BLOCK = 1 << 16

@@ -184,6 +184,15 @@ def test_rooms_are_named(package):
     } == {*ROOMS[package], "__init__"}
 
 
+@pytest.mark.parametrize("package", ["solver", "study"])
+def test_the_map_has_every_room_in_order(package):
+    """docs/extending.md begins with it: a room is in one row, and no row is above one from which it imports."""
+    page = (ROOT / "docs/extending.md").read_text(encoding="utf-8")
+    table = page.split(f"**Rooms of `{package}`**\n")[1].strip().split("\n\n")[0]
+    rows = [re.findall(r"`(\w+)`", line.split("|")[1]) for line in table.splitlines()[2:]]
+    assert [room for row in rows for room in row] == [*ROOMS[package]]
+
+
 @pytest.mark.parametrize("top", ["solver", "study", "studies", "tests", "tools"])
 def test_folders_are_small(top):
     sizes = {folder: len(list(folder.glob("*.py"))) for folder in [ROOT / top, *(ROOT / top).rglob("*")]}

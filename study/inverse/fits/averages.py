@@ -17,7 +17,7 @@ from .least_squares import Data, Minimum
 LONG, _BLOCKS = 1024, 512
 
 
-class Thinned(NamedTuple):
+class Averages(NamedTuple):
     """Averages (B, _BLOCKS) of the points of B curves, and the number (B, n) of the block of each point; points without
     weight are in none, -1."""
 
@@ -25,15 +25,15 @@ class Thinned(NamedTuple):
     data: Data
     blocks: np.ndarray
 
-    def about(self, best: Minimum, curve: MeasuredCurves, data: Data) -> "Thinned":
+    def about(self, best: Minimum, curve: MeasuredCurves, data: Data) -> "Averages":
         """The averages, so moved that their residuals from the model are the averages of those at `best`."""
         averages, _ = _averages(self.blocks, data.w**2, [data.y - best.model])
         model, _ = self.curve(best.p)
         return self._replace(data=self.data._replace(y=model + averages[0]))
 
 
-def thinned(curve: MeasuredCurves, data: Data) -> Thinned:
-    """The :class:`Thinned` of curves with points in any order. Under Huber's loss one point stands for each block: an
+def averages_of(curve: MeasuredCurves, data: Data) -> Averages:
+    """The :class:`Averages` of curves with points in any order. Under Huber's loss one point stands for each block: an
     average would spread an outlier."""
     n = curve.x.shape[1]
     blocks = np.full((len(curve.x), n), -1)
@@ -46,7 +46,7 @@ def thinned(curve: MeasuredCurves, data: Data) -> Thinned:
         x, y, w = (np.take_along_axis(array, some, axis=1) for array in (curve.x, data.y, data.w))
     else:
         (x, y), w = _averages(blocks, data.w**2, [curve.x, data.y])
-    return Thinned(replace(curve, x=x), data._replace(y=y, w=w), blocks)
+    return Averages(replace(curve, x=x), data._replace(y=y, w=w), blocks)
 
 
 def _averages(blocks: np.ndarray, weights: np.ndarray, arrays: list[np.ndarray]) -> tuple[list[np.ndarray], np.ndarray]:

@@ -7,7 +7,8 @@ import numpy as np
 from ...inputs.punch.shapes import ANGLES
 from .model import HERTZ
 from .tables.branch import Loads, branch
-from .tables.ratio_table import STEP, WIDE, Places, RatioTable
+from .tables.lattice import WIDE
+from .tables.ratio_table import STEP, Cubics, RatioTable
 from .tables.sticking_points import StickingPoints
 from .tables.term_table import TermTable
 
@@ -86,10 +87,9 @@ class MeasuredCurves:
         last = np.floor(deepest[:, 0] / WIDE).astype(int)
         first = last - (_TILES - 1)
         coordinates = p[:, [model.unknowns.index(name) for name in model.axes]]
-        rows, by_axis = self.table.rows(coordinates, first, _TILES, moved)
-        place = (above - first[:, None] * WIDE) / STEP
-        places = Places(place, rows.shape[2])
-        g, slope = places.read(rows[0], slope=True)
+        rows = self.table.rows(coordinates, first, _TILES, moved)
+        cubics = Cubics((above - first[:, None] * WIDE) / STEP, rows.shape[2])
+        g, slope = cubics.read(rows[0], slope=True)
         slope = slope / STEP
         power, (_, *of_u) = HERTZ[model.x, model.y]
         with np.errstate(over="ignore", invalid="ignore"):
@@ -97,18 +97,18 @@ class MeasuredCurves:
         F = np.where(inside, F, 0.0)
         by = {"x": F * (power[0] + slope) / depth}
         for name in model.unknowns:
-            by[name] = F * self._log_slope(name, values, power, of_u, slope, by_axis, places)
-        others = [F * places.read(rows[1 + i])[0] for i in range(len(model.moved))] if moved else []
+            by[name] = F * self._log_slope(name, values, power, of_u, slope, rows[1:], cubics)
+        others = [F * cubics.read(row)[0] for row in rows[1 + len(model.axes) :]]
         return F, by, np.array(others)
 
     def _sticking(
-        self, ladder: TermTable, p: np.ndarray, values: dict, moved: bool
+        self, table: TermTable, p: np.ndarray, values: dict, moved: bool
     ) -> tuple[np.ndarray, dict, np.ndarray]:
         """`contact` of what sticks; without adhesion at points that do not stick."""
-        model, parts = ladder.model, ladder.parts
+        model, terms = table.model, table.terms
         shift = {name: p[:, [self.names.index(name)]] for name in self.shifts}
         depth = self.x - shift.get("D0", 0.0) * self.wide[:, None]
-        made = branch(ladder.rows(values, depth.max(axis=1), moved), depth)
+        made = branch(table.rows(values, depth.max(axis=1), moved), depth)
         base = shift.get("P0", 0.0) + shift.get("tilt", 0.0) * self.x / self.wide[:, None]
         high, contact = self.high[:, None], np.ones(depth.shape, bool)
         if self.points is not None:
@@ -122,9 +122,9 @@ class MeasuredCurves:
             np.where(contact, *pair) / high for pair in zip(made.sticks, made.free, strict=True)
         )
         by = {"x": slope}
-        rows = dict(zip((*ladder.axes, *(model.moved if moved else ())), by_rows, strict=True))
+        rows = dict(zip((*table.axes, *(model.moved if moved else ())), by_rows, strict=True))
         for name in (*model.unknowns, *(model.moved if moved else ())):
-            factors = parts.by(name, values)
+            factors = terms.by(name, values)
             if name in ANGLES and name not in model.unknowns:  # by its logarithm, not that of its tangent
                 angle = np.radians(model.value(name))
                 factors = factors * (2 * angle / np.sin(2 * angle))
@@ -132,7 +132,7 @@ class MeasuredCurves:
         others = [by[name] for name in model.moved] if moved else []
         return P, by, np.array(others)
 
-    def _log_slope(self, name, values, power, of_u, slope, by_axis, places):
+    def _log_slope(self, name, values, power, of_u, slope, by_axis, cubics):
         """d ln F by the coordinate of an input."""
         model = self.table.model
         E = {model.modulus: 1.0}
@@ -143,5 +143,5 @@ class MeasuredCurves:
         if model.is_similar:
             total = total + slope * (of_u[0] * (name == "h") + of_u[1] * (name == "R") + of_u[2] * E.get(name, 0.0))
         if name in model.axes:
-            total = total + places.read(by_axis[model.axes.index(name)])[0]
+            total = total + cubics.read(by_axis[model.axes.index(name)])[0]
         return total

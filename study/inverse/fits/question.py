@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -56,11 +56,61 @@ class Question:
     call: dict[str, Any]
 
 
+class _Unknowns(NamedTuple):
+    """The unknown inputs of a call, by their names among the inputs of a contact: E1 of "layers.1.E1".
+
+    called : free input -> its name in the call
+    priors : inputs with ± in the call that are fitted, free ones too
+    bounds : free input -> (low, high) in SI, of those for which the call has bounds
+    valued : free inputs that have a value in the call
+    """
+
+    free: tuple[str, ...]
+    called: dict[str, str]
+    priors: tuple[str, ...]
+    bounds: dict[str, tuple[float, float]]
+    valued: set[str]
+
+    @property
+    def every(self) -> tuple[str, ...]:
+        """Free inputs, then those with a prior."""
+        return (*self.free, *(name for name in self.priors if name not in self.free))
+
+
 def read_question(free: Any, parameters: dict, x: str, y: str, options: dict) -> Question:
     """Check a call. Raises StudyError before any curve is read."""
+    unknowns = _unknowns(free, parameters, x, y, options)
+    call = _call(unknowns, parameters, x, options)
+    definition = _definition(call, "fit")
+    scene = definition.scene
+    if scene is None:
+        raise StudyError(["fit: curves have units, so that R and the moduli must have some too"])
+    priors = tuple(name for name in unknowns.priors if name in scene.spreads)  # ± 0 is exact
+    unknowns = unknowns._replace(priors=priors)
+    model = _model(definition, unknowns, x, y)
+    shifts = [
+        name for name, wanted in (("D0", "contact_point"), ("P0", "baseline"), ("tilt", "tilt")) if options[wanted]
+    ]
+    return Question(
+        model,
+        unknowns.free,
+        _all_bounds(model, unknowns),
+        {name: _prior(model, name) for name in priors},
+        {name: _log_spread(model, name) for name in model.moved},
+        tuple(shifts if x == "D" else ()),
+        options["loss"],
+        options["intervals"],
+        float(options["level"]),
+        unknowns.called,
+        call,
+    )
+
+
+def _unknowns(free: Any, parameters: dict, x: str, y: str, options: dict) -> _Unknowns:
+    """The unknown inputs of a call. Raises StudyError with all that is wrong with the names and options of the call."""
     errors = _choices(x, y, options)
     names, texts = _listed(free, errors), dict(free) if isinstance(free, dict) else {}
-    called = {short(name): name for name in names}  # "layers.1.E1" is E1 among the inputs of a contact
+    called = {short(name): name for name in names}
     names, texts = tuple(map(short, names)), {short(name): pair for name, pair in texts.items()}
     numbers = _numbers((*names, *parameters))
     for name in names:
@@ -72,25 +122,40 @@ def read_question(free: Any, parameters: dict, x: str, y: str, options: dict) ->
     values = _in_layers(parameters) | {short(name): value for name, value in parameters.items()}
     written = {*map(short, parameters), *names} & {*values}  # ± of layers that are not free is taken over
     priors = tuple(name for name in values if name in written and _has_prior(name, values[name], name in names))
-    unknowns = (*names, *(name for name in priors if name not in names))
-    if "k_machine" in unknowns:
-        errors.append(
-            "free: k_machine: where a punch comes off is read from the points, so they do not say what held it"
-        )
-    errors += [f"free: {a} and {b}: {_ALIKE_WORDS}" for a, b in _ALIKE if a in unknowns and b in unknowns]
-    if not names and not errors:
-        errors.append('free: name at least one input, such as free=["E1"]')
-    if len(unknowns) > MOST:
-        errors.append(
-            f"fit: at most {MOST} inputs can be unknown, here are {', '.join(unknowns)}: leave out a ±, or fix one"
-        )
+    valued = {name for name in names if values.get(name) is not None}
+    unknowns = _Unknowns(names, called, priors, {}, valued)
+    errors += _too_many(unknowns, bool(errors))
     bounds: dict[str, tuple[float, float]] = {}
     for name in (name for name in texts if name in numbers):
         bounds |= _bounds(name, texts[name], errors)
     if errors:
         raise StudyError(errors)
+    return unknowns._replace(bounds=bounds)
+
+
+def _too_many(unknowns: _Unknowns, wrong: bool) -> list[str]:
+    """Why a curve cannot say these unknowns; that there are none only if nothing else is `wrong`."""
+    every, errors = unknowns.every, []
+    if "k_machine" in every:
+        errors.append(
+            "free: k_machine: where a punch comes off is read from the points, so they do not say what held it"
+        )
+    errors += [f"free: {a} and {b}: {_ALIKE_WORDS}" for a, b in _ALIKE if a in every and b in every]
+    if not (unknowns.free or wrong or errors):
+        errors.append('free: name at least one input, such as free=["E1"]')
+    if len(every) > MOST:
+        errors.append(
+            f"fit: at most {MOST} inputs can be unknown, here are {', '.join(every)}: leave out a ±, or fix one"
+        )
+    return errors
+
+
+def _call(unknowns: _Unknowns, parameters: dict, x: str, options: dict) -> dict[str, Any]:
+    """The call of `study.solve`: with stand-ins for free inputs without a value, and for x. Raises StudyError where
+    there is none, and where the contact does not take a bound."""
+    bounds, called = unknowns.bounds, unknowns.called
     from_material = {name for body, rows in _OF_BODIES.items() if parameters.get(body) is not None for name in rows}
-    open_ = [name for name in names if values.get(name) is None and name not in from_material]
+    open_ = [name for name in unknowns.free if name not in unknowns.valued and name not in from_material]
     stand_in = {name: _stand_in(name, bounds) for name in open_}
     lacking = [name for name, value in stand_in.items() if value is None]
     if lacking or (options["plan"] and open_):
@@ -99,41 +164,39 @@ def read_question(free: Any, parameters: dict, x: str, y: str, options: dict) ->
         raise StudyError([f"free: {name} has no value: {wanted}{way.format(name)}" for name in lacking or open_])
     call = parameters | {called.get(name, name): value for name, value in stand_in.items()} | {x: _ABSCISSA[x]}
     _check_ends(call, {name: pair for name, pair in bounds.items() if name not in from_material}, called)
-    definition = _definition(call, "fit")
-    scene = definition.scene
-    if scene is None:
-        raise StudyError(["fit: curves have units, so that R and the moduli must have some too"])
-    priors = tuple(name for name in priors if name in scene.spreads)  # ± 0 is exact
-    unknowns = (*names, *(name for name in priors if name not in names))
-    moved = tuple(name for name in scene.spreads if name not in unknowns and name not in CONTROLS)
-    model = CurveModel.of(definition, x, y, unknowns, moved)
+    return call
+
+
+def _model(definition: Definition, unknowns: _Unknowns, x: str, y: str) -> CurveModel:
+    """The model of the curve. Raises StudyError where it has no curve y(x), or an unknown does not act in it."""
+    scene, every = definition.scene, unknowns.every
+    moved = tuple(name for name in scene.spreads if name not in every and name not in CONTROLS)
+    model = CurveModel.of(definition, x, y, every, moved)
     if model.sticks and (x, y) != ("D", "P"):
         way = 'of what sticks the load over the depth is fitted: x = "D", y = "P"'
         raise StudyError([f"x = {shown(x)}, y = {shown(y)}: {way}"])
     if model.sticks and scene.parameters.get("shape") == "flat":
         way = "its load is a straight line down to pull-off: w_adhesion follows from P_off by `design`"
         raise StudyError([f'fit: shape = "flat" with w_adhesion: {way}'])
-    absent = [name for name in unknowns if name not in scene.values and name not in scene.parameters]
+    absent = [name for name in every if name not in scene.values and name not in scene.parameters]
     if model.sticks and scene.parameters.get("adhesion") != "maugis":
-        absent += [name for name in unknowns if name in ("sigma0", "z0")]
+        absent += [name for name in every if name in ("sigma0", "z0")]
     if absent:
         raise StudyError([f"free: {name} does not act in this contact" for name in absent])
-    for name in names:
-        if name not in bounds and name != model.modulus and name not in priors:
+    return model
+
+
+def _all_bounds(model: CurveModel, unknowns: _Unknowns) -> dict[str, tuple[float, float]]:
+    """Free input -> (low, high): the bounds of the call, else up to a decade from the value in the call. A modulus of
+    what is touched, and an input with a prior, has none that the call says."""
+    bounds = dict(unknowns.bounds)
+    for name in unknowns.free:
+        if name not in bounds and name != model.modulus and name not in unknowns.priors:
             value = model.value(name)
             bounds[name] = (0.0, 0.5) if is_ratio(name) else _within(name, value / 10, 10 * value)
             if name in ANGLES:
                 bounds[name] = tuple(model.of_coordinate(name, model.coordinate(name, value) + [-DECADE, DECADE]))
-    spread = {name: _log_spread(model, name) for name in moved}
-    spread |= {name: float(model.scene.spreads[name] / model.slope(name, model.value(name))) for name in priors}
-    prior = {name: (float(model.coordinate(name, model.value(name))), spread[name]) for name in priors}
-    spread = {name: value for name, value in spread.items() if name not in priors}
-    shifts = [
-        name for name, wanted in (("D0", "contact_point"), ("P0", "baseline"), ("tilt", "tilt")) if options[wanted]
-    ]
-    shifts = shifts if x == "D" else []
-    about = (options["loss"], options["intervals"], float(options["level"]))
-    return Question(model, names, bounds, prior, spread, tuple(shifts), *about, called, call)
+    return bounds
 
 
 def _in_layers(parameters: dict) -> dict[str, Any]:
@@ -243,6 +306,12 @@ def _stand_in(name: str, bounds: dict) -> str | float | None:
         middle = (low + high) / 2 if is_ratio(name) else math.sqrt(low * high)
         return middle if ROWS[name].unit == "1" else f"{middle!r} {ROWS[name].unit}"
     return _MODULUS if name in ("E1", "E2") else 0.3 if is_ratio(name) else None
+
+
+def _prior(model: CurveModel, name: str) -> tuple[float, float]:
+    """The coordinate of an input and its spread."""
+    value = model.value(name)
+    return float(model.coordinate(name, value)), float(model.scene.spreads[name] / model.slope(name, value))
 
 
 def _log_spread(model: CurveModel, name: str) -> float:

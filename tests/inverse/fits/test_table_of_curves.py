@@ -5,7 +5,8 @@ import pytest
 
 from study.inputs.reading import from_call
 from study.inverse.fits.model import HERTZ, CurveModel
-from study.inverse.fits.tables.ratio_table import STEP, WIDE, Places, RatioTable
+from study.inverse.fits.tables.lattice import WIDE
+from study.inverse.fits.tables.ratio_table import STEP, Cubics, RatioTable
 
 GEL = {"R": "5 um", "nu1": 0.45, "h": "1.5 um", "E2": "1 MPa", "nu2": 0.3, "bonding": "bonded", "E1": "1 MPa"}
 ROUGH = {"R": "50 um", "micro": "disc_cell", "Nbar": "1 1/um^2", "Ra": "1 um"}
@@ -35,7 +36,7 @@ def test_as_the_solver(name):
     u = model.log_u(values, places)
     first = np.floor(u / WIDE).astype(int) - 1
     coordinates = np.stack([model.coordinate(axis, values[axis]) for axis in model.axes], axis=1)
-    rows, _ = RatioTable(model).rows(coordinates, first, 3)
-    g, _ = Places(((u - first * WIDE) / STEP)[:, None], rows.shape[2]).read(rows[0])
+    rows = RatioTable(model).rows(coordinates, first, 3)
+    g, _ = Cubics(((u - first * WIDE) / STEP)[:, None], rows.shape[2]).read(rows[0])
     table = model.hertz(values, places, HERTZ[x, y][0]) * np.exp(g[:, 0])
     np.testing.assert_allclose(table, exact, rtol=tolerance)

@@ -165,9 +165,9 @@ def _loads(rows: np.ndarray, depth: np.ndarray, cell: np.ndarray, off: tuple) ->
 
 def planned(model: CurveModel, values: dict[str, np.ndarray], depth: np.ndarray) -> np.ndarray:
     """Loads (B, n) at depths (B, n) for values (1, 1) of the unknown inputs; 0 beyond the end of the branch."""
-    ladder, out = TermTable(model), np.full(depth.shape, np.nan)
+    table, out = TermTable(model), np.full(depth.shape, np.nan)
     for number, row in enumerate(depth):
         x = np.where(np.isfinite(row), row, np.nanmax(row))[None]
-        made = branch(ladder.rows(values, x.max(axis=1)), x)
+        made = branch(table.rows(values, x.max(axis=1)), x)
         out[number] = np.where(np.isfinite(row), np.where(x[0] < made.D_off, 0.0, made.sticks.P[0]), np.nan)
     return out

@@ -1,19 +1,18 @@
-"""A table of the :class:`.terms.Terms` of a model over the contact radius, made where it is needed.
+"""A table of the :class:`.terms.Terms` of a model over the contact radius.
 
-Tiles lie on a fixed lattice, so that the numbers of a curve do not depend on which other curves there are. Along x, the
-logarithm of the radius, a tile has _LATTICE points with values and slopes, between which a cubic is drawn; along the
-coordinates of unknown inputs it has Chebyshev points.
+Along x, the logarithm of the radius, a tile of the lattice has _LATTICE points with values and slopes, between which a
+cubic is drawn.
 """
 
 import numpy as np
 
 from ..model import CurveModel, is_ratio
-from .ratio_table import WIDE, Chebyshev, weights_of, width
+from .lattice import WIDE, WIDE_RATIO, Chebyshev, Lattice, Position
 from .terms import Terms, is_modulus
 
 _LATTICE = 16
 STEP = WIDE / _LATTICE
-#: Tiles of a curve from that of its largest radius down, and tiles below, to which the parts go on as powers.
+#: Tiles of a curve from that of its largest radius down, and tiles below, to which the terms go on as powers.
 _TILES, _BELOW = 3, 3
 #: Points of the lattice of a curve.
 LENGTH = (_TILES + _BELOW) * _LATTICE
@@ -27,63 +26,37 @@ _FAR = 16
 
 
 def _width(name: str) -> float:
-    return _WIDE_MODULUS if is_modulus(name) else width(name) if is_ratio(name) else _WIDE
+    return _WIDE_MODULUS if is_modulus(name) else WIDE_RATIO if is_ratio(name) else _WIDE
 
 
 class TermTable:
-    """Tiles of a model, made on demand. Not for several threads."""
+    """The logarithms of the terms of a model and their slopes, on tiles that are solved on demand. Not for several
+    threads."""
 
     def __init__(self, model: CurveModel):
-        self.model, self.parts = model, Terms.of(model)
-        self.axes = self.parts.axes
-        count, moduli = min(len(self.axes), 3), [is_modulus(name) for name in self.axes]
-        self.points = [Chebyshev((_OF_MODULI if modulus else _POINTS)[count]) for modulus in moduli]
-        self.wide = np.array([_width(name) for name in self.axes])
-        self.tiles: dict[tuple, np.ndarray] = {}
+        self.model, self.terms = model, Terms.of(model)
+        self.axes = self.terms.axes
+        count = min(len(self.axes), 3)
+        points = [Chebyshev((_OF_MODULI if is_modulus(name) else _POINTS)[count]) for name in self.axes]
+        self.lattice = Lattice(points, list(map(_width, self.axes)), self.tile, 8, _LATTICE)
 
-    def make(self, place: tuple[int, ...], moved: bool) -> np.ndarray:
+    def tile(self, place: tuple[int, ...], moved: bool) -> np.ndarray:
         """A tile: 8 logarithms and slopes, or their derivatives by the inputs `moved` of the model, (1 or moved, 8,
         _LATTICE, C) at C points of the other coordinates."""
-        grid = np.meshgrid(*(axis.t for axis in self.points), indexing="ij")
+        grid = np.meshgrid(*(axis.t for axis in self.lattice.axes), indexing="ij")
         values = {}
-        for name, number, wide, t in zip(self.axes, place[1:], self.wide, grid, strict=True):
+        for name, number, wide, t in zip(self.axes, place[1:], self.lattice.wide, grid, strict=True):
             values[name] = self.model.of_coordinate(name, (number + 0.5 + t.ravel() / 2) * wide)
         values = self.model.within(values)
         x = place[0] * WIDE + STEP * np.arange(_LATTICE)
         if not moved:
-            return np.ascontiguousarray(np.swapaxes(self.parts.logarithms(values, x), 1, 2))[None]
-        still = np.swapaxes(self._tile(place, False)[0], 1, 2)
-        changes = [self.parts.moved(name, values, x, still) for name in self.model.moved]
+            return np.ascontiguousarray(np.swapaxes(self.terms.logarithms(values, x), 1, 2))[None]
+        still = np.swapaxes(self.lattice.made(place)[0], 1, 2)
+        changes = [self.terms.moved(name, values, x, still) for name in self.model.moved]
         return np.ascontiguousarray(np.swapaxes(np.array(changes), 2, 3))
 
-    def _tile(self, place: tuple[int, ...], moved: bool) -> np.ndarray:
-        if (moved, *place) not in self.tiles:
-            self.tiles[moved, *place] = self.make(place, moved)
-        return self.tiles[moved, *place]
-
-    def _stack(self, place: tuple[int, ...], count: int, moved: bool) -> np.ndarray:
-        """Tiles one after another along x."""
-        return np.concatenate([self._tile((place[0] + k, *place[1:]), moved) for k in range(count)], axis=2)
-
-    def read(self, places: np.ndarray, weights: np.ndarray, count: int, moved: bool = False) -> np.ndarray:
-        """Rows (W, B, 8, count * _LATTICE) of B curves, `count` tiles up from the tiles `places` (B, 1 + axes).
-
-        weights : (W, B, C), of the points of a tile
-        moved : whether derivatives by the inputs `moved` of the model are added, (W + moved, ...)
-        """
-        W, B, more = len(weights), len(places), len(self.model.moved) if moved else 0
-        out = np.empty((W + more, B, 8, count * _LATTICE))
-        for place in map(tuple, np.unique(places, axis=0).tolist()):
-            here = np.flatnonzero((places == place).all(axis=1))
-            # einsum, not BLAS: the sums of a curve do not depend on how many others stand here
-            out[:W, here] = np.einsum("wbc,ilc->wbil", weights[:, here], self._stack(place, count, False)[0])
-            if more:
-                stack = self._stack(place, count, True)
-                out[W:, here] = np.einsum("bc,kilc->kbil", weights[0, here], stack)
-        return out
-
     def rows(self, values: dict, deepest: np.ndarray, moved: bool = False) -> np.ndarray:
-        """Rows (1 + axes + moved, B, 8, LENGTH) of B curves: the logarithms of the parts, with their factors, and
+        """Rows (1 + axes + moved, B, 8, LENGTH) of B curves: the logarithms of the terms, with their factors, and
         slopes; their derivatives by the coordinates of unknown inputs and, without those of the factors, by the inputs
         `moved`.
 
@@ -99,11 +72,10 @@ class TermTable:
         """`rows` of curves of which no two are the same."""
         B = len(deepest)
         c = np.array([self.model.coordinate(name, values[name])[:, 0] for name in self.axes]).reshape(-1, B).T
-        places = np.floor(c / self.wide).astype(int)
-        weights = weights_of(self.points, 2 * (c / self.wide - places) - 1, 2 / self.wide)
-        factors = np.broadcast_to(self.parts.factors(values).reshape(4, -1), (4, B)).T
-        last = self._last(places, weights, factors, deepest)
-        whole = self.read(np.column_stack([last - _TILES + 1, places]), weights, _TILES, moved)
+        position = self.lattice.position(c)
+        factors = np.broadcast_to(self.terms.factors(values).reshape(4, -1), (4, B)).T
+        last = self._last(position, factors, deepest)
+        whole = self.lattice.read(last - _TILES + 1, position, _TILES, len(self.model.moved) if moved else 0)
         whole[0, :, :4] += factors[:, :, None]
         below = STEP * np.arange(-_BELOW * _LATTICE, 0)
         first = (
@@ -112,7 +84,7 @@ class TermTable:
         )
         return np.concatenate([np.concatenate(first, axis=2), whole], axis=3)
 
-    def _last(self, places: np.ndarray, weights: np.ndarray, factors: np.ndarray, deepest: np.ndarray) -> np.ndarray:
+    def _last(self, position: Position, factors: np.ndarray, deepest: np.ndarray) -> np.ndarray:
         """The tile (B,) in which each curve reaches its largest depth: at its end the depth is larger and rises."""
         last = np.floor(np.log(np.maximum(np.sqrt(deepest / self._depth()), 1e-9)) / WIDE).astype(int)
         up, down = np.ones(len(last), bool), np.ones(len(last), bool)
@@ -121,7 +93,7 @@ class TermTable:
             if not len(left):
                 continue
             tile = last[left] - (0 if step < _FAR else 1)
-            rows = self.read(np.column_stack([tile, places[left]]), weights[:1, left], 1)[0, :, :, -1]
+            rows = self.lattice.read(tile, position.values_of(left), 1)[0, :, :, -1]
             f = np.exp(rows[:, :4] + factors[left])
             depth, slope = f[:, 1] - f[:, 3], f[:, 1] * rows[:, 5] - f[:, 3] * rows[:, 7]
             beyond = (depth > deepest[left]) & (slope > 0)
@@ -138,4 +110,4 @@ class TermTable:
     def _depth(self) -> float:
         """The depth in m of a paraboloid whose radius of contact in a half-space is the unit of radii: D = a²/R."""
         scene = self.model.scene
-        return float(np.mean(scene.values.get(self.parts.length, scene.R)) ** 2 / np.mean(scene.R))
+        return float(np.mean(scene.values.get(self.terms.length, scene.R)) ** 2 / np.mean(scene.R))

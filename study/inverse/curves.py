@@ -92,8 +92,8 @@ def _chosen(dataset: xr.Dataset, curve: Any) -> xr.Dataset:
         number = names.index(str(curve))
     elif isinstance(curve, str):
         listed = ", ".join(names[:_MOST]) + " ..." * (len(names) > _MOST)
-        known = f"there is {listed}" if names else "the curves have no names, give a number"
-        raise StudyError([f"curves: curve = {shown(curve)}: {known}"])
+        names_in_words = f"there is {listed}" if names else "the curves have no names, give a number"
+        raise StudyError([f"curves: curve = {shown(curve)}: {names_in_words}"])
     else:
         number = place(curve, dataset.sizes["curve"], "curves")
     chosen = dataset.isel(curve=[number])

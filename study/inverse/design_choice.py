@@ -125,8 +125,8 @@ def _quantity(contacts: xr.Dataset, name: str, who: str) -> xr.DataArray:
             return QUANTITIES[name](contacts)
         except (KeyError, ValueError) as error:
             raise StudyError([f"{who}: {name} does not follow from this dataset: {error}"]) from None
-    known = [str(key) for key in contacts.variables]
-    raise StudyError([f"{who}: the dataset has no {shown(name)}{suggest(str(name), known)}"])
+    names = [str(key) for key in contacts.variables]
+    raise StudyError([f"{who}: the dataset has no {shown(name)}{suggest(str(name), names)}"])
 
 
 def _limit(name: str, limit: str, values: xr.DataArray) -> tuple:

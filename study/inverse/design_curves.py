@@ -138,9 +138,9 @@ def crossings(evaluate: Evaluate, curves: Curves, rows: np.ndarray, level: np.nd
     place, t = place[np.isfinite(t)], t[np.isfinite(t)]
     order = np.lexsort((t, place))
     count = np.bincount(place, minlength=len(level))
-    found = np.full((len(level), max(1, count.max(initial=0))), np.nan)
-    found[place[order], np.arange(len(place)) - (np.cumsum(count) - count)[place[order]]] = t[order]
-    return found
+    solutions = np.full((len(level), max(1, count.max(initial=0))), np.nan)
+    solutions[place[order], np.arange(len(place)) - (np.cumsum(count) - count)[place[order]]] = t[order]
+    return solutions
 
 
 def ends(

@@ -37,9 +37,9 @@ def messages(want: Wanted, outcome: Outcome, contacts: xr.Dataset) -> list[str]:
                 text = _solution(want, outcome, row, number, [end[row, number] for end in ends])
                 beyond = valid[row, number].replace(" ", ", ")
                 each.append(text + f"; outside the model there: {beyond}" * bool(beyond))
-            found = "; or ".join(each)
+            solutions = "; or ".join(each)
             edge = f". {want.name} is at a bound there: beyond it there may be more" * (status == 4)
-            texts.append(f"{_value(want, want.target, want.level)} at {found}{edge}")
+            texts.append(f"{_value(want, want.target, want.level)} at {solutions}{edge}")
     return texts
 
 

@@ -89,29 +89,29 @@ def _number(definition: Definition, name: str) -> float:
 
 def _level(target: str, value: Any, definition: Definition) -> float:
     """The wanted value in SI, or dimensionless."""
-    said, unit = f"design: {target} = {shown(value)}", ROWS[target].unit
+    wanted, unit = f"design: {target} = {shown(value)}", ROWS[target].unit
     if definition.scene:
         try:
             quantity = si(target, value)
         except ValueError as error:
             raise StudyError([f"design: {error}"]) from None
         if quantity.spread:
-            raise StudyError([f"{said}: a wanted value has no ±"])
+            raise StudyError([f"{wanted}: a wanted value has no ±"])
         level = quantity.value
     elif isinstance(value, str) or has_unit(value):
         other = f", in {VOCABULARY[target].scale}" * (unit != "1")
-        raise StudyError([f"{said}: no other input has a unit: give a number{other}"])
+        raise StudyError([f"{wanted}: no other input has a unit: give a number{other}"])
     elif not finite(value):
-        raise StudyError([f"{said}: must be one finite number"])
+        raise StudyError([f"{wanted}: must be one finite number"])
     else:
         level = float(value)
     if target == "P_off":
         if not level < 0:
-            raise StudyError([f"{said}: must be < 0, a pull"])
+            raise StudyError([f"{wanted}: must be < 0, a pull"])
         if "w_adhesion" not in {*definition.grid.values, *(definition.scene.values if definition.scene else ())}:
-            raise StudyError([f"{said}: nothing sticks: give w_adhesion, or look for it"])
+            raise StudyError([f"{wanted}: nothing sticks: give w_adhesion, or look for it"])
         return level
     limits = "must be in (0, 1]" if target == "Ar_An" else "must be > 0"
     if not 0 < level <= (1 if target == "Ar_An" else math.inf):
-        raise StudyError([f"{said}: {limits}"])
+        raise StudyError([f"{wanted}: {limits}"])
     return level

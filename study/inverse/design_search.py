@@ -93,9 +93,9 @@ def _rtol(want: Wanted) -> float:
 
 def solutions(want: Wanted, pieces: list[Piece]) -> np.ndarray:
     """The solutions t (B, n) of all cases, padded with NaN; n is 1 at least."""
-    t = np.full((want.size, max(found.shape[1] for _, _, found in pieces)), np.nan)
-    for rows, _, found in pieces:
-        t[rows, : found.shape[1]] = found
+    t = np.full((want.size, max(t_of_piece.shape[1] for _, _, t_of_piece in pieces)), np.nan)
+    for rows, _, t_of_piece in pieces:
+        t[rows, : t_of_piece.shape[1]] = t_of_piece
     return t
 
 
@@ -105,24 +105,24 @@ def solved(want: Wanted, t: np.ndarray, stream: TextIO | None = None) -> tuple[x
     arrays, index = not_run(definition, t.size), np.flatnonzero(np.isfinite(t))
     blocks = np.array_split(index, -(-len(index) // BLOCK)) if len(index) else []
     _each(f"solving {counted(len(index), 'contact')}", blocks, lambda i: solve_into(arrays, definition, i), stream)
-    made = parts(definition, arrays, "study.design")
-    contacts, scene = dataset_of(definition, made.settings_apart()), definition.scene
+    results = parts(definition, arrays, "study.design")
+    contacts, scene = dataset_of(definition, results.settings_apart()), definition.scene
     if want.target not in QUANTITIES:
         unknown = np.full(t.shape, np.nan)
         return contacts, Change(unknown, unknown, {})
-    if not made.by_input:
+    if not results.by_input:
         still = np.where(np.isfinite(t), 0.0, np.nan)
         return contacts, Change(still, still, {})
 
     def alone(name: str, size: Any) -> np.ndarray:
         """The spread of the result, dimensionless, that an input makes alone."""
         only = replace(definition, scene=replace(scene, spreads={name: size}, correlations={}))
-        return spreads_of(only, made)[want.target].reshape(t.shape)
+        return spreads_of(only, results)[want.target].reshape(t.shape)
 
     variances = {} if scene.correlations else {name: alone(name, size) ** 2 for name, size in scene.spreads.items()}
     with np.errstate(invalid="ignore", divide="ignore"):
         shares = {name: variance / sum(variances.values()) for name, variance in variances.items()}
-        by_input = alone(want.name, scene.values[want.name]) / made.variables[want.target].values.reshape(t.shape)
+        by_input = alone(want.name, scene.values[want.name]) / results.variables[want.target].values.reshape(t.shape)
     return contacts, Change(contacts[f"{want.target}_spread"].values.reshape(t.shape), by_input, shares)
 
 

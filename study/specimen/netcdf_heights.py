@@ -83,19 +83,19 @@ def _heights(file: Any, variable: Any, arguments: dict, name: str, named: tuple)
         z = np.where(np.asarray(mask[...]).reshape(z.shape) != 0, np.nan, z)
     order = [axes.index(axis) for axis in ("y", "x") if axis in axes]
     z, axes = z.transpose(order), [axes[i] for i in order]
-    found = {axis: _positions(file, axis, points, name) for axis, points in zip(axes, z.shape, strict=True)}
+    axis_positions = {axis: _positions(file, axis, points, name) for axis, points in zip(axes, z.shape, strict=True)}
     units = _units(file, variable, axes, arguments, name)
-    if lacking := [axis for axis in axes if found[axis] is None]:
+    if lacking := [axis for axis in axes if axis_positions[axis] is None]:
         if "dx" not in arguments:
-            said = " and ".join(f"no positions of {axis}" for axis in lacking)
-            raise ValueError(f"{name}: the file states {said}: give dx{' (and dy)' * (len(axes) == 2)}")
+            missing = " and ".join(f"no positions of {axis}" for axis in lacking)
+            raise ValueError(f"{name}: the file states {missing}: give dx{' (and dy)' * (len(axes) == 2)}")
     elif more := [key for key in ("dx", "dy") if key in arguments]:
         raise ValueError(f"{name}: the file states the positions of its points itself; leave out {', '.join(more)}")
     positions, steps = [], []
     for axis, points in zip(axes, z.shape, strict=True):
         step = arguments.get("dy", arguments.get("dx")) if axis == "y" else arguments.get("dx")
-        steps.append(found[axis][0] if found[axis] else number(f"{name}: d{axis}", step, units[0]))
-        positions.append(found[axis][1] if found[axis] else steps[-1] * np.arange(points))
+        steps.append(axis_positions[axis][0] if axis_positions[axis] else number(f"{name}: d{axis}", step, units[0]))
+        positions.append(axis_positions[axis][1] if axis_positions[axis] else steps[-1] * np.arange(points))
     notes = (f"channel {variable.name!r}" + f" of {', '.join(map(repr, named))}" * (len(named) > 1),)
     return Heights(z, positions, steps, units, notes)
 
@@ -122,10 +122,10 @@ def _positions(file: Any, axis: str, points: int, name: str) -> tuple[float, np.
 
 def _units(file: Any, variable: Any, axes: list[str], arguments: dict, name: str) -> tuple[str, str]:
     """The units of positions and of heights, of the file or, where it has none, of the call."""
-    said = {axis: _unit(file, axis, name) for axis in axes}
-    lateral = {unit for unit in said.values() if unit}
+    units = {axis: _unit(file, axis, name) for axis in axes}
+    lateral = {unit for unit in units.values() if unit}
     if len({metres(unit, name) for unit in lateral}) > 1:
-        raise ValueError(f"{name}: x is in {said['x']}, y in {said['y']}: write both in one unit")
+        raise ValueError(f"{name}: x is in {units['x']}, y in {units['y']}: write both in one unit")
     unit = next(iter(lateral), None)
     height = _unit_of(variable, name)
     if height is None and unit and hasattr(file.variables.get("x"), "unit"):  # of SurfaceTopography: of all lengths

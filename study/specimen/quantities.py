@@ -138,17 +138,17 @@ def _of_pint(entry: Any, unit: str) -> Any:
 def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     """The quantity in a text. In "200 ± 10 GPa" the unit holds for the value as well."""
     head, *spread = _SPREAD.split(text)
-    said = f'{name} = "{on_one_line(text, LONGEST)}"'
+    entry = f'{name} = "{on_one_line(text, LONGEST)}"'
     if len(text) > LONGEST or len(spread) > 1 or not _NUMBER.match(head):
         bare = '; without brackets, as in "3 ± 0.2 mm"' * (bool(spread) and text.startswith("("))
-        raise ValueError(f"{said}: {wanted}{bare}")
+        raise ValueError(f"{entry}: {wanted}{bare}")
     if spread and (problem := _no_spread(spread[0])):
-        raise ValueError(f"{said}: {problem}")
+        raise ValueError(f"{entry}: {problem}")
     if _AMBIGUOUS.search(text):
-        raise ValueError(f"{said}: write one number, with a decimal point and without gaps: {wanted}")
+        raise ValueError(f"{entry}: write one number, with a decimal point and without gaps: {wanted}")
     if thousands := _THOUSANDS.match(text):
         digits = thousands[1]
-        raise ValueError(f"{said}: the point may be one of thousands: write {digits} or {digits}e3: {wanted}")
+        raise ValueError(f"{entry}: the point may be one of thousands: write {digits} or {digits}e3: {wanted}")
     if not spread:
         return Quantity(_si(name, text, unit, wanted))
     number = _NUMBER.match(spread[0])
@@ -156,9 +156,9 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     if common.lstrip().startswith("%"):  # "200 GPa ± 5 %", or "200 ± 5 % GPa", in which pint would read GPa/100
         common = common.replace("%", "", 1).rstrip()
         if common and (has_unit(head) or "%" in common):
-            raise ValueError(f"{said}: behind % may only stand the unit of the number")
+            raise ValueError(f"{entry}: behind % may only stand the unit of the number")
         if "%" in head:  # "30 % ± 2 %" could be ± 0.02 and ± 0.006
-            raise ValueError(f'{said}: write the spread as a number, as in "0.3 ± 0.02"')
+            raise ValueError(f'{entry}: write the spread as a number, as in "0.3 ± 0.02"')
         value = _si(name, head + common, unit, wanted)
         spread = abs(value * float(number[0])) / 100
         if not math.isfinite(spread):
@@ -178,7 +178,7 @@ def _no_spread(text: str) -> str:
 @lru_cache(maxsize=4096)  # reading a text takes half a millisecond
 def _si(name: str, text: str, unit: str, wanted: str) -> float:
     """The SI value of a text without a spread. It is rounded once, so "3 um" is exactly the float 3e-6."""
-    said, text = on_one_line(text, LONGEST), _POWER.sub(r"\1^\2", text.replace("⁻²", "^-2").replace("²", "^2"))
+    entry, text = on_one_line(text, LONGEST), _POWER.sub(r"\1^\2", text.replace("⁻²", "^-2").replace("²", "^2"))
     text = _MICRONS.sub("µm", text) if unit == "m" else text
     plain = _PLAIN.fullmatch(text)
     size = _size(plain[2], unit) if plain else None
@@ -190,16 +190,16 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
     except MemoryError:
         raise
     except Exception as error:  # pint raises many kinds of errors
-        raise ValueError(f'{name} = "{said}": no unit is called like this{_near(text, unit)}; {wanted}') from error
+        raise ValueError(f'{name} = "{entry}": no unit is called like this{_near(text, unit)}; {wanted}') from error
     if unit != "1" and parsed.unitless:
-        raise ValueError(f'{name} = "{said}" has no unit: {wanted}')
+        raise ValueError(f'{name} = "{entry}" has no unit: {wanted}')
     if unit != "1" and "%" in text:  # pint reads "9 um %" as 0.09 um
-        raise ValueError(f'{name} = "{said}": % may only stand behind ±: {wanted}')
+        raise ValueError(f'{name} = "{entry}": % may only stand behind ±: {wanted}')
     if not parsed.is_compatible_with(unit):
-        raise ValueError(f'{name} = "{said}" is {_understood(parsed)}{_near(text, unit)}: {wanted}')
+        raise ValueError(f'{name} = "{entry}" is {_understood(parsed)}{_near(text, unit)}: {wanted}')
     value = float(parsed.to(unit).magnitude)
     if not math.isfinite(value):
-        raise ValueError(f'{name} = "{said}": must be finite')
+        raise ValueError(f'{name} = "{entry}": must be finite')
     return value
 
 

@@ -147,10 +147,10 @@ def _of_table(name: str, table: NumberTable, arguments: dict, crop, how: dict) -
     """The scan in a table of numbers: a profile, a map, or x, y, z of one."""
     if "unit" not in arguments:
         heading = table.heading[-1][1] if table.heading else ""
-        said = f'. Its heading is "{heading[:80]}".' if heading else ""
+        heading_in_words = f'. Its heading is "{heading[:80]}".' if heading else ""
         raise ValueError(
             f"{name}: give unit, such as unit='um', and height_unit if heights have another: units are not read from "
-            f"text and .npy{said}"
+            f"text and .npy{heading_in_words}"
         )
     unit, height_unit = arguments["unit"], arguments.get("height_unit", arguments["unit"])
     cleaned, holes = without_holes(table.numbers)
@@ -250,8 +250,8 @@ def _of_instrument(topography, name: str, arguments: dict, crop, notes: tuple, h
     """The scan of a topography of SurfaceTopography, in metres or, where the file has no unit, in the caller's."""
     unit = arguments.get("unit")
     if (topography.unit is None) == (unit is None):
-        said = "no unit of length; give unit" if unit is None else f"the unit {topography.unit!r}; leave out unit"
-        raise ValueError(f"{name}: the file states {said}")
+        unit_text = "no unit of length; give unit" if unit is None else f"the unit {topography.unit!r}; leave out unit"
+        raise ValueError(f"{name}: the file states {unit_text}")
     with _as_value_error(refused, ""), np.errstate(over="ignore"):
         topography = topography if unit else topography.to_unit("m")
         z = np.ma.filled(np.ma.asarray(topography.heights()).astype(float), np.nan).T

@@ -34,13 +34,13 @@ def _scan(archive: zipfile.ZipFile, name: str) -> tuple[np.ndarray, list[float]]
 
     def text(path: str, default: str | None = None) -> str:
         # names of elements may have the namespace of one revision or another
-        said = root.findtext("/".join(f"{{*}}{part}" for part in path.split("/")))
-        said = root.findtext(path) if said is None else said
-        if said is None or not said.strip():
+        content = root.findtext("/".join(f"{{*}}{part}" for part in path.split("/")))
+        content = root.findtext(path) if content is None else content
+        if content is None or not content.strip():
             if default is None:
                 raise ValueError(f"{name}: main.xml has no {path}")
             return default
-        return said.strip()
+        return content.strip()
 
     points = {axis: int(text(f"Record3/MatrixDimension/Size{axis}", "1")) for axis in "XYZ"}
     if points["Z"] != 1:

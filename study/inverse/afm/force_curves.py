@@ -37,8 +37,8 @@ def reading_of(part: str, curve: Any, spring_constant: Any, sensitivity: Any) ->
     """The arguments of `curves`, checked. Raises StudyError."""
     if part not in PARTS:
         raise StudyError([f"curves: part = {shown(part)}: must be one of {', '.join(PARTS)}"])
-    known = {"spring_constant": spring_constant, "sensitivity": sensitivity}
-    numbers = {name: _positive(name, value) for name, value in known.items() if value is not None}
+    constants = {"spring_constant": spring_constant, "sensitivity": sensitivity}
+    numbers = {name: _positive(name, value) for name, value in constants.items() if value is not None}
     return Reading(part, curve, **numbers)
 
 
@@ -136,19 +136,19 @@ class ForceCurve(NamedTuple):
 
 def _loaded(afmformats: Any, path: Path, reading: Reading) -> list[ForceCurve]:
     """The curves, with the cantilever of the call."""
-    known = {"spring constant": reading.spring_constant, "sensitivity": reading.sensitivity}
-    known = {key: value for key, value in known.items() if value is not None}
+    overrides = {"spring constant": reading.spring_constant, "sensitivity": reading.sensitivity}
+    overrides = {key: value for key, value in overrides.items() if value is not None}
     try:
-        loaded, factors = afmformats.load_data(path, meta_override=known or None), ()
+        loaded, factors = afmformats.load_data(path, meta_override=overrides or None), ()
     except NotImplementedError:  # of .ibw, .h5 and .tab, in which the force is made: it is proportional to both
-        loaded, factors = afmformats.load_data(path), tuple(known)
+        loaded, factors = afmformats.load_data(path), tuple(overrides)
     curves = []
     for data in loaded:
         about = data.metadata
         if "sensitivity" in factors and "sensitivity" not in about:
             raise StudyError([f"{path.as_posix()}: the file does not say with which sensitivity its force was made"])
-        factor = float(np.prod([known[key] / about[key] for key in factors if key in about]))
-        curves.append(ForceCurve(data, factor, known.get("spring constant", about.get("spring constant"))))
+        factor = float(np.prod([overrides[key] / about[key] for key in factors if key in about]))
+        curves.append(ForceCurve(data, factor, overrides.get("spring constant", about.get("spring constant"))))
     return curves
 
 

@@ -182,9 +182,9 @@ def _priors(
     """
     columns = [question.model.unknowns.index(name) for name in question.priors]
     center, sd = np.array(list(question.priors.values())).T
-    begin, held = start.copy(), np.zeros(start.shape, bool)
-    begin[:, columns], held[:, columns] = center, True
-    fit = minimise(curve, data, begin, held)
+    begin, fixed = start.copy(), np.zeros(start.shape, bool)
+    begin[:, columns], fixed[:, columns] = center, True
+    fit = minimise(curve, data, begin, fixed)
     freedom = np.maximum((data.w > 0).sum(axis=1) - start.shape[1] + len(columns), 1)
     variance = fit.cost / freedom if unknown else np.ones(len(start))
     worth = worth_of(curve.x, data, fit, variance, 0 * variance, _share(curve, fit))
@@ -228,13 +228,13 @@ def _to_the_ends(problem: _LeastSquares, few: tuple[MeasuredCurves, Data], p: np
     place = model.unknowns.index("w_adhesion") if "w_adhesion" in model.unknowns else 0
     count, B = len(_ABOUT), len(p)
     every, begin = np.tile(np.arange(B), count), np.tile(p, (count, 1))
-    held = np.zeros(begin.shape, bool)
-    held[:, place] = True
+    fixed = np.zeros(begin.shape, bool)
+    fixed[:, place] = True
     begin[:, place] = np.clip(
         begin[:, place] + np.repeat(_ABOUT, B), *(end[every, place] for end in (data.low, data.high))
     )
     of, to = curve.take(every), data.take(every)
-    begin = minimise(of, to, begin, held, sure=_ROUGHLY).p
+    begin = minimise(of, to, begin, fixed, sure=_ROUGHLY).p
     for each in (of, curve, problem.curve):
         each.ends = True
     fits = minimise(of, to, begin, sure=_ROUGHLY)

@@ -108,18 +108,18 @@ class MeasuredCurves:
         model, terms = table.model, table.terms
         shift = {name: p[:, [self.names.index(name)]] for name in self.shifts}
         depth = self.x - shift.get("D0", 0.0) * self.wide[:, None]
-        made = branch(table.rows(values, depth.max(axis=1), moved), depth)
+        loads = branch(table.rows(values, depth.max(axis=1), moved), depth)
         base = shift.get("P0", 0.0) + shift.get("tilt", 0.0) * self.x / self.wide[:, None]
         high, contact = self.high[:, None], np.ones(depth.shape, bool)
         if self.points is not None:
-            deep = depth > np.maximum(made.D_least, 0.0)[:, None]
-            contact = self.points.in_contact(made.sticks.P / high, made.free.P / high, base, deep)
+            deep = depth > np.maximum(loads.D_least, 0.0)[:, None]
+            contact = self.points.in_contact(loads.sticks.P / high, loads.free.P / high, base, deep)
             contact |= self.points.retracts[:, None]
             if self.ends:
-                off = self.points.retracts[:, None] & (depth < made.D_off[:, None])
-                made = made._replace(sticks=Loads(*(np.where(off, 0.0, array) for array in made.sticks)))
+                off = self.points.retracts[:, None] & (depth < loads.D_off[:, None])
+                loads = loads._replace(sticks=Loads(*(np.where(off, 0.0, array) for array in loads.sticks)))
         P, slope, by_rows, by_parts = (
-            np.where(contact, *pair) / high for pair in zip(made.sticks, made.free, strict=True)
+            np.where(contact, *pair) / high for pair in zip(loads.sticks, loads.free, strict=True)
         )
         by = {"x": slope}
         rows = dict(zip((*table.axes, *(model.moved if moved else ())), by_rows, strict=True))

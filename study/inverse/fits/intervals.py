@@ -122,14 +122,14 @@ def _share(top: np.ndarray, height: np.ndarray, beyond: np.ndarray) -> np.ndarra
 def _inner(
     of: tuple[Any, Data], p: np.ndarray, which: np.ndarray, value: np.ndarray, start: np.ndarray, wanted: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Fits with unknown `which` held at a value: the unknowns, and the root of how far the cost is above the best one.
+    """Fits with unknown `which` fixed at a value: the unknowns, and the root of how far the cost is above the best one.
 
     Rows that are not `wanted` stay as they are: what a curve gets must not depend on how far others walk.
     """
     rows, p, height = np.flatnonzero(wanted), p.copy(), np.full(len(p), np.nan)
     p[rows, which[rows]] = value[rows]
-    held = np.zeros((len(rows), p.shape[1]), bool)
-    held[np.arange(len(rows)), which[rows]] = True
-    fit = minimise(of[0].take(rows), of[1].take(rows), p[rows], held, _INNER, _INNER_SURE)
+    fixed = np.zeros((len(rows), p.shape[1]), bool)
+    fixed[np.arange(len(rows)), which[rows]] = True
+    fit = minimise(of[0].take(rows), of[1].take(rows), p[rows], fixed, _INNER, _INNER_SURE)
     p[rows], height[rows] = fit.p, np.sqrt(np.maximum(fit.cost - start[rows], 0.0))
     return p, height

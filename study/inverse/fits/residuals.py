@@ -262,9 +262,9 @@ def parts_of(curve: MeasuredCurves, data: Data, best: Minimum, share: np.ndarray
     inside = (share[every] > part[:, None] / PARTS) & (share[every] <= (part[:, None] + 1) / PARTS)
     some = data.take(every)
     some = some._replace(w=np.where(inside, some.w, 0.0), stiffness=0 * some.stiffness)
-    held = np.ones((len(every), best.p.shape[1]), bool)
-    held[:, 0] = False
-    fit = minimise(curve.take(every), some, best.p[every], held, _STEPS)
+    fixed = np.ones((len(every), best.p.shape[1]), bool)
+    fixed[:, 0] = False
+    fit = minimise(curve.take(every), some, best.p[every], fixed, _STEPS)
     p = fit.p[:, 0]
     good = ((some.w > 0).sum(axis=1) >= _ENOUGH) & (p > some.low[:, 0]) & (p < some.high[:, 0]) & np.isfinite(fit.cost)
     value[every, part] = np.where(good, p, np.nan)

@@ -58,11 +58,11 @@ def measure(
     if method not in ("moments", "summits"):
         raise ValueError(f'{scan.name}: method = {method!r}; allowed are "moments" and "summits"')
     cutoffs = _cutoffs(scan, cutoff)
-    flat, said, notes = _flat(scan, form, rows)
-    answers = [_asperities(scan, *_filtered(scan, flat, said, each), method, notes) for each in cutoffs]
+    flat, treatment, notes = _flat(scan, form, rows)
+    answers = [_asperities(scan, *_filtered(scan, flat, treatment, each), method, notes) for each in cutoffs]
     if np.ndim(cutoff) == 0:
         return answers[0]
-    return over(cutoffs, answers, f"{said}; Gaussian low-pass (ISO 16610) with each cutoff, {_BORDERS}")
+    return over(cutoffs, answers, f"{treatment}; Gaussian low-pass (ISO 16610) with each cutoff, {_BORDERS}")
 
 
 _BORDERS = "borders of 0.75 cutoffs cut away"
@@ -91,42 +91,42 @@ def _flat(scan: Scan, form, rows) -> tuple[np.ndarray, str, tuple[str, ...]]:
         raise ValueError(f"{scan.name}: rows = {rows!r}; {rule}")
     z = aligned(scan.z) if rows else scan.z
     notes = () if rows else tuple(jump_doubts(scan.z))
-    z, said = without_form(z, scan.steps, form, scan.name)
-    said = f"the median of the differences of neighbouring rows taken off; {said}" if rows else said
-    _not_nothing(scan, z, said)
+    z, treatment = without_form(z, scan.steps, form, scan.name)
+    treatment = f"the median of the differences of neighbouring rows taken off; {treatment}" if rows else treatment
+    _not_nothing(scan, z, treatment)
     rms = float(np.nanstd(z))
     if rms < FLATTEST and not scan.huge:
         raise ValueError(
-            f"{scan.name}: the heights spread by {rms:.3g} m (rms, {said}); no surface is smoother than "
+            f"{scan.name}: the heights spread by {rms:.3g} m (rms, {treatment}); no surface is smoother than "
             f"{FLATTEST:g} m, 1 pm. {_WAY_OUT}."
         )
-    return z, said, (*notes, *form_doubts(z, scan.steps, form))
+    return z, treatment, (*notes, *form_doubts(z, scan.steps, form))
 
 
 _WAY_OUT = "Give unit and height_unit as the scan has them, or huge=True beside them if it is so"
 
 
-def _not_nothing(scan: Scan, z: np.ndarray, said: str) -> None:
+def _not_nothing(scan: Scan, z: np.ndarray, treatment: str) -> None:
     """Raise ValueError where only rounding errors of a subtraction are left."""
     if np.nanstd(z) <= 1e-12 * np.nanmax(np.abs(scan.z)):
-        raise ValueError(f"{scan.name}: nothing is left of the heights: {said}")
+        raise ValueError(f"{scan.name}: nothing is left of the heights: {treatment}")
 
 
-def _filtered(scan: Scan, z: np.ndarray, said: str, cutoff: float | None) -> tuple[np.ndarray, str]:
+def _filtered(scan: Scan, z: np.ndarray, treatment: str, cutoff: float | None) -> tuple[np.ndarray, str]:
     """The heights without short waves, and what was done to them, in words."""
     if cutoff is None:
-        said += "; no low-pass, so the shortest waves are those of the instrument and the step"
+        treatment += "; no low-pass, so the shortest waves are those of the instrument and the step"
     else:
         z = scan_peaks.low_pass(z, scan.steps, cutoff)
-        said += f"; Gaussian low-pass (ISO 16610) with a cutoff of {length(cutoff)}, {_BORDERS}"
+        treatment += f"; Gaussian low-pass (ISO 16610) with a cutoff of {length(cutoff)}, {_BORDERS}"
         if min(z.shape) < FEWEST:
             raise ValueError(
                 f"{scan.name}: {' × '.join(map(str, z.shape))} points are left by a cutoff of {cutoff:g} m, which "
                 f"takes 0.75 cutoffs from each border; at least {FEWEST} in each direction are needed"
             )
     _enough(scan, z)
-    _not_nothing(scan, z, said)
-    return z, said
+    _not_nothing(scan, z, treatment)
+    return z, treatment
 
 
 def _enough(scan: Scan, z: np.ndarray) -> None:

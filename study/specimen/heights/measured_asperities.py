@@ -151,8 +151,8 @@ def over(cutoffs: Sequence[float], answers: Sequence[Roughness], filtered: str) 
         name: np.array([getattr(answer, name) for answer in answers])
         for name in ("Nbar", "Ra", "sigma_summits", "iso_Ra", "summits")
     }
-    said = dict.fromkeys(note for answer in answers for note in answer.notes)
-    where = {note: [c for c, answer in zip(cutoffs, answers, strict=True) if note in answer.notes] for note in said}
+    every = dict.fromkeys(note for answer in answers for note in answer.notes)
+    where = {note: [c for c, answer in zip(cutoffs, answers, strict=True) if note in answer.notes] for note in every}
     notes = tuple(note if len(at) == len(answers) else f"{_at(at)}: {note}" for note, at in where.items())
     method = "; ".join(f"{_at([c])}: {answer.method}" for c, answer in zip(cutoffs, answers, strict=True))
     texts = {"method": method, "filter": filtered, "notes": notes}

@@ -168,6 +168,6 @@ def planned(model: CurveModel, values: dict[str, np.ndarray], depth: np.ndarray)
     table, out = TermTable(model), np.full(depth.shape, np.nan)
     for number, row in enumerate(depth):
         x = np.where(np.isfinite(row), row, np.nanmax(row))[None]
-        made = branch(table.rows(values, x.max(axis=1)), x)
-        out[number] = np.where(np.isfinite(row), np.where(x[0] < made.D_off, 0.0, made.sticks.P[0]), np.nan)
+        loads = branch(table.rows(values, x.max(axis=1)), x)
+        out[number] = np.where(np.isfinite(row), np.where(x[0] < loads.D_off, 0.0, loads.sticks.P[0]), np.nan)
     return out

@@ -109,15 +109,15 @@ class Terms(NamedTuple):
         names["base"] = {"auto": "layered"}.get(word := names.get("base", "layered"), word)
         problem = Problem.of(**names, a=np.full(count, 0.01))
         shift = np.log(names["h"]) if self.length == "h" else 0.0
-        made = apart(problem, np.broadcast_to(x + np.reshape(shift, (-1, 1)), (count, len(x))))
+        terms = apart(problem, np.broadcast_to(x + np.reshape(shift, (-1, 1)), (count, len(x))))
         factors = np.broadcast_to(self.factors(values).reshape(4, -1), (4, count))
         out = np.empty((8, count, len(x)))
         for i, powers in enumerate(_OF_PARTS):
             unit = np.broadcast_to(with_unit(1.0, powers, changed.unit, changed.R), (count,))
-            positive = np.where(made.values[i] > 0, made.values[i], np.where(made.values[i] == 0, 1.0, np.nan))
-            nothing = made.values[i] == 0
+            positive = np.where(terms.values[i] > 0, terms.values[i], np.where(terms.values[i] == 0, 1.0, np.nan))
+            nothing = terms.values[i] == 0
             out[i] = np.where(nothing, _NOTHING, np.log(positive) + (np.log(unit) - factors[i])[:, None])
-            out[4 + i] = np.where(nothing, 0.0, made.slopes[i] / positive)
+            out[4 + i] = np.where(nothing, 0.0, terms.slopes[i] / positive)
         return out
 
     def moved(self, name: str, values: dict[str, np.ndarray], x: np.ndarray, still: np.ndarray) -> np.ndarray:

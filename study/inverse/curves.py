@@ -70,7 +70,7 @@ def curves(
 
 
 def measured(source: Any, least: int = 2, reading: Reading = _AS_IT_IS) -> xr.Dataset:
-    """What `curves` returns, of `least` columns or more: a plan needs one."""
+    """The dataset that `curves` returns, with `least` columns or more: a plan needs one."""
     is_file = isinstance(source, (str, Path))
     if is_file and is_of_instrument(Path(source), reading):
         return _of_columns(of_instrument(Path(source), reading), least=least)

@@ -37,7 +37,7 @@ def design(
     Parameters
     ----------
     targets : one wanted result and its value, {"p_max": "180 MPa"}: a, P, D, p0, p_max, Ar_An or dP_dD;
-        or P_off, the load at pull-off, < 0, of what sticks: its ± is not known, NaN
+        or P_off, the load at pull-off, < 0, of a punch that adheres: its ± is not known, NaN
     by : one input that is a number, and two bounds, {"h": ("1 um", "1 mm")}; also P, a or D, which controls then
     progress : whether a call of more than two seconds says how far it is; None: in a notebook or on a terminal
     cases, same_piece, correlations, parameters : as of `study.solve`, without the target and the input of `by`
@@ -50,7 +50,7 @@ def design(
         `h_high` where the result is one standard deviation off, NaN if it is nowhere on that side. Without spreads
         `h_spread` is 0. Over the dimensions of the parameters: `design_status` (found; several; none_below, none_above:
         the target is below, or above, all that is reached; at_edge: a solution within 1e-6 of a bound, in ln; unsolved:
-        where it would be, contacts have no solution, or the result jumps) and `message`, what was found in words
+        where it would be, contacts have no solution, or the result jumps) and `message`, the answer in words
 
     Raises
     ------
@@ -58,7 +58,7 @@ def design(
 
     Notes
     -----
-    An interrupt ends the search; what was searched until then is returned, the rest is "not_run".
+    An interrupt ends the search. Cases searched until then are returned, the others are "not_run".
 
     Examples
     --------
@@ -86,7 +86,7 @@ def design(
 
 
 def _variables(want: Wanted, outcome: Outcome, contacts: xr.Dataset) -> dict[str, xr.Variable]:
-    """What a design has beside its contacts."""
+    """The variables of a design beside those of its contacts: the spread and the ends of the input, status, message."""
     name, dims = want.name, contacts["status"].dims
     unit = ROWS[name].unit if want.definition.scene else ""
     about = {"units": unit} if unit not in ("", "1") else {}

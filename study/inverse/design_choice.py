@@ -56,7 +56,7 @@ def feasible(contacts: xr.Dataset, **limits: str | int) -> xr.DataArray:
 
 
 def front(contacts: xr.Dataset, least: Sequence[str] = (), most: Sequence[str] = ()) -> xr.Dataset:
-    """The contacts that no other one beats, of all that the dataset has.
+    """The contacts of a dataset that no other one of it beats.
 
     Another one beats a contact if it is better in one of the quantities, and worse in none.
 

@@ -17,7 +17,7 @@ _BENT = 1e-5
 _TURN = 1e-3
 #: Beside each bound is a further point, at this part of the distance of two: a turn in the last interval shows too.
 _BESIDE = 0.01
-_HALVINGS = 12  # of the interval in which contacts cease to have a solution
+_HALVINGS = 12  # so often the interval is halved in which contacts cease to have a solution
 _NEAR = 1e-12  # of two ends of a bracket, in ln of the input
 
 Evaluate = Callable[[np.ndarray, np.ndarray], np.ndarray]

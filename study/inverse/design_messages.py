@@ -1,4 +1,4 @@
-"""What a design says of each contact: the answer with its ±, or why there is none and what would help."""
+"""The message of each contact of a design: the answer with its ±, or why there is none and what would help."""
 
 import numpy as np
 import xarray as xr

@@ -1,4 +1,4 @@
-"""What a design asks for, read and checked: the wanted result, and the input that is looked for with its bounds."""
+"""The question of a design, read and checked: the wanted result, and the input that is looked for with its bounds."""
 
 import math
 from typing import Any

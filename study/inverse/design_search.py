@@ -1,4 +1,4 @@
-"""From what is wanted to an answer: the search, the contacts that it finds, their spreads and ends, its status."""
+"""The search of a design: solutions, their contacts, spreads and ends, and the status."""
 
 import time
 import warnings
@@ -43,7 +43,7 @@ class Change(NamedTuple):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What was found, over the cases and their solutions.
+    """The solutions of the cases.
 
     t, low, high : (B, n) solutions, and where the result is a spread off
     status : (B,); reach : (B, 4), least result and its t, largest result and its t; NaN of cases not searched

@@ -28,7 +28,7 @@ from .fits.tables.branch import planned
 from .fits.tasks import Task, fit_task, forget
 from .no_pull import joined, without
 
-#: Curves at a time, of what sticks too, and their points are filled up to a multiple of this.
+#: Curves in a block, in a block of those that adhere, and the multiple to which their points are filled up.
 _BLOCK, _STICKING, _PART = 64, 8, 64
 #: Fits that look for the contact point of a part of the depth.
 _ROUNDS = 5
@@ -204,7 +204,7 @@ def _fits(question: Question, blocks: list, arrays: tuple, there: np.ndarray) ->
 
 
 def _columns(source: Any, model: CurveModel, plan: bool) -> xr.Dataset:
-    """The curves; of a plan x alone."""
+    """The curves; for a plan their x alone."""
     names = [model.x] if plan else [model.x, model.y]
     data = measured(source, len(names))
     lacking = [name for name in names if name not in data]

@@ -9,7 +9,7 @@ import numpy as np
 
 from .scan import UNEVEN, metres, number, spelt
 
-#: What a netCDF file begins with: of a classic one, and of HDF5, which version 4 is in.
+#: The first bytes of a netCDF file: of a classic one, and of HDF5, the form of version 4.
 MAGIC = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF\r\n\x1a\n")
 
 
@@ -26,7 +26,7 @@ class Heights(NamedTuple):
 def read(raw: bytes, arguments: dict, channel: str | None, name: str) -> Heights | None:
     """The heights of a netCDF file over dimensions x and y, or over x; None where it has none.
 
-    arguments : unit, height_unit, dx, dy, of what the file does not state
+    arguments : unit, height_unit, dx, dy, where the file does not state them
 
     Raises ValueError: several variables of which none is chosen, no steps or units, or those of the file given again.
     """

@@ -37,7 +37,7 @@ def curve(x: np.ndarray, y: np.ndarray, across: str, up: str) -> str:
 
 
 def of_heights(scan: Any) -> str:
-    """Of a `Scan`: what it is, and its heights; of a map those of its middle row."""
+    """The text of a `Scan` and a picture of its heights; for a map those of its middle row."""
     profile = scan.z.ndim == 1
     row, step = (scan.z, scan.steps[0]) if profile else (scan.z[len(scan.z) // 2], scan.steps[1])
     size = " x ".join(readable(float(f"{length:.3g}"), "m") for length in scan.sizes)

@@ -36,7 +36,7 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 #: A number with a unit that is a product of powers: read without pint, as the number times the size of its unit. The 1
 #: of "1/um^2" must not be a digit of the number: "2.1/um^2" would be "2." times 1/um^2.
 _PLAIN = re.compile(rf"({_NUMBER.pattern})\s*((?:(?<![\d.])1/)?[A-Za-zµ]+(?:(?:\^|\*|/)-?[A-Za-z0-9µ]+)*)")
-#: What pint would read as another number, without a word: signs that it does not know, which it drops or takes for a
+#: Signs that make pint read another number, without a word: signs that it does not know, which it drops or takes for a
 #: product ("5,0 mm" as 50 mm, "200–220 GPa" as 44 TPa), a second decimal point, a number that it multiplies by the one
 #: before ("5 500 um", "5 1/2 in", "200 GPa (10)"), and two tolerances ("200 GPa +10/-5 GPa").
 _AMBIGUOUS = re.compile(
@@ -88,7 +88,7 @@ def unit_in(entry: Any) -> str:
 def quantity(name: str, entry: Any, unit: str) -> Quantity:
     """The SI value of a text ("5 mm", "200 ± 10 GPa"), a quantity of pint, or, for unit "1", of a number or a `ufloat`.
 
-    name : what the number is called, for messages
+    name : of the number, for messages
     entry : text, number, `ufloat`, or quantity of pint; one that is measured (a `ufloat` with a unit) has a spread
     unit : one of READABLE: the SI unit of the result
 
@@ -169,7 +169,7 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
 
 
 def _no_spread(text: str) -> str:
-    """What is wrong with the text behind ±: "" if it begins with a number that may be a standard deviation."""
+    """The error of the text behind ±: "" if it begins with a number that may be a standard deviation."""
     if text.startswith(("-", "−")):
         return "behind ± must be a number not below 0: leave out its minus sign"
     return "" if _NUMBER.match(text) else "behind ± must be a number, finite and not below 0"
@@ -229,7 +229,7 @@ def _size(word: str, unit: str) -> Decimal | None:
 
 
 def _understood(parsed: Any) -> str:
-    """What a quantity of the wrong dimension is, in words: "a force"."""
+    """A quantity of the wrong dimension in words: "a force"."""
     if parsed.dimensionless:
         return "an angle or a ratio"
     return next((what for unit, (what, _) in READABLE.items() if parsed.is_compatible_with(unit)), f"in {parsed.units}")

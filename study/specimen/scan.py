@@ -1,4 +1,4 @@
-"""A measured surface: heights on a uniform grid, in metres. What cannot be a measured surface is refused."""
+"""A measured surface: heights on a uniform grid, in metres. Numbers that no surface has are refused."""
 
 import math
 import numbers
@@ -117,7 +117,7 @@ def height_map(
     dx, dy : distance of two columns and of two rows, in unit; dy is dx if it is not given
     unit, height_unit : one of m, mm, um, nm, pm, angstrom, or as it is spelt otherwise
     name : of the scan, in messages
-    missing : what is done with heights that are NaN or under a mask: "fill" interpolates up to 1 % of the points;
+    missing : the treatment of heights that are NaN or under a mask: "fill" interpolates up to 1 % of the points;
         "skip" leaves them, and every statistic takes the points whose neighbours are all there; "refuse"
     steep : take slopes that no instrument measures (rms above 3), and heights that span more than the scan is long
     huge : take a scan longer than 1 m, heights of an rms below 1 pm, and asperities of a radius above 1 km

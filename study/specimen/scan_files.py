@@ -45,7 +45,7 @@ def read(
     Text and .npy: two columns are a profile, x and z; one column (or one row) is a profile of the distance dx; three
     are a map, x, y and z of the points of a grid in any order; 16 columns or more are a map, a line for each y, of the
     distances dx and dy. Columns are separated by commas, semicolons, tabs or spaces; the decimal mark is a point or,
-    where commas do not separate, a comma. What stands before the first line of numbers, or behind # and %, is a
+    where commas do not separate, a comma. Text before the first line of numbers, or behind # and %, is a
     comment. An empty field, nan, Bad, ***, -- and - are missing points. Text may be UTF-8, UTF-16 or packed (.gz).
 
     SDF, SMD and PRF in text, netCDF, X3P and every other ending (.sur, .opd, .gwy, …) have their lengths in the file.

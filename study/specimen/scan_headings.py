@@ -1,4 +1,4 @@
-"""What the heading of a text file says of its heights: their unit, a factor, which number stands for a missing point.
+"""The heading of a text file: the unit of its heights, a factor, which number stands for a missing point.
 
 And the text formats whose heading has every length: SDF (ISO 25178-71), SMD (ISO 5436-2) and PRF.
 """

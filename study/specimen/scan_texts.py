@@ -22,7 +22,7 @@ from .scan import FEWEST
 DIALECTS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","), (",", ","))
 #: Rows that are packed into an array at a time.
 _BLOCK = 10_000
-#: What stands for a missing point in a row of numbers, in small letters.
+#: Words for a missing point in a row of numbers, in small letters.
 MISSING = ("", "nan", "bad", "***", "--", "-")
 #: "1,024": this comma may be no decimal mark.
 _THOUSAND = re.compile(r"(?<!\d)[1-9]\d{0,2},\d{3}(?!\d)")
@@ -44,7 +44,7 @@ class NumberTable:
     heading : (number, text) of each line that is no row, comments included
     separator : between the columns; None: spaces
     channel : its name in the heading, or ""
-    notes : what was taken for something else than a row, each a sentence
+    notes : lines that were taken for something else than a row, a sentence each
     """
 
     numbers: np.ndarray

@@ -19,7 +19,7 @@ PARTS = {"approach": "appr", "retraction": "retr"}
 """Part of a curve -> its name in afmformats."""
 _UNITS = {"spring_constant": ("N/m",), "sensitivity": ("m/V", "m/A")}  # of NT-MDT the detector's signal is a current
 _HEAD = 4096  # bytes in which a text says that an instrument has written it
-_BACK = 0.1  # of the way forth, which a tip must go back if there is a retraction in the curve
+_BACK = 0.1  # a curve has a retraction where the tip goes back by this part of its way
 _INTERRUPTS = (KeyboardInterrupt, SystemExit, GeneratorExit, MemoryError)
 
 
@@ -61,7 +61,7 @@ def _positive(name: str, value: Any) -> float:
 
 
 def is_of_instrument(path: Path, reading: Reading) -> bool:
-    """Whether afmformats reads the file. Text of ending .csv or .txt may be ours: what stands in it decides."""
+    """Whether afmformats reads the file. A text that ends in .csv or .txt may be ours: its content decides."""
     ending = path.suffix.lower()
     if ending not in (".csv", ".txt") or not path.is_file():
         return path.name.lower().endswith(ENDINGS)
@@ -198,7 +198,7 @@ def _of_curve(curve: ForceCurve, part: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _half(height: np.ndarray, force: np.ndarray, part: str) -> tuple[np.ndarray, np.ndarray]:
-    """One part of a curve in which the file does not tell them apart (.ibw): what comes before the deepest point, and
+    """One part of a curve whose file does not tell them apart (.ibw): the points before the deepest one, and
     it, or what comes after it. Where the tip does not go back, all of it is the approach."""
     turn = int(np.nanargmin(height)) + 1 if np.isfinite(height).any() else len(height)
     back = np.ptp(height[turn - 1 :]) if turn < len(height) else 0.0

@@ -28,7 +28,7 @@ _SAME = 1e-3  # minima whose unknowns differ by less than this part of a spread 
 
 
 class FitStatus(Codes):
-    """What became of the fit of a curve."""
+    """How the fit of a curve ended."""
 
     CONVERGED = 0
     AT_BOUND = 1
@@ -42,10 +42,10 @@ class FitStatus(Codes):
 class _LeastSquares(NamedTuple):
     """Curves as a problem of least squares.
 
-    few : averages of neighbouring points, with which searches begin, of long curves; None: all points are used
+    few : averages of neighbouring points of long curves, with which searches begin; None: searches take all points
     starts : unknowns (B, k) from which searches begin, one array for each start
     variance : (B,) of a point of weight 1, if it is known without a fit of all unknowns
-    prior : (B,), what a prior counts as this variance
+    prior : (B,), the variance that stands for it in the stiffness of priors
     """
 
     question: Question
@@ -63,8 +63,8 @@ class _LeastSquares(NamedTuple):
 
 
 class _Minima(NamedTuple):
-    """The best fits, of all points, and the costs (starts, B) and unknowns (starts, B, k) at which searches from all
-    starts have ended, of fewer points if the curves are long."""
+    """The best fits with all points; the costs (starts, B) and unknowns (starts, B, k) at which the searches from all
+    starts have ended, with fewer points if the curves are long."""
 
     best: Minimum
     costs: np.ndarray
@@ -195,7 +195,8 @@ def _priors(
 
 
 def _count(question: Question, data: Data) -> np.ndarray:
-    """Points (B,). Of what sticks, the point above which the others are in contact counts like an unknown."""
+    """The number (B,) of points, one less where the punch adheres: the point at which the contact begins counts like an
+    unknown."""
     return (data.w > 0).sum(axis=1) - question.model.sticks
 
 
@@ -203,7 +204,7 @@ def _minima(problem: _LeastSquares) -> _Minima:
     few = problem.few
     curve, data = (few.curve, few.data) if few else (problem.curve, problem.data)
     starts, B = problem.starts, len(data.y)
-    # all starts at once: what a step costs is that of its calls, hardly that of its numbers
+    # all starts at once: a step costs its calls, hardly its numbers
     every = np.tile(np.arange(B), len(starts))
     rough = SURE if len(starts) == 1 else _ROUGHLY
     fits = minimise(curve.take(every), data.take(every), np.concatenate(starts), sure=rough)
@@ -218,7 +219,7 @@ def _minima(problem: _LeastSquares) -> _Minima:
 
 
 def _to_the_ends(problem: _LeastSquares, few: tuple[MeasuredCurves, Data], p: np.ndarray, minima: tuple) -> tuple:
-    """The costs and unknowns of searches, of retractions those without a ramp beyond the end of the branch.
+    """The costs and unknowns of searches, for retractions of searches without a ramp beyond the end of the branch.
 
     Each point that passes the end makes the cost jump, and a search from one side does not see the other. So it begins
     about the best unknowns p (B, k) of the search with a ramp: with other works of adhesion, or values of the first

@@ -24,7 +24,7 @@ class MeasuredCurves:
     x : (B, n), SI
     wide, high : (B,) the units of x and y of each curve
     shifts : which of "D0", "P0", "tilt" are unknown
-    points : of a curve that sticks, what says which points are in contact; None: all depths are
+    points : which points are in contact, of curves with adhesion; None: those at all depths
     ends : whether retractions have no load beyond the end of the branch; if not, a ramp tells a search where to go
     """
 

@@ -22,7 +22,7 @@ from .residuals import PARTS
 
 #: At most so many curves have all places solved at once: a call costs more than some hundred contacts.
 _FEW = 8
-_HALVINGS = 4  # of the depth, to the place where the first assumption fails: it is right to 1/16
+_HALVINGS = 4  # the depth at which the first assumption fails is right to 1/2**4 of the deepest
 
 
 def answered(
@@ -111,7 +111,7 @@ def _of_points(question: Question, rows: dict, status: np.ndarray, count: np.nda
 
 
 def _from_priors(question: Question, names: tuple, value: np.ndarray) -> dict[str, tuple]:
-    """Of each input with a prior, how far it is from that."""
+    """How far each input with a prior is from it, in standard deviations."""
     variables = {}
     for name, (center, sd) in question.priors.items():
         about = {"long_name": f"{name} less its prior, in standard deviations of that"}

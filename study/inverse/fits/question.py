@@ -1,4 +1,4 @@
-"""What a call of `fit` asks: the model, its unknown inputs with bounds and priors, and whose spreads it takes over."""
+"""The question of a call of `fit`: the model, its unknown inputs with bounds and priors, the spreads it takes over."""
 
 import math
 from collections.abc import Iterable
@@ -239,7 +239,7 @@ def _listed(free: Any, errors: list[str]) -> tuple[str, ...]:
 def _numbers(names: Iterable[str]) -> set[str]:
     """Inputs that may be fitted: numbers of the contact, not settings of the solver.
 
-    names : of the inputs that are given or free, which say what layers there are
+    names : inputs of the call and free ones, whose names say which layers there are
     """
     rows = {name for name in parameters_of(names) if ROWS[name].parameter.interval}
     rows = {name for name in rows if not ROWS[name].parameter.whole}
@@ -340,8 +340,8 @@ def region(depth: Any, x: str) -> tuple[float, float] | None:
 def inside(x: np.ndarray, begin: dict[int, float], limits: tuple[float, float]) -> np.ndarray:
     """Which points (curves, n) count: those in contact within the limits, and those before the contact.
 
-    begin : curve -> where its contact begins, if that is not at 0; of a curve that is not there, where there are
-        others, all points count
+    begin : curve -> where its contact begins; {}: all begin at 0. All points count of a curve that is missing among
+        others
     """
     low, high = limits
     depth = x - np.array([begin.get(curve, np.nan if begin else 0.0) for curve in range(len(x))])[:, None]

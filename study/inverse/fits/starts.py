@@ -11,10 +11,11 @@ from .model import HERTZ, is_ratio
 from .question import DECADE, Question
 
 _STARTS = 6  # across the bounds of a second unknown input
-#: Of what sticks: across the bounds of the work of adhesion and of another unknown input, and parts of the way from the
-#: point at half the load to the first one, at which the contact may begin. From the _BEST ones searches begin, from
-#: twice as many where more than two inputs are unknown: with three 3 of 36 paraboloids whose thickness was free
-#: converged far from the truth, with six none (`python tools/fit/sticking.py 210 h`).
+#: Starts with adhesion: their number across the bounds of the work of adhesion and of another unknown input, and the
+#: places where the contact may begin, as parts of the way from the point at half the load to the first one. Searches
+#: begin from the _BEST ones, and from twice as many where more than two inputs are unknown: with three 3 of 36
+#: paraboloids whose thickness was free converged far from the truth, with six none
+#: (`python tools/fit/sticking.py 210 h`).
 _WORKS, _OTHERS, _WAYS, _BEST = 6, 5, (0.02, 0.06, 0.15, 0.3, 0.6, 1.0), 6
 #: y = _HERTZ x^q E^e R^r of a rigid ball on a half-space.
 _HERTZ = {("D", "P"): 4 / 3, ("P", "a"): 0.75 ** (1 / 3), ("a", "dP_dD"): 2.0}

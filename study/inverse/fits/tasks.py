@@ -28,7 +28,7 @@ class Task(NamedTuple):
 
 
 def fit_task(task: Task) -> dict[str, Any]:
-    """What `fit_block` returns of these curves."""
+    """The numbers that `fit_block` returns for these curves."""
     table = _tables.get(task.call)
     if table is None:
         for oldest in list(_tables)[: max(0, len(_tables) - _MOST + 1)]:

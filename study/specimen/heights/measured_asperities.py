@@ -81,7 +81,7 @@ class Roughness:
 
         Returns
         -------
-        dict : lengths are text with units, all digits. Of a list of cutoffs the numbers are DataArrays over `cutoff`
+        dict : lengths are text with units, all digits. With a list of cutoffs the numbers are DataArrays over `cutoff`
 
         Raises
         ------
@@ -164,7 +164,7 @@ def _at(cutoffs: Sequence[float]) -> str:
 
 
 def _neglected(roughness: Roughness) -> str:
-    """What equal heights make of a random surface."""
+    """The error of equal heights on a random surface."""
     if np.all(roughness.sigma_summits * 3 * math.pi * roughness.Nbar * roughness.Ra < 0.01):
         return "Here the heights are equal, and both laws are one."
     return "They neglect that the highest summits touch first: real contact comes out too large, and p_max too small."

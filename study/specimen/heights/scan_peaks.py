@@ -1,4 +1,4 @@
-"""What is computed on a grid of heights: low-pass, spectral moments, summits.
+"""Statistics of a grid of heights: low-pass, spectral moments, summits.
 
 Heights z of a profile have shape (x), of a map (y, x); steps are the distances of the points along these axes. Every
 function serves both. NaN is a missing point: what needs it is left out.
@@ -24,7 +24,7 @@ REACH = 4 * ALPHA / math.sqrt(2 * math.pi)
 #: first: N̄ and Ra are then off by less than 1 %, also where gaps as wide as two asperities take a fifth of the scan. By
 #: the mean of the points that are there N̄ would be 1.6 times too large (tests/specimen/heights/test_missing_points.py).
 MEASURED = 0.5
-#: Steps of filling gaps before a low-pass: what is deeper in a gap has no answer anyway.
+#: Steps of filling gaps before a low-pass: points deeper in a gap have no answer anyway.
 _FILLING = 200
 #: Shortest cutoff, in steps: the sampled Gaussian still passes half of it, to 0.2 %.
 SHORTEST = 3.0

@@ -38,7 +38,7 @@ OTHERS |= _STRENGTH | {"strength_source": "a text"}
 
 @dataclass(frozen=True)
 class Material:
-    """An isotropic elastic material; what `get` and `read` return has passed their checks.
+    """An isotropic elastic material. Materials that `get` and `read` return have passed their checks.
 
     Attributes
     ----------
@@ -142,7 +142,7 @@ def of_sections(sections: dict, file: str) -> dict[str, Material]:
 
 
 def _errors(section) -> list[str]:
-    """What is wrong with a section of the file."""
+    """The errors of a section of the file."""
     if not isinstance(section, dict):
         return [f"= {written(section)}: must be a section with the keys {', '.join(NUMBERS)}"]
     allowed = NUMBERS | OTHERS

@@ -1,1 +1,1 @@
-"""Tables that fits read in place of contacts: their lattice of tiles, what is tabulated, the branch that sticks."""
+"""Tables that fits read in place of contacts: a lattice of tiles, tables on it, the branch of contacts that adhere."""

@@ -106,7 +106,7 @@ def _turn(c: list) -> np.ndarray:
         t = np.clip(low + (high - low) * s_low / (s_low - s_high), low, high)
         s = _pair(c, t)[1]
         falls = s < 0
-        # of the end that stays half the value counts (Illinois)
+        # half the value of the end that stays counts (Illinois)
         s_low, s_high = np.where(falls, s, s_low / 2), np.where(falls, s_high / 2, s)
         low, high = np.where(falls, t, low), np.where(falls, high, t)
     return t

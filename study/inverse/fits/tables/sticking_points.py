@@ -1,4 +1,4 @@
-"""Which points of a curve stick: read from the points, not from the model.
+"""Which points of a curve are in contact with adhesion: the points say it, not the model.
 
 A punch comes off where the depth, or what holds it, turns, the softest spring at the least load; and on approach it
 touches only at depth 0. So for any unknowns all points above some depth stick and those below do not, with the split
@@ -51,7 +51,7 @@ class StickingPoints(NamedTuple):
         rows = np.arange(len(load))[:, None]
         on, off = (self.w * (self.y - base - part) for part in (load, free))
         more = np.where(self.robust[:, None], np.abs(on) - np.abs(off), on**2 - off**2)
-        # what is saved by the first m points, m = 0 ... n, being off
+        # the cost that the first m points save if they are off, m = 0 ... n
         saved = np.concatenate([np.zeros((len(load), 1)), np.cumsum(more[rows, self.order], axis=1)], axis=1)
         least = self.least
         if must is not None:

@@ -1,4 +1,4 @@
-"""The four parts of a contact that sticks as powers of inputs times functions of the radius and of the other inputs.
+"""The four terms of a contact with adhesion: powers of inputs times functions of the radius and of the other inputs.
 
 P = P₀ - pull_P and D = D₀ - pull_D, :mod:`solver.smooth_contact.adhesion.apart`. P₀ and pull_P have the modulus E of
 what is touched as a factor. Under :mod:`~solver.smooth_contact.adhesion.jkr` both pulls go with the root of w/E, and
@@ -22,11 +22,11 @@ from ..model import CurveModel, is_ratio
 _USUAL = {"E": (1, 0, 0.5, -0.5), "w": (0, 0, 0.5, 0.5)}
 _USUAL |= dict.fromkeys(("length", "R", "cotangent"), (0, 0, 0, 0))
 _SIMILAR = {"length": (3, 2, 1.5, 0.5), "R": (-1, -1, 0, 0)}
-#: Of a cone with the cotangent of its half angle, which has no length.
+#: A cone has no length, but the cotangent of its half angle.
 _CONE = {"length": (2, 1, 1.5, 0.5), "cotangent": (1, 1, 0, 0)}
 _DMT = {"E": (1, 0, 0, 0), "w": (0, 0, 1, 0)}
 _DMT_SIMILAR = {"length": (3, 2, 0, 0), "R": (-1, -1, 1, 0)}
-#: SI powers of the modulus and of R in these parts.
+#: SI powers of the modulus and of R in these terms.
 _OF_PARTS = ((1, 2), (0, 1), (1, 2), (0, 1))
 #: In place of the logarithm of 0, such as of pull_D under "dmt".
 _NOTHING = -700.0
@@ -40,9 +40,9 @@ def is_modulus(name: str) -> bool:
 
 
 class Terms(NamedTuple):
-    """How the parts of a model depend on its inputs.
+    """How the terms of a model depend on its inputs.
 
-    powers : name of a factor, "E", "w", "length", "R", "cotangent" -> its power (4,) in each part
+    powers : name of a factor, "E", "w", "length", "R", "cotangent" -> its power (4,) in each term
     axes : unknown inputs on which they depend apart from these factors
     length : the input that is the unit of the radius: "h" or "R"
     """
@@ -98,7 +98,7 @@ class Terms(NamedTuple):
         return total + self.powers["length"] * (name == self.length) + self.powers["R"] * (name == "R")
 
     def logarithms(self, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:
-        """The logarithms of the parts without their factors, and their slopes by x, (8, C, m), at the radii x (m,) of
+        """The logarithms of the terms without their factors, and their slopes by x, (8, C, m), at the radii x (m,) of
         contacts with values (C,) of inputs: x is the logarithm of the radius over the length, or what the solver takes
         for shapes that end or are flat around the axis."""
         model = self.model

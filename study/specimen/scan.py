@@ -25,7 +25,7 @@ FEWEST = 16
 STEEPEST = 3.0
 #: Beyond these limits the unit of a scan must be another: a size above 1 m, which no instrument reaches; an rms of the
 #: heights below 1 pm, a hundredth of an atom; and asperities of a radius above 1 km, which heights of an rms of 1 nm
-#: have in waves of 8 mm, as wide as a contact or wider (tests/specimen/heights/test_sizes.py).
+#: have in waves of 8 mm, as wide as a contact or wider (tests/specimen/heights/test_lengths_refused.py).
 LONGEST, FLATTEST, BLUNTEST = 1.0, 1e-12, 1e3
 #: Largest distance of a position from the uniform grid, in steps. Curvatures err by about as much. Positions that are
 #: written to a tenth of the step pass.

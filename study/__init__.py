@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import catalogue
-    from .adhesion.effective import effective_work
+    from .adhesion import effective_work
     from .api import Study, load
     from .data import derived, units
     from .data.dataset import decode
     from .data.units import from_physical, readable, reduced_modulus, to_physical
     from .derivatives import sensitivities
     from .fields import extremes, stresses
-    from .figures.lines import plot
+    from .figures.plots import plot
     from .figures.registry import drawing, figure, table
     from .figures.stresses.picture import plot_stresses
     from .files.results_file import open_results
@@ -84,7 +84,7 @@ _HOME = {
     "design": "inverse.design",
     "feasible": "inverse.design_choice",
     "front": "inverse.design_choice",
-    "effective_work": "adhesion.effective",
+    "effective_work": "adhesion",
     "first_yield": "yields.first",
     "h_protect": "yields.protect",
     "fit": "inverse.fit",
@@ -100,7 +100,7 @@ _HOME = {
     "reduced_modulus": "data.units",
     "summary": "in_words",
     "readable": "data.units",
-    "plot": "figures.lines",
+    "plot": "figures.plots",
     "plot_stresses": "figures.stresses.picture",
     "figure": "figures.registry",
     "table": "figures.registry",

@@ -17,9 +17,9 @@ from functools import partial
 from importlib import import_module
 from pathlib import Path
 
-from .commands import ending
+from .commands import signals
 from .commands.arguments import Parser, Version, add_curves, add_engine, folder, part, proposed
-from .commands.ending import INTERRUPTED
+from .commands.signals import INTERRUPTED
 from .terminal import empty_buffers, interrupt, memory_message, open_closed_streams, program, say, short_of_memory
 
 # The solver computes on one BLAS thread. A BLAS library that reads this before numpy is imported does not start others;
@@ -44,7 +44,7 @@ def parser() -> argparse.ArgumentParser:
         if items:
             argument = sub.add_argument("items", nargs=least, metavar=items, default=[])
             argument.completer = partial(proposed, name)
-        if module not in ("point", "fitting", "design", "exploring", "reading"):
+        if module not in ("point", "fitting", "designing", "exploring", "lookup"):
             sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
         return sub
 
@@ -63,7 +63,7 @@ def parser() -> argparse.ArgumentParser:
         'body="glass soda-lime" micro=smooth free=E1, of columns "D [nm]" and "P [nN]"'
     )
     text = "find the input that makes a wanted result, with its ±"
-    sub = command("design", "design", text, "NAME=VALUE")
+    sub = command("designing", "design", text, "NAME=VALUE")
     sub.add_argument("--json", action="store_true", help="as numbers, for a program")
     sub.epilog = (
         'such as p_max="180 MPa" h="1 um .. 1 mm" R="5 mm" punch="steel 52100" layer=PTFE bonding=bonded '
@@ -71,11 +71,11 @@ def parser() -> argparse.ArgumentParser:
     )
     sub = command("exploring", "explore", "write a page that solves contacts in a browser, without a network")
     sub.add_argument("--out", type=folder, default="contact.html", metavar="FILE", help="default: contact.html")
-    sub = command("reading", "scan", "measure the asperities of a scan of a rough surface", "FILE")
+    sub = command("lookup", "scan", "measure the asperities of a scan of a rough surface", "FILE")
     sub.usage = "%(prog)s FILE [NAME=VALUE ...]"
     sub.epilog = "such as wafer.csv unit=um height_unit=nm cutoff='2.5 um'; all names: " + f"{program()} docs roughness"
-    command("reading", "materials_", "list the materials that are known by name; say all of one", "NAME", least="*")
-    command("reading", "docs", "list the pages of the documentation; show one: docs/model.md", "PAGE", least="*")
+    command("lookup", "materials_", "list the materials that are known by name; say all of one", "NAME", least="*")
+    command("lookup", "docs", "list the pages of the documentation; show one: docs/model.md", "PAGE", least="*")
     sub = command("computing", "list_", "list the study files, their size and state")
     text = "default: the working folder and studies, or those of this package"
     sub.add_argument("folder", type=folder, nargs="?", help=text)
@@ -120,11 +120,11 @@ def main(arguments=None) -> int:
         options = commands.parse_args(arguments)
         level = logging.DEBUG if options.verbose else logging.WARNING
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
-        kept = ending.state.kept = KEPT if options.command in ("run", "retry") else ""
+        kept = signals.state.kept = KEPT if options.command in ("run", "retry") else ""
         code = perform(options, kept)
-        ending.state.code = code
+        signals.state.code = code
     except SystemExit as ended:  # raised by the parser
-        ending.state.code = ended.code
+        signals.state.code = ended.code
         raise
     except (KeyboardInterrupt, Exception) as error:
         # a library may have turned the interrupt into another error
@@ -154,7 +154,7 @@ def perform(options, kept: str) -> int:
         return 2
     commands = import_module(f".commands.{module}", __package__)
     items = commands.items(options) if hasattr(commands, "items") else options.items
-    ending.state.working = True  # before, during imports, a signal ends the process at once
+    signals.state.working = True  # before, during imports, a signal ends the process at once
     return max((_attempt(getattr(commands, name), options, item, kept) for item in items), default=0)
 
 
@@ -205,7 +205,7 @@ def command() -> None:
     """Run `main` as the process of a command line, which ends with its exit code."""
     os.environ["MPLBACKEND"] = "agg"  # figures are files; a notebook that calls this may have set one of its own
     open_closed_streams()
-    ending.listen()
+    signals.listen()
     code = main()
     if code == INTERRUPTED:
         os._exit(code)  # without waiting for the threads that compute blocks

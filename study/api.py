@@ -216,7 +216,7 @@ class Study:
         ------
         StudyError : there are no results, or what `study.plot` raises
         """
-        from .figures.lines import plot  # matplotlib takes a while
+        from .figures.plots import plot
 
         return plot(self.open(), x, y, hue, **where)
 

@@ -1,6 +1,6 @@
 """All figures and tables by name: what each needs, whether it is up to date, and the files that it is written to.
 
-Those beside studies are run when they are asked for; a list of names runs none (`study.figures.beside`).
+Those beside studies are run when they are asked for; a list of names runs none (`study.figures.figure_files`).
 """
 
 import io

@@ -11,7 +11,7 @@ from typing import Any, TextIO, Unpack
 import numpy as np
 
 from .arrays import xarray_later as xr
-from .carried import with_coordinates
+from .data.coordinates import with_coordinates
 from .data.dataset import Parts, parts
 from .data.one_case import OneCase
 from .data.si import dataset_in_units, in_units

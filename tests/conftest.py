@@ -110,7 +110,7 @@ def results(tmp_path_factory) -> Path:
 
 def compute_results(folder: Path) -> None:
     """Write what the fixture `results` promises."""
-    from study.figures.measured import described
+    from study.figures.figure_results import described
     from study.figures.registry import entry
     from study.files.examine import examine
     from study.files.results_file import write

@@ -7,7 +7,7 @@ import shutil
 from pathlib import Path
 
 from study.catalogue import CAPTIONS, ENDINGS
-from study.figures import beside
+from study.figures.figure_files import book_files, names_in
 from study.figures.record import RECORD
 
 CACHES = (".pytest_cache", ".ruff_cache", ".hypothesis")
@@ -15,8 +15,10 @@ CACHES = (".pytest_cache", ".ruff_cache", ".hypothesis")
 
 def written() -> list[Path]:
     """The files of all figures and tables, whether they are there or not."""
-    names = {kind: [name for file in beside.book_files() for one, name in beside.names_in(file) if one == kind]
-             for kind in ("figure", "table")}  # fmt: skip
+    names = {
+        kind: [name for file in book_files() for one, name in names_in(file) if one == kind]
+        for kind in ("figure", "table")
+    }
     drawn = {*ENDINGS["figure"], *ENDINGS["drawing"]}
     figures = [Path("figures", f"{name}.{ending}") for name in names["figure"] for ending in drawn]
     tables = [Path("tables", f"{name}.{ending}") for name in names["table"] for ending in ENDINGS["table"]]

@@ -87,9 +87,9 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
     elif command == "scan":
         words = sorted(path.as_posix() for path in Path().iterdir())
     elif command in ("plot", "table"):
-        from ..figures import beside
+        from ..figures import figure_files
 
-        words = ["all", *beside.names("figure" if command == "plot" else "table")]
+        words = ["all", *figure_files.names("figure" if command == "plot" else "table")]
         words += known_studies() if command == "plot" else []
         words += [path.as_posix() for path in files_here()]
     elif command == "--x":

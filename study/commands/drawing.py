@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from .. import catalogue
 from ..api import load
 from ..data.provenance import command_line
-from ..figures import measured
-from ..figures.lines import drawn
+from ..figures import figure_results
+from ..figures.plots import drawn
 from ..figures.registry import is_measured, study_beside
 from ..figures.style import style
 from ..inputs.definition import StudyError
@@ -21,7 +21,7 @@ from ..inputs.places import is_study, study_file
 from ..terminal import answer, on_one_line, say
 from ..work.second import Second
 from .computing import completed
-from .rows import results_of, write_rows
+from .spreadsheet import results_of, write_rows
 
 log = logging.getLogger(__name__)
 KINDS = {"plot": "figure", "table": "table"}
@@ -91,7 +91,7 @@ def table(options, name: str) -> int:
 def tradeoff(options, name: str) -> int:
     """Measure what no study file makes, of this name, and say in which file it is."""
     force = getattr(options, "force", False)  # `plot` and `table` have no such option
-    measured.results(name, options.results, force=force, command=command_line())
+    figure_results.results(name, options.results, force=force, command=command_line())
     answer(f"{options.results}/{name}.nc")
     return 0
 

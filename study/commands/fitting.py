@@ -13,7 +13,7 @@ import xarray as xr
 
 from ..data.dataset import decode
 from ..figures.formats import write
-from ..figures.lines import plot
+from ..figures.plots import plot
 from ..in_words import summary
 from ..inputs.definition import StudyError
 from ..inputs.vocabulary import ROWS, absent, suggest

@@ -10,7 +10,7 @@ from solver.numerics.mesh import mesh_of
 from solver.parameters import ends
 
 from ..data.provenance import package_version
-from ..in_words import pressures, strength
+from ..in_words import margins, pressures
 from ..inputs.vocabulary import VOCABULARY
 from ..rules import assumptions, doubts
 from ..specimen import materials
@@ -25,7 +25,7 @@ _LIMITS = {
     assumptions: ("STEEP", "COMPRESSED", "STRETCHED", "FEW_SPOTS", "MERGING", "STEEP_SPOT"),
     doubts: ("YIELD", "STIFF"),
     pressures: ("RING",),
-    strength: ("RUBBER",),
+    margins: ("RUBBER",),
 }
 #: λ(0) -> by how much disc_cell overestimates what the asperities yield, against a square lattice
 #: (docs/model.md, Microscale; tests/laws/lattice/test_lattice.py).

@@ -9,7 +9,7 @@ from typing import Any
 from ..files.atomic import remove_temporary, replacing
 from ..inputs.definition import StudyError
 from ..terminal import shown
-from .registry import Column, Table
+from .registry import Column, DataTable
 
 STALE = 3600  # seconds after which nobody is writing a temporary file any more: a figure takes some
 """A younger one may be that of another program that draws the same figure."""
@@ -18,7 +18,7 @@ _FORMULA = re.compile("\\s*[=+\\-@\uff1d\uff0b\uff0d\uff20]|[\\t\\r\\n]")
 _NONE = "-"  # what tables write where there is no number: alone it is a text everywhere
 
 
-def as_text(table: Table, rows: list[tuple]) -> str:
+def as_text(table: DataTable, rows: list[tuple]) -> str:
     """Columns aligned: text to the left, numbers to the right."""
     cells = [[column.text for column in table.columns], *formatted(table, rows)]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
@@ -27,7 +27,7 @@ def as_text(table: Table, rows: list[tuple]) -> str:
     return "\n".join([table.caption, "", lines[0], "-" * max(map(len, lines)), *lines[1:]]) + "\n"
 
 
-def as_latex(table: Table, rows: list[tuple]) -> str:
+def as_latex(table: DataTable, rows: list[tuple]) -> str:
     """A table environment; needs the package booktabs."""
     form = "".join("l" if column.form == "s" else "r" for column in table.columns)
     begin = [r"\begin{table}", r"\centering", rf"\caption{{{latex(table.caption)}}}", rf"\begin{{tabular}}{{{form}}}"]
@@ -37,7 +37,7 @@ def as_latex(table: Table, rows: list[tuple]) -> str:
     return "\n".join([*begin, r"\toprule", head, r"\midrule", *lines, r"\bottomrule", *end]) + "\n"
 
 
-def formatted(table: Table, rows: list[tuple]) -> list[list[str]]:
+def formatted(table: DataTable, rows: list[tuple]) -> list[list[str]]:
     """Cells as text; a text in a column of numbers stays as it is.
 
     Raises StudyError, which names the column, for a cell that its format does not fit.

@@ -1,8 +1,9 @@
 """The register of figures and tables. Each is a decorated function of the datasets of the studies that it names.
 
-They stand in a file `figures.py` beside studies, see `study.figures.beside`, or in a script of one's own.
+They stand in a file `figures.py` beside studies, see `study.figures.figure_files`, or in a script of one's own.
 """
 
+import os
 import re
 from collections import defaultdict
 from collections.abc import Callable
@@ -12,14 +13,16 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..files.results_file import results_of
+from ..files.results_file import open_results, results_of
 from ..inputs.definition import StudyError
 from ..inputs.places import BOOK
 from ..terminal import program
-from . import beside
-from .drawable import opened
+from . import figure_files
 
 ONE_COLUMN, TWO_COLUMNS = 3.35, 6.9  # inches, widths of a journal page
+#: Bytes in memory of results that are kept while a program draws. Some twenty studies have figures.
+SMALL = 20_000_000
+_kept: dict[Path, tuple[tuple, xr.Dataset]] = {}
 COMMANDS = ("tradeoff",)  # measurements that have a command
 Decorator = Callable[[Callable], Callable]
 Pair = tuple[float, float]
@@ -59,7 +62,7 @@ class Column(NamedTuple):
     latex: str
 
 
-class Table(NamedTuple):
+class DataTable(NamedTuple):
     """See `table`."""
 
     studies: tuple[str, ...]
@@ -77,7 +80,7 @@ class Measured(NamedTuple):
 
 
 #: Package of files beside studies -> kind -> name -> what is registered there. "": by scripts and other modules.
-REGISTERS = defaultdict[str, dict[str, dict]](lambda: {kind: {} for kind in beside.KINDS.values()})
+REGISTERS = defaultdict[str, dict[str, dict]](lambda: {kind: {} for kind in figure_files.KINDS.values()})
 FIGURES, TABLES = REGISTERS[""]["figure"], REGISTERS[""]["table"]
 """The figures, and tables, of the program that runs, which go before those beside studies."""
 
@@ -144,7 +147,7 @@ def table(name: str, *studies: str, columns: str, caption: str = "", long: bool 
 
     def register(rows: Callable[..., list[tuple]]) -> Callable[..., list[tuple]]:
         heads = tuple(column(line) for line in re.split(r"\n|(?<!\\); ", columns.strip()))
-        add("table", name, rows, Table(studies, rows, caption_of(rows, caption), heads))
+        add("table", name, rows, DataTable(studies, rows, caption_of(rows, caption), heads))
         return rows
 
     return register
@@ -192,7 +195,7 @@ def column(line: str) -> Column:
 
 def names(kind: str, *, long: bool = True) -> list[str]:
     """The names of all figures ("figure"), or tables ("table"), that there are; without long ones if wanted."""
-    return list(dict.fromkeys([*REGISTERS[""][kind], *beside.names(kind, long=long)]))
+    return list(dict.fromkeys([*REGISTERS[""][kind], *figure_files.names(kind, long=long)]))
 
 
 def entry(kind: str, name: str) -> Any:
@@ -202,11 +205,11 @@ def entry(kind: str, name: str) -> Any:
     """
     if name in REGISTERS[""][kind]:
         return REGISTERS[""][kind][name]
-    place = beside.place_of(kind, name)
+    place = figure_files.place_of(kind, name)
     if place is None:
-        raise beside.unknown(kind, name, list(REGISTERS[""][kind]))
+        raise figure_files.unknown(kind, name, list(REGISTERS[""][kind]))
     file, last = place
-    register = REGISTERS[beside.run(file)][kind]
+    register = REGISTERS[figure_files.run(file)][kind]
     if last not in register:
         raise StudyError([f"{file.as_posix()}: registers no {kind} {last}, though the name stands there"], code=1)
     return register[last]
@@ -214,14 +217,14 @@ def entry(kind: str, name: str) -> Any:
 
 def code_of(kind: str, name: str) -> list[Path]:
     """Files beside studies that a figure or table may depend on, by their texts; none if a script has it."""
-    place = None if name in REGISTERS[""][kind] else beside.place_of(kind, name)
-    return beside.files_of(place[0]) if place else []
+    place = None if name in REGISTERS[""][kind] else figure_files.place_of(kind, name)
+    return figure_files.files_of(place[0]) if place else []
 
 
 def study_beside(kind: str, name: str) -> Path | None:
     """The folder of a figure or table of the user, where the studies that it needs are looked for first."""
-    place = None if name in REGISTERS[""][kind] else beside.place_of(kind, name)
-    return place[0].parent if place and place[0] not in beside.book_files() else None
+    place = None if name in REGISTERS[""][kind] else figure_files.place_of(kind, name)
+    return place[0].parent if place and place[0] not in figure_files.book_files() else None
 
 
 def open_studies(name: str, studies: tuple[str, ...], results) -> list[xr.Dataset]:
@@ -238,6 +241,21 @@ def open_studies(name: str, studies: tuple[str, ...], results) -> list[xr.Datase
     return datasets
 
 
+def opened(path: Path) -> xr.Dataset:
+    """The results in a file. Those that are small are kept for the next figure that needs them, until the file is
+    another one."""
+    path = Path(os.path.abspath(path))
+    place = path.stat()
+    stamp = place.st_mtime_ns, place.st_size, place.st_ino
+    if path not in _kept or _kept[path][0] != stamp:
+        _kept.pop(path, None)
+        dataset = open_results(path)
+        if dataset.nbytes > SMALL:
+            return dataset
+        _kept[path] = stamp, dataset
+    return _kept[path][1].copy()
+
+
 def _way_out(study: str) -> str:
     """How to get the results of a study that has none."""
     if is_measured(study):
@@ -247,7 +265,7 @@ def _way_out(study: str) -> str:
 
 def is_measured(study: str) -> bool:
     """Whether the results of a study are measured by code beside studies, see `measured`."""
-    return study in REGISTERS[""]["measured"] or beside.place_of("measured", study) is not None
+    return study in REGISTERS[""]["measured"] or figure_files.place_of("measured", study) is not None
 
 
 def pick(dataset: xr.Dataset, **wanted) -> xr.Dataset:

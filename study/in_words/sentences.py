@@ -13,11 +13,9 @@ from ..inputs.vocabulary import VOCABULARY, bodies_of
 from ..rules import rule
 from ..terminal import rounded
 from .influence import influence
-from .notes.asperities import ended, presses_on
-from .notes.punch import of_adhesion, of_shape, sticks, unit_of_length
-from .notes.unloading import falling
+from .margins import RUBBER, holds, which_yields
+from .notes import ended, falling, of_adhesion, of_shape, presses_on, sticks, unit_of_length
 from .pressures import largest_of_all
-from .strength import RUBBER, holds, which_yields
 
 _BASES = {
     "half_space": "a half-space",

@@ -128,7 +128,7 @@ class Draft:
                 self.sizes.setdefault(dim, size)
         for entry in request.inputs.values():
             for dim in entry.dims if entry.array is not None else ():
-                stacked = hasattr(entry.array.indexes.get(dim), "levels")  # see `carried`
+                stacked = hasattr(entry.array.indexes.get(dim), "levels")  # see `data.coordinates`
                 if dim not in request.inputs and dim in entry.array.coords and not stacked:
                     self.labels.setdefault(dim, ((dim,), entry.array.coords[dim].values))
         if "case" in self.sizes and (request.rows or request.sample is not None or request.physical):

@@ -16,8 +16,8 @@ from ..inputs.definition import StudyError
 from ..inputs.vocabulary import VOCABULARY
 from ..specimen.quantities import quantity
 from ..terminal import shown
-from .afm.reading import Reading, is_of_instrument, place, reading_of
-from .afm.reading import read as of_instrument
+from .afm.force_curves import Reading, is_of_instrument, place, reading_of
+from .afm.force_curves import read as of_instrument
 
 COLUMNS = ("D", "P", "a", "dP_dD")
 _AS_IT_IS = Reading()
@@ -70,7 +70,7 @@ def curves(
 
 
 def measured(source: Any, least: int = 2, reading: Reading = _AS_IT_IS) -> xr.Dataset:
-    """What `curves` returns, of `least` columns or more: a plan needs one."""
+    """The dataset that `curves` returns, with `least` columns or more: a plan needs one."""
     is_file = isinstance(source, (str, Path))
     if is_file and is_of_instrument(Path(source), reading):
         return _of_columns(of_instrument(Path(source), reading), least=least)
@@ -92,8 +92,8 @@ def _chosen(dataset: xr.Dataset, curve: Any) -> xr.Dataset:
         number = names.index(str(curve))
     elif isinstance(curve, str):
         listed = ", ".join(names[:_MOST]) + " ..." * (len(names) > _MOST)
-        known = f"there is {listed}" if names else "the curves have no names, give a number"
-        raise StudyError([f"curves: curve = {shown(curve)}: {known}"])
+        names_in_words = f"there is {listed}" if names else "the curves have no names, give a number"
+        raise StudyError([f"curves: curve = {shown(curve)}: {names_in_words}"])
     else:
         number = place(curve, dataset.sizes["curve"], "curves")
     chosen = dataset.isel(curve=[number])

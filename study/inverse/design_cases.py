@@ -28,7 +28,7 @@ BLOCK = 8000  # cases that are solved at a time, at most
 
 @dataclass(frozen=True)
 class Wanted:
-    """What is looked for.
+    """A wanted result, and the input that is looked for.
 
     definition : of the grid, in which the input has its lower bound
     target, level : name and value of the wanted result, in SI or dimensionless
@@ -56,7 +56,7 @@ class Wanted:
 
     @property
     def width(self) -> float:
-        """What counts as 1 of t: of what has a logarithm 1, else the whole range."""
+        """The unit of t: 1 for an input with a logarithm, else the whole range."""
         return 1.0 if self.low > 0 else self.high - self.low
 
     @property

@@ -56,7 +56,7 @@ def feasible(contacts: xr.Dataset, **limits: str | int) -> xr.DataArray:
 
 
 def front(contacts: xr.Dataset, least: Sequence[str] = (), most: Sequence[str] = ()) -> xr.Dataset:
-    """The contacts that no other one beats, of all that the dataset has.
+    """The contacts of a dataset that no other one of it beats.
 
     Another one beats a contact if it is better in one of the quantities, and worse in none.
 
@@ -125,8 +125,8 @@ def _quantity(contacts: xr.Dataset, name: str, who: str) -> xr.DataArray:
             return QUANTITIES[name](contacts)
         except (KeyError, ValueError) as error:
             raise StudyError([f"{who}: {name} does not follow from this dataset: {error}"]) from None
-    known = [str(key) for key in contacts.variables]
-    raise StudyError([f"{who}: the dataset has no {shown(name)}{suggest(str(name), known)}"])
+    names = [str(key) for key in contacts.variables]
+    raise StudyError([f"{who}: the dataset has no {shown(name)}{suggest(str(name), names)}"])
 
 
 def _limit(name: str, limit: str, values: xr.DataArray) -> tuple:

@@ -17,7 +17,7 @@ _BENT = 1e-5
 _TURN = 1e-3
 #: Beside each bound is a further point, at this part of the distance of two: a turn in the last interval shows too.
 _BESIDE = 0.01
-_HALVINGS = 12  # of the interval in which contacts cease to have a solution
+_HALVINGS = 12  # so often the interval is halved in which contacts cease to have a solution
 _NEAR = 1e-12  # of two ends of a bracket, in ln of the input
 
 Evaluate = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -138,9 +138,9 @@ def crossings(evaluate: Evaluate, curves: Curves, rows: np.ndarray, level: np.nd
     place, t = place[np.isfinite(t)], t[np.isfinite(t)]
     order = np.lexsort((t, place))
     count = np.bincount(place, minlength=len(level))
-    found = np.full((len(level), max(1, count.max(initial=0))), np.nan)
-    found[place[order], np.arange(len(place)) - (np.cumsum(count) - count)[place[order]]] = t[order]
-    return found
+    solutions = np.full((len(level), max(1, count.max(initial=0))), np.nan)
+    solutions[place[order], np.arange(len(place)) - (np.cumsum(count) - count)[place[order]]] = t[order]
+    return solutions
 
 
 def ends(

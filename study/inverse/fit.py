@@ -19,18 +19,16 @@ from ..work.cases import Failure, laws_of_users
 from ..work.engine import computed_tasks
 from ..work.progress import Progress, screen_of
 from .curves import measured
-from .fits.answer import answered
-from .fits.asked import Asked, asked
 from .fits.block import FitStatus
+from .fits.fit_dataset import answered, said
 from .fits.least_squares import AT_LEAST
-from .fits.model import HERTZ, Model
-from .fits.parts import Part, fit_part, forget
-from .fits.points.region import inside, region
-from .fits.said import said
-from .fits.sticking.branch import planned
+from .fits.model import HERTZ, CurveModel
+from .fits.question import Question, inside, read_question, region
+from .fits.tables.branch import planned
+from .fits.tasks import Task, fit_task, forget
 from .no_pull import joined, without
 
-#: Curves at a time, of what sticks too, and their points are filled up to a multiple of this.
+#: Curves in a block, in a block of those that adhere, and the multiple to which their points are filled up.
 _BLOCK, _STICKING, _PART = 64, 8, 64
 #: Fits that look for the contact point of a part of the depth.
 _ROUNDS = 5
@@ -110,7 +108,7 @@ def fit(
     options = {"contact_point": contact_point, "baseline": baseline, "tilt": tilt, "sigma": sigma, "loss": loss}
     options |= {"intervals": intervals, "level": level, "plan": plan}
     parameters = {name: value for name, value in parameters.items() if value is not None}
-    question = asked(free, parameters, x, y, options)
+    question = read_question(free, parameters, x, y, options)
     limits = region(depth, x)
     data = _columns(curves, question.model, plan)
     X, Y, S = _arrays(data, question.model, sigma)
@@ -129,7 +127,7 @@ def fit(
     return _as_called(fitted.assign_attrs(said(question, fitted)), question.called)
 
 
-def _within(question: Asked, arrays: tuple, there: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
+def _within(question: Question, arrays: tuple, there: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
     """The points that count where only a part of the depth does. The contact point from which it counts is that of a
     fit of all points, then that of the points that count, until these stay."""
     first, every = replace(question, intervals=None), there
@@ -160,7 +158,7 @@ def _with_and_without(fitted: xr.Dataset, arrays: tuple, call: tuple, low: float
     return joined(fitted, plain, low)
 
 
-def _every(question: Asked, arrays: tuple, there: np.ndarray, screen: Any) -> tuple[dict[int, tuple], np.ndarray]:
+def _every(question: Question, arrays: tuple, there: np.ndarray, screen: Any) -> tuple[dict[int, tuple], np.ndarray]:
     """For each curve that is fitted the fits of its block and its place among them; and the status of the others, or
     -1."""
     X, Y, _ = arrays
@@ -181,32 +179,32 @@ def _every(question: Asked, arrays: tuple, there: np.ndarray, screen: Any) -> tu
     return rows, np.where((status < 0) & ~np.isin(np.arange(len(X)), list(rows)), NOT_RUN, status)
 
 
-def _contact_points(question: Asked, rows: dict[int, tuple]) -> dict[int, float]:
+def _contact_points(question: Question, rows: dict[int, tuple]) -> dict[int, float]:
     """The contact point in m of each curve that has one."""
     place = len(question.model.unknowns)
     lost = (FitStatus.INVALID_INPUT, FitStatus.NO_CONTACT)
     return {c: fits["p"][i, place] * fits["wide"][i] for c, (fits, i) in rows.items() if fits["status"][i] not in lost}
 
 
-def _fits(question: Asked, blocks: list, arrays: tuple, there: np.ndarray) -> Iterator[tuple[np.ndarray, dict]]:
+def _fits(question: Question, blocks: list, arrays: tuple, there: np.ndarray) -> Iterator[tuple[np.ndarray, dict]]:
     """The curves of each block and their fits, by the processors that may be used."""
     call = f"{os.getpid()} {next(_calls)}"
     parts = [
-        Part(call, question, *(None if A is None else _packed(A, there, filled, points) for A in arrays))
+        Task(call, question, *(None if A is None else _packed(A, there, filled, points) for A in arrays))
         for _, filled, points in blocks
     ]
     of_users = laws_of_users(np.array([question.model.scene.parameters.get("micro", "disc_cell")]))
     try:
-        with closing(computed_tasks(fit_part, parts, can_leave=not of_users)) as results:
+        with closing(computed_tasks(fit_task, parts, can_leave=not of_users)) as results:
             for number, fits in results:
                 # a process that was killed, or what it raised: then it is raised here
-                yield blocks[number][0], fit_part(parts[number]) if isinstance(fits, Failure) else fits
+                yield blocks[number][0], fit_task(parts[number]) if isinstance(fits, Failure) else fits
     finally:
         forget(call)
 
 
-def _columns(source: Any, model: Model, plan: bool) -> xr.Dataset:
-    """The curves; of a plan x alone."""
+def _columns(source: Any, model: CurveModel, plan: bool) -> xr.Dataset:
+    """The curves; for a plan their x alone."""
     names = [model.x] if plan else [model.x, model.y]
     data = measured(source, len(names))
     lacking = [name for name in names if name not in data]
@@ -217,7 +215,7 @@ def _columns(source: Any, model: Model, plan: bool) -> xr.Dataset:
     return data[names]
 
 
-def _arrays(data: xr.Dataset, model: Model, sigma: Any) -> tuple:
+def _arrays(data: xr.Dataset, model: CurveModel, sigma: Any) -> tuple:
     """x, y and the standard deviations of y over (curve, point); NaN for y of a plan."""
     X = data[model.x].values
     Y = data[model.y].values if model.y in data else np.full(X.shape, np.nan)
@@ -237,7 +235,7 @@ def _arrays(data: xr.Dataset, model: Model, sigma: Any) -> tuple:
     return X, Y, S
 
 
-def _planned(question: Asked, X: np.ndarray) -> np.ndarray:
+def _planned(question: Question, X: np.ndarray) -> np.ndarray:
     """The curve of the assumed values."""
     model = question.model
     values = {name: np.full(1, model.value(name)) for name in model.unknowns}
@@ -260,7 +258,7 @@ def _usable(X: np.ndarray, Y: np.ndarray, there: np.ndarray, unknowns: int, anyw
     return enough & spread[0] & spread[1] & ((ends[0][1] > 0) | anywhere)
 
 
-def _stiffness(X: np.ndarray, Y: np.ndarray, question: Asked) -> np.ndarray:
+def _stiffness(X: np.ndarray, Y: np.ndarray, question: Question) -> np.ndarray:
     """A rough modulus of each curve, in any unit: curves that are alike in it share the tiles of a table."""
     q, e, _ = HERTZ[question.model.x, question.model.y][0]
     with warnings.catch_warnings(), np.errstate(all="ignore"):

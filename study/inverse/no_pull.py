@@ -53,12 +53,12 @@ def joined(fitted: xr.Dataset, plain: xr.Dataset, low: float) -> xr.Dataset:
     """
     fitted, no_pull = fitted.copy(deep=True), np.zeros(fitted.sizes["curve"], bool)
     for i in np.flatnonzero(~plain["fit_status"].isin(_LOST).values & ~fitted["fit_status"].isin(_LOST).values):
-        one, other = fitted.isel(curve=i), plain.isel(curve=i)
-        sums = [float((part["residual"] ** 2).sum()) for part in (one, other)]
-        freedom = max(float(one["effective_points"]) - one.sizes["cov_i"], 1.0)
+        with_pull, without_pull = fitted.isel(curve=i), plain.isel(curve=i)
+        sums = [float((part["residual"] ** 2).sum()) for part in (with_pull, without_pull)]
+        freedom = max(float(with_pull["effective_points"]) - with_pull.sizes["cov_i"], 1.0)
         gain = (sums[1] - sums[0]) / max(sums[0], 1e-300) * freedom
-        better = gain > 0 and float(one["w_adhesion"]) > low * (1 + 1e-6)
-        no_pull[i] = (not better or special.fdtr(_MORE, freedom, gain / _MORE) < _SURE) and _is_quiet(other)
+        better = gain > 0 and float(with_pull["w_adhesion"]) > low * (1 + 1e-6)
+        no_pull[i] = (not better or special.fdtr(_MORE, freedom, gain / _MORE) < _SURE) and _is_quiet(without_pull)
         if no_pull[i]:
             _put(fitted, plain, i, better)
     return fitted.assign(no_pull=("curve", no_pull, {"long_name": "whether the curve has no pull: w_adhesion is 0"}))

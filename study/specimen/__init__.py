@@ -1,1 +1,1 @@
-"""What is known of real bodies: materials, quantities with units and spreads, roughness."""
+"""Real bodies: materials, quantities with units and spreads, roughness."""

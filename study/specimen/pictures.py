@@ -18,10 +18,10 @@ def with_picture(text: str, picture: str = "") -> str:
 def curve(x: np.ndarray, y: np.ndarray, across: str, up: str) -> str:
     """A curve as SVG, with words for both axes; "" where there are no numbers. Many points are means of some."""
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
-    known = np.isfinite(x) & np.isfinite(y)
-    if known.sum() < 2:
+    finite = np.isfinite(x) & np.isfinite(y)
+    if finite.sum() < 2:
         return ""
-    parts = np.array_split(np.flatnonzero(known), min(_POINTS, int(known.sum())))
+    parts = np.array_split(np.flatnonzero(finite), min(_POINTS, int(finite.sum())))
     x, y = (np.array([values[part].mean() for part in parts]) for values in (x, y))
     low, high = min(y.min(), 0.0) if y.min() >= 0 else y.min(), y.max()
     across_x = _WIDTH * (x - x[0]) / max(x[-1] - x[0], np.finfo(float).tiny)
@@ -37,7 +37,7 @@ def curve(x: np.ndarray, y: np.ndarray, across: str, up: str) -> str:
 
 
 def of_heights(scan: Any) -> str:
-    """Of a `Scan`: what it is, and its heights; of a map those of its middle row."""
+    """The text of a `Scan` and a picture of its heights; for a map those of its middle row."""
     profile = scan.z.ndim == 1
     row, step = (scan.z, scan.steps[0]) if profile else (scan.z[len(scan.z) // 2], scan.steps[1])
     size = " x ".join(readable(float(f"{length:.3g}"), "m") for length in scan.sizes)

@@ -36,7 +36,7 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 #: A number with a unit that is a product of powers: read without pint, as the number times the size of its unit. The 1
 #: of "1/um^2" must not be a digit of the number: "2.1/um^2" would be "2." times 1/um^2.
 _PLAIN = re.compile(rf"({_NUMBER.pattern})\s*((?:(?<![\d.])1/)?[A-Za-zµ]+(?:(?:\^|\*|/)-?[A-Za-z0-9µ]+)*)")
-#: What pint would read as another number, without a word: signs that it does not know, which it drops or takes for a
+#: Signs that make pint read another number, without a word: signs that it does not know, which it drops or takes for a
 #: product ("5,0 mm" as 50 mm, "200–220 GPa" as 44 TPa), a second decimal point, a number that it multiplies by the one
 #: before ("5 500 um", "5 1/2 in", "200 GPa (10)"), and two tolerances ("200 GPa +10/-5 GPa").
 _AMBIGUOUS = re.compile(
@@ -88,7 +88,7 @@ def unit_in(entry: Any) -> str:
 def quantity(name: str, entry: Any, unit: str) -> Quantity:
     """The SI value of a text ("5 mm", "200 ± 10 GPa"), a quantity of pint, or, for unit "1", of a number or a `ufloat`.
 
-    name : what the number is called, for messages
+    name : of the number, for messages
     entry : text, number, `ufloat`, or quantity of pint; one that is measured (a `ufloat` with a unit) has a spread
     unit : one of READABLE: the SI unit of the result
 
@@ -138,17 +138,17 @@ def _of_pint(entry: Any, unit: str) -> Any:
 def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     """The quantity in a text. In "200 ± 10 GPa" the unit holds for the value as well."""
     head, *spread = _SPREAD.split(text)
-    said = f'{name} = "{on_one_line(text, LONGEST)}"'
+    entry = f'{name} = "{on_one_line(text, LONGEST)}"'
     if len(text) > LONGEST or len(spread) > 1 or not _NUMBER.match(head):
         bare = '; without brackets, as in "3 ± 0.2 mm"' * (bool(spread) and text.startswith("("))
-        raise ValueError(f"{said}: {wanted}{bare}")
+        raise ValueError(f"{entry}: {wanted}{bare}")
     if spread and (problem := _no_spread(spread[0])):
-        raise ValueError(f"{said}: {problem}")
+        raise ValueError(f"{entry}: {problem}")
     if _AMBIGUOUS.search(text):
-        raise ValueError(f"{said}: write one number, with a decimal point and without gaps: {wanted}")
+        raise ValueError(f"{entry}: write one number, with a decimal point and without gaps: {wanted}")
     if thousands := _THOUSANDS.match(text):
         digits = thousands[1]
-        raise ValueError(f"{said}: the point may be one of thousands: write {digits} or {digits}e3: {wanted}")
+        raise ValueError(f"{entry}: the point may be one of thousands: write {digits} or {digits}e3: {wanted}")
     if not spread:
         return Quantity(_si(name, text, unit, wanted))
     number = _NUMBER.match(spread[0])
@@ -156,9 +156,9 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     if common.lstrip().startswith("%"):  # "200 GPa ± 5 %", or "200 ± 5 % GPa", in which pint would read GPa/100
         common = common.replace("%", "", 1).rstrip()
         if common and (has_unit(head) or "%" in common):
-            raise ValueError(f"{said}: behind % may only stand the unit of the number")
+            raise ValueError(f"{entry}: behind % may only stand the unit of the number")
         if "%" in head:  # "30 % ± 2 %" could be ± 0.02 and ± 0.006
-            raise ValueError(f'{said}: write the spread as a number, as in "0.3 ± 0.02"')
+            raise ValueError(f'{entry}: write the spread as a number, as in "0.3 ± 0.02"')
         value = _si(name, head + common, unit, wanted)
         spread = abs(value * float(number[0])) / 100
         if not math.isfinite(spread):
@@ -169,7 +169,7 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
 
 
 def _no_spread(text: str) -> str:
-    """What is wrong with the text behind ±: "" if it begins with a number that may be a standard deviation."""
+    """The error of the text behind ±: "" if it begins with a number that may be a standard deviation."""
     if text.startswith(("-", "−")):
         return "behind ± must be a number not below 0: leave out its minus sign"
     return "" if _NUMBER.match(text) else "behind ± must be a number, finite and not below 0"
@@ -178,7 +178,7 @@ def _no_spread(text: str) -> str:
 @lru_cache(maxsize=4096)  # reading a text takes half a millisecond
 def _si(name: str, text: str, unit: str, wanted: str) -> float:
     """The SI value of a text without a spread. It is rounded once, so "3 um" is exactly the float 3e-6."""
-    said, text = on_one_line(text, LONGEST), _POWER.sub(r"\1^\2", text.replace("⁻²", "^-2").replace("²", "^2"))
+    entry, text = on_one_line(text, LONGEST), _POWER.sub(r"\1^\2", text.replace("⁻²", "^-2").replace("²", "^2"))
     text = _MICRONS.sub("µm", text) if unit == "m" else text
     plain = _PLAIN.fullmatch(text)
     size = _size(plain[2], unit) if plain else None
@@ -190,16 +190,16 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
     except MemoryError:
         raise
     except Exception as error:  # pint raises many kinds of errors
-        raise ValueError(f'{name} = "{said}": no unit is called like this{_near(text, unit)}; {wanted}') from error
+        raise ValueError(f'{name} = "{entry}": no unit is called like this{_near(text, unit)}; {wanted}') from error
     if unit != "1" and parsed.unitless:
-        raise ValueError(f'{name} = "{said}" has no unit: {wanted}')
+        raise ValueError(f'{name} = "{entry}" has no unit: {wanted}')
     if unit != "1" and "%" in text:  # pint reads "9 um %" as 0.09 um
-        raise ValueError(f'{name} = "{said}": % may only stand behind ±: {wanted}')
+        raise ValueError(f'{name} = "{entry}": % may only stand behind ±: {wanted}')
     if not parsed.is_compatible_with(unit):
-        raise ValueError(f'{name} = "{said}" is {_understood(parsed)}{_near(text, unit)}: {wanted}')
+        raise ValueError(f'{name} = "{entry}" is {_understood(parsed)}{_near(text, unit)}: {wanted}')
     value = float(parsed.to(unit).magnitude)
     if not math.isfinite(value):
-        raise ValueError(f'{name} = "{said}": must be finite')
+        raise ValueError(f'{name} = "{entry}": must be finite')
     return value
 
 
@@ -229,7 +229,7 @@ def _size(word: str, unit: str) -> Decimal | None:
 
 
 def _understood(parsed: Any) -> str:
-    """What a quantity of the wrong dimension is, in words: "a force"."""
+    """A quantity of the wrong dimension in words: "a force"."""
     if parsed.dimensionless:
         return "an angle or a ratio"
     return next((what for unit, (what, _) in READABLE.items() if parsed.is_compatible_with(unit)), f"in {parsed.units}")

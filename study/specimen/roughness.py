@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from ..terminal import rounded
-from .heights.asperities import Roughness
-from .measured import measure
+from .heights.measure import measure
+from .heights.measured_asperities import Roughness
 from .quantities import readable
 from .scan import Scan, height_map, profile
 from .scan_files import read

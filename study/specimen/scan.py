@@ -1,4 +1,4 @@
-"""A measured surface: heights on a uniform grid, in metres. What cannot be a measured surface is refused."""
+"""A measured surface: heights on a uniform grid, in metres. Numbers that no surface has are refused."""
 
 import math
 import numbers
@@ -25,7 +25,7 @@ FEWEST = 16
 STEEPEST = 3.0
 #: Beyond these limits the unit of a scan must be another: a size above 1 m, which no instrument reaches; an rms of the
 #: heights below 1 pm, a hundredth of an atom; and asperities of a radius above 1 km, which heights of an rms of 1 nm
-#: have in waves of 8 mm, as wide as a contact or wider (tests/specimen/heights/test_sizes.py).
+#: have in waves of 8 mm, as wide as a contact or wider (tests/specimen/heights/test_lengths_refused.py).
 LONGEST, FLATTEST, BLUNTEST = 1.0, 1e-12, 1e3
 #: Largest distance of a position from the uniform grid, in steps. Curvatures err by about as much. Positions that are
 #: written to a tenth of the step pass.
@@ -117,7 +117,7 @@ def height_map(
     dx, dy : distance of two columns and of two rows, in unit; dy is dx if it is not given
     unit, height_unit : one of m, mm, um, nm, pm, angstrom, or as it is spelt otherwise
     name : of the scan, in messages
-    missing : what is done with heights that are NaN or under a mask: "fill" interpolates up to 1 % of the points;
+    missing : the treatment of heights that are NaN or under a mask: "fill" interpolates up to 1 % of the points;
         "skip" leaves them, and every statistic takes the points whose neighbours are all there; "refuse"
     steep : take slopes that no instrument measures (rms above 3), and heights that span more than the scan is long
     huge : take a scan longer than 1 m, heights of an rms below 1 pm, and asperities of a radius above 1 km

@@ -13,7 +13,7 @@ import numpy as np
 
 from solver.numerics.userfile import begins, checked, content, unpacked
 
-from .formats import netcdf, x3p
+from . import netcdf_heights, x3p
 from .scan import FEWEST, Scan, metres, number
 from .scan_grids import columns_of, npy_table, on_grid, scan_of, without_holes
 from .scan_headings import check_units, height_metres, stated, without_no_data
@@ -45,7 +45,7 @@ def read(
     Text and .npy: two columns are a profile, x and z; one column (or one row) is a profile of the distance dx; three
     are a map, x, y and z of the points of a grid in any order; 16 columns or more are a map, a line for each y, of the
     distances dx and dy. Columns are separated by commas, semicolons, tabs or spaces; the decimal mark is a point or,
-    where commas do not separate, a comma. What stands before the first line of numbers, or behind # and %, is a
+    where commas do not separate, a comma. Text before the first line of numbers, or behind # and %, is a
     comment. An empty field, nan, Bad, ***, -- and - are missing points. Text may be UTF-8, UTF-16 or packed (.gz).
 
     SDF, SMD and PRF in text, netCDF, X3P and every other ending (.sur, .opd, .gwy, …) have their lengths in the file.
@@ -96,10 +96,10 @@ def read(
 def _of_own_format(path: Path, arguments: dict, channel: str | None, crop, how: dict) -> Scan | None:
     """The scan of a netCDF or X3P file; None if it is neither."""
     name, head = path.name, begins(path) if path.exists() else b""
-    if head.startswith(netcdf.MAGIC):
+    if head.startswith(netcdf_heights.MAGIC):
         if more := [key for key in arguments if key == "columns"]:
             raise ValueError(f"{name}: the format states its lengths itself; leave out {more[0]}")
-        heights = netcdf.read(unpacked(content(path)), arguments, channel, name)
+        heights = netcdf_heights.read(unpacked(content(path)), arguments, channel, name)
         return None if heights is None else scan_of(name, **heights._asdict(), crop=crop, how=how)
     if not head.startswith(b"PK") or (surface := x3p.read(unpacked(content(path)), name)) is None:
         return None
@@ -147,10 +147,10 @@ def _of_table(name: str, table: NumberTable, arguments: dict, crop, how: dict) -
     """The scan in a table of numbers: a profile, a map, or x, y, z of one."""
     if "unit" not in arguments:
         heading = table.heading[-1][1] if table.heading else ""
-        said = f'. Its heading is "{heading[:80]}".' if heading else ""
+        heading_in_words = f'. Its heading is "{heading[:80]}".' if heading else ""
         raise ValueError(
             f"{name}: give unit, such as unit='um', and height_unit if heights have another: units are not read from "
-            f"text and .npy{said}"
+            f"text and .npy{heading_in_words}"
         )
     unit, height_unit = arguments["unit"], arguments.get("height_unit", arguments["unit"])
     cleaned, holes = without_holes(table.numbers)
@@ -250,8 +250,8 @@ def _of_instrument(topography, name: str, arguments: dict, crop, notes: tuple, h
     """The scan of a topography of SurfaceTopography, in metres or, where the file has no unit, in the caller's."""
     unit = arguments.get("unit")
     if (topography.unit is None) == (unit is None):
-        said = "no unit of length; give unit" if unit is None else f"the unit {topography.unit!r}; leave out unit"
-        raise ValueError(f"{name}: the file states {said}")
+        unit_text = "no unit of length; give unit" if unit is None else f"the unit {topography.unit!r}; leave out unit"
+        raise ValueError(f"{name}: the file states {unit_text}")
     with _as_value_error(refused, ""), np.errstate(over="ignore"):
         topography = topography if unit else topography.to_unit("m")
         z = np.ma.filled(np.ma.asarray(topography.heights()).astype(float), np.nan).T

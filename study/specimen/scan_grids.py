@@ -74,9 +74,9 @@ def columns_of(table: NumberTable, arguments: dict, name: str) -> tuple[np.ndarr
     if n >= FEWEST and dx is None:
         raise ValueError(f"{name}: a map of {numbers.shape[0]} × {n} heights: give dx (and dy), their distance")
     if n < FEWEST and (n > 3 or (n < 3 and ((n == 2) == (dx is not None) or "dy" in arguments))):
-        said = "".join(f" with {key} = {arguments[key]}" for key in ("dx", "dy") if key in arguments)
+        steps_in_words = "".join(f" with {key} = {arguments[key]}" for key in ("dx", "dy") if key in arguments)
         raise ValueError(
-            f"{name}: {numbers.shape[0]} rows of {n} column(s){said}; allowed are "
+            f"{name}: {numbers.shape[0]} rows of {n} column(s){steps_in_words}; allowed are "
             f"two columns (x, z), one column (z) with dx, three (x, y, z of a grid), or {FEWEST} columns and more (a "
             "map) with dx and dy. Choose among others with columns=(0, 2). A comma cannot separate columns and "
             "decimals."

@@ -1,4 +1,4 @@
-"""What the heading of a text file says of its heights: their unit, a factor, which number stands for a missing point.
+"""The heading of a text file: the unit of its heights, a factor, which number stands for a missing point.
 
 And the text formats whose heading has every length: SDF (ISO 25178-71), SMD (ISO 5436-2) and PRF.
 """
@@ -77,13 +77,13 @@ def check_units(table: NumberTable, unit: str, height_unit: str, places: list, n
         of_heights = ""  # "data unit=rad" before the factor that makes metres of it
     for i, place in enumerate(places):
         argument, value = ("height_unit", height_unit) if i == len(places) - 1 else ("unit", unit)
-        words, said = ([of_heights], its_line) if of_heights and argument == "height_unit" else (columns, line)
+        words, quoted = ([of_heights], its_line) if of_heights and argument == "height_unit" else (columns, line)
         if place is None and len(words) in (1, width):
             continue
         words = [words[place]] if len(words) == width else words
         if words and metres(value, name) not in [length(word) for word in words]:
             raise ValueError(
-                f'{name}: {argument} is {value}, but the heading has {" and ".join(words)}: "{said[:80]}". Give unit '
+                f'{name}: {argument} is {value}, but the heading has {" and ".join(words)}: "{quoted[:80]}". Give unit '
                 "and height_unit as the heading has them, or take its units out of it."
             )
 
@@ -127,20 +127,20 @@ def height_metres(table: NumberTable, height_unit: str, name: str) -> tuple[floa
     for number, line in table.heading:
         if has_column_unit and line.lstrip('#%" ').startswith("\\"):  # of a Nanoscope, whose table has "Height(nm)"
             continue
-        said, conversion = f'{name}, line {number}: "{line[:80]}"', _factor(table, line, value_unit)
+        at, conversion = f'{name}, line {number}: "{line[:80]}"', _factor(table, line, value_unit)
         if not conversion:
-            _no_scale(line[:300], size, said)
+            _no_scale(line[:300], size, at)
             continue
         factor, unit = conversion
         if np.isclose(factor * length(unit), metres(height_unit, name), rtol=1e-9, atol=0):
             continue
         if length(unit) != metres(height_unit, name):
             raise ValueError(
-                f"{said} makes {unit} of the heights, but height_unit is {height_unit}: give height_unit={unit!r}, and "
+                f"{at} makes {unit} of the heights, but height_unit is {height_unit}: give height_unit={unit!r}, and "
                 "it is applied; or take the line out if the heights have been multiplied"
             )
         if notes or factor == 0:
-            raise ValueError(f"{said}: the heading has two factors of the heights, or 0: take out what does not hold")
+            raise ValueError(f"{at}: the heading has two factors of the heights, or 0: take out what does not hold")
         size, notes = factor * length(unit), (f"heights are multiplied by {factor:g} {unit}, as line {number} says",)
     return size, notes
 
@@ -165,7 +165,7 @@ def _wyko(table: NumberTable) -> tuple[float, str]:
     return (1.0 if in_nm else float(values[0][1]) / float(values[1][1])), "nm"
 
 
-def _no_scale(line: str, size: float, said: str) -> None:
+def _no_scale(line: str, size: float, at: str) -> None:
     """Raise ValueError for a line that looks like a scale of the heights, unless the scale is 1."""
     for pair in _PAIR.finditer(line):
         key, value = pair["key"], float(pair["value"].replace(",", "."))
@@ -175,7 +175,7 @@ def _no_scale(line: str, size: float, said: str) -> None:
         grouped = re.fullmatch(r"\d{1,3},\d{3}", pair["value"])
         if grouped or not np.isclose(value * unit / size if unit else value, 1.0, rtol=1e-9, atol=0):
             raise ValueError(
-                f"{said} looks like a scale of the heights and is not applied. Multiply the heights by it, unless that "
+                f"{at} looks like a scale of the heights and is not applied. Multiply the heights by it, unless that "
                 "has been done, and take the line out of the file"
             )
 
@@ -219,7 +219,7 @@ def _sdf(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]]:
     """ISO 25178-71: a heading of "key = value", *, the heights in rows or one a line, *; heights times Zscale in m."""
     heading, _, rest = text.partition("\n*")
     pairs = (line.partition("=") for line in heading.splitlines())
-    value = {key.strip().lower(): said.strip() for key, _, said in pairs}
+    value = {key.strip().lower(): field.strip() for key, _, field in pairs}
     try:
         shape = int(value["numprofiles"]), int(value["numpoints"])
         dy, dx, scale = (float(value[key]) for key in ("yscale", "xscale", "zscale"))

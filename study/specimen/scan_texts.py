@@ -22,7 +22,7 @@ from .scan import FEWEST
 DIALECTS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","), (",", ","))
 #: Rows that are packed into an array at a time.
 _BLOCK = 10_000
-#: What stands for a missing point in a row of numbers, in small letters.
+#: Words for a missing point in a row of numbers, in small letters.
 MISSING = ("", "nan", "bad", "***", "--", "-")
 #: "1,024": this comma may be no decimal mark.
 _THOUSAND = re.compile(r"(?<!\d)[1-9]\d{0,2},\d{3}(?!\d)")
@@ -44,7 +44,7 @@ class NumberTable:
     heading : (number, text) of each line that is no row, comments included
     separator : between the columns; None: spaces
     channel : its name in the heading, or ""
-    notes : what was taken for something else than a row, each a sentence
+    notes : lines that were taken for something else than a row, a sentence each
     """
 
     numbers: np.ndarray
@@ -87,7 +87,7 @@ def table_of(text: str, name: str, channel: str | None = None) -> NumberTable:
     Raises ValueError: no numbers; a row with another number of fields, or with a word, which the message names with
     its line; channels of which none is chosen, or another.
     """
-    lines, said = _of_channel(Lines(text.split("\n"), 1), name, channel)
+    lines, channel_note = _of_channel(Lines(text.split("\n"), 1), name, channel)
     contents = Lines([_content(full) for full in lines.texts], lines.first)
     if text.startswith("Zygo XYZ") and (mark := next((i for i, (_, full) in enumerate(lines) if full == "#"), 0)):
         contents.texts[:mark] = [""] * mark  # numbers of the instrument
@@ -112,7 +112,7 @@ def table_of(text: str, name: str, channel: str | None = None) -> NumberTable:
     taken[numbers - lines.first] = True
     rest = ((lines.first + int(i), lines.texts[i].strip()) for i in np.flatnonzero(~taken))
     heading = tuple((number, full) for number, full in rest if full)
-    return NumberTable(table, heading, dialect[0], said, notes)
+    return NumberTable(table, heading, dialect[0], channel_note, notes)
 
 
 def _rows(contents: "Lines", dialect: tuple, name: str) -> tuple[np.ndarray, np.ndarray, tuple, bool]:
@@ -166,7 +166,7 @@ class Lines:
 def _of_channel(lines: Lines, name: str, channel: str | None) -> tuple[Lines, str]:
     """The lines of one channel, and its name: Gwyddion writes several into one file, one below the other."""
     starts = [(i, match[1]) for i, (_, full) in enumerate(lines) if (match := _CHANNEL.match(full))]
-    names = [said for _, said in starts]
+    names = [label for _, label in starts]
     if channel is not None and names.count(channel) != 1:
         listed = ", ".join(map(repr, names)) or "none by name; choose columns of text with columns="
         raise ValueError(f"{name}: channel = {channel!r}, but the file has {listed}")
@@ -235,8 +235,8 @@ def _first_row(contents: Lines, name: str) -> tuple[int, tuple, list]:
 
 def _check_counts(number: int, content: str, shape: tuple, name: str) -> None:
     """Raise ValueError for a line before the table that does not say how many rows, columns or points it has."""
-    said = sorted(float(field) for field in re.split(r"[\s;,]+", content.strip()) if field)
-    if said not in ([shape[0]], [shape[1]], [shape[0] * shape[1]], sorted(shape)):
+    sizes = sorted(float(field) for field in re.split(r"[\s;,]+", content.strip()) if field)
+    if sizes not in ([shape[0]], [shape[1]], [shape[0] * shape[1]], sorted(shape)):
         raise ValueError(
             f"{name}, line {number}: {content.strip()!r} before a table of {shape[0]} rows of {shape[1]} is not their "
             "number. If it is a distance, give it as dx; if a scale of the heights, multiply them; then take it out"

@@ -86,7 +86,7 @@ def test_a_table_that_fails_says_what_it_must_return(results, tmp_path, monkeypa
     cells = {"short": [("a",)], "nothing": None, "none": [("a", None)], "empty": []}
     columns = tuple(map(registry.column, ("a", "b | .3f")))
     for name, rows in cells.items():
-        table = registry.Table(("main_case",), lambda main, rows=rows: rows, "", columns)
+        table = registry.DataTable(("main_case",), lambda main, rows=rows: rows, "", columns)
         monkeypatch.setitem(registry.TABLES, name, table)
     assert main(["table", *cells, "--results", str(results), "--tables", str(tmp_path)]) == 1
     printed = capsys.readouterr()

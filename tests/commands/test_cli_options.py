@@ -11,7 +11,7 @@ from test_cli import GOOD, studies  # noqa: F401
 from study import api, catalogue
 from study.__main__ import main
 from study.commands.computing import failure_lines
-from study.figures import measured
+from study.figures import figure_results
 from study.inputs.definition import StudyError
 from study.work import plan
 from study.work.plan import Report
@@ -131,7 +131,9 @@ def test_addresses(asked, text):
 )
 def test_work_and_precision_is_measured(options, expected, monkeypatch, capsys):
     seen = []
-    monkeypatch.setattr(measured, "results", lambda name, folder, force, command: seen.append((folder, force, command)))
+    monkeypatch.setattr(
+        figure_results, "results", lambda name, folder, force, command: seen.append((folder, force, command))
+    )
     monkeypatch.setattr(sys, "argv", ["/somewhere/study/__main__.py", "tradeoff"])
     assert main(["tradeoff", *options.split()]) == 0
     assert capsys.readouterr().out == f"{expected[0]}/tradeoff.nc\n"

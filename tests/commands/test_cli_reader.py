@@ -74,13 +74,13 @@ COMMANDS = [
 def test_every_command_does_its_work_without_stdout(studies, lost, command, answer, monkeypatch, capsys):  # noqa: F811
     """And blames no file for it. What is asked for last is done as well."""
     from study import catalogue
-    from study.figures import measured
+    from study.figures import figure_results
 
     done = []
     (studies / "other.toml").write_text(GOOD, encoding="utf-8")
     for name in ("draw", "tabulate"):
         monkeypatch.setattr(catalogue, name, lambda given, *_: done.append(given) or [given])
-    monkeypatch.setattr(measured, "results", lambda *_, **__: done.append("measured"))
+    monkeypatch.setattr(figure_results, "results", lambda *_, **__: done.append("measured"))
     with lost() as out, monkeypatch.context() as patched:
         patched.setattr(sys, "stdout", out)
         code = main(command.split())

@@ -22,7 +22,7 @@ def book(studies, monkeypatch) -> Path:  # noqa: F811
         figure = registry.Figure(("book",), lambda axes, found: {"P": found["P"].values}, (3, 3), (1, 1), name)
         monkeypatch.setitem(registry.FIGURES, name, figure)
     columns = (registry.column("P | .2e"),)
-    table = registry.Table(("book",), lambda found: [(P,) for P in found["P"].values.tolist()], "", columns)
+    table = registry.DataTable(("book",), lambda found: [(P,) for P in found["P"].values.tolist()], "", columns)
     monkeypatch.setitem(registry.TABLES, "loads", table)
     (studies / "book.toml").write_text(GOOD, encoding="utf-8")
     return studies / "book.toml"

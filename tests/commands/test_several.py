@@ -9,10 +9,10 @@ from test_cli import GOOD, studies  # noqa: F401
 
 import study
 from study.__main__ import main
-from study.commands import rows
+from study.commands import spreadsheet
 from study.commands.point import listed
 from study.figures.formats import csv_text
-from study.in_words.columns import columns
+from study.in_words.text import columns
 
 BALL = {"R": "5 mm", "E2": "70 ± 7 GPa", "nu2": 0.33, "base": "half_space", "micro": "smooth"}
 WORDS = [f"{name}={value}" for name, value in BALL.items()]
@@ -203,11 +203,11 @@ def test_what_cannot_be_written_as_rows(results, monkeypatch, capsys):
     results[["a"]].to_netcdf("no_status.nc")
     assert main(["table", "no_status.nc"]) == 2
     assert capsys.readouterr().err == "no_status.nc: this dataset is not one of contacts: it has no status\n"
-    monkeypatch.setattr(rows, "find_spec", lambda _: None)
+    monkeypatch.setattr(spreadsheet, "find_spec", lambda _: None)
     assert main(["table", "good", "--format", "xlsx"]) == 2
     assert capsys.readouterr().err.startswith("table --format xlsx needs openpyxl: pip install 'roughcoat[xlsx]'")
-    monkeypatch.setattr(rows, "find_spec", lambda _: True)
-    monkeypatch.setattr(rows, "MOST_ROWS", 2)
+    monkeypatch.setattr(spreadsheet, "find_spec", lambda _: True)
+    monkeypatch.setattr(spreadsheet, "MOST_ROWS", 2)
     assert main(["table", "good", "--format", "xlsx"]) == 2
     assert capsys.readouterr().err.startswith("good: 3 rows of contacts; a sheet of .xlsx has at most 2: ")
 

@@ -13,7 +13,7 @@ from solver import Problem, solve
 from solver.contact.results import JUDGED
 from study import open_results
 from study.figures import registry
-from study.figures.measured import digest, results
+from study.figures.figure_results import digest, results
 from study.studies.evidence import tradeoff
 from study.studies.evidence.problem_sets import SETS
 from study.studies.evidence.tradeoff import WAYS, errors, measure, taken, timed, with_reference
@@ -173,7 +173,7 @@ def test_measured_once(tmp_path, monkeypatch, on_the_papers_layer):
 
 def test_other_numerics_are_another_plan(monkeypatch):
     before = digest("a plan")
-    monkeypatch.setattr("study.figures.measured.NUMERICS_VERSION", "other")
+    monkeypatch.setattr("study.figures.figure_results.NUMERICS_VERSION", "other")
     assert digest("a plan") != before
 
 

@@ -15,7 +15,7 @@ from study import StudyError
 from study.catalogue import draw, entry, names, save
 from study.data.derived import effective_modulus, peak_pressure
 from study.figures.formats import as_text
-from study.figures.registry import Table, column, pick
+from study.figures.registry import DataTable, column, pick
 from study.studies.evidence.validity_maps import from_layered
 from study.studies.paper.curves import CURVES, EXACT_LAYER
 
@@ -223,6 +223,6 @@ def test_captions_of_all_figures_that_have_results(results, tmp_path, monkeypatc
 )
 def test_a_cell_that_its_column_does_not_fit(columns, row, message):
     """It ended in the words of Python: "Unknown format code 's' for object of type 'float'"."""
-    table = Table((), lambda: [row], "", tuple(map(column, columns.split("; "))))
+    table = DataTable((), lambda: [row], "", tuple(map(column, columns.split("; "))))
     with pytest.raises(StudyError, match=re.escape(message)):
         as_text(table, [row])

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 import study
 from study.figures.labels import wrapped
-from study.figures.lines import drawn
+from study.figures.plots import drawn
 
 LOADS = np.geomspace(1e-6, 1e-4, 5)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import study
-from study.figures.lines import drawn
+from study.figures.plots import drawn
 from study.figures.style import StyledFigure
 
 BALL = {"R": "5 mm", "E2": "210 GPa ± 10 GPa", "nu2": "0.3 ± 0.02", "micro": "smooth", "base": "half_space", "x": 2}

@@ -7,7 +7,7 @@ import pytest
 
 from study import catalogue
 from study.__main__ import main
-from study.figures.beside import book_files, files_of
+from study.figures.figure_files import book_files, files_of
 from study.figures.registry import code_of, names
 from study.inputs.places import BOOK, packaged
 

@@ -76,7 +76,7 @@ def test_texts_annotations_and_formats_are_left_alone():
         assert by_kind("one.py", text) == {}
 
 
-@pytest.mark.parametrize("name", ["solver/laws/heights.py", "study/in_words/numbers.py", "study/figures/lines.py"])
+@pytest.mark.parametrize("name", ["solver/laws/heights.py", "study/in_words/numbers.py", "study/figures/plots.py"])
 def test_all_mistakes_in_python_are_one_change_that_compiles(name):
     text = (ROOT / name).read_text(encoding="utf-8")
     made = changes(name, text)

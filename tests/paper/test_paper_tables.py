@@ -11,7 +11,7 @@ from study import StudyError
 from study.catalogue import entry, names, tabulate
 from study.figures import registry
 from study.figures.formats import as_latex, as_text, latex
-from study.figures.registry import Table, column
+from study.figures.registry import DataTable, column
 from study.studies.evidence.validity_maps import largest_thickness
 from study.studies.paper import law_fits, numbers
 from study.studies.paper.paper_error import paper_numbers
@@ -145,7 +145,7 @@ def test_formats_of_cells():
     assert latex("does not hold") == "does not hold"
     assert latex("thin_layer & #1 of p^2") == r"thin\_layer \& \#1 of p\^{}2"
     assert latex(r"5 % of $a_1^2$") == r"5 \% of $a_1^2$"
-    table = Table((), tuple, "below 1% all is text", (column("of a_b"), column("number | .1% | $x$")))
+    table = DataTable((), tuple, "below 1% all is text", (column("of a_b"), column("number | .1% | $x$")))
     rows = [("one", 0.077), ("two", "at most 8%")]
     assert as_text(table, rows).splitlines()[4:] == ["one           7.7%", "two     at most 8%"]
     caption, _, _, head = as_latex(table, rows).splitlines()[2:6]

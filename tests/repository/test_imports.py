@@ -31,7 +31,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives"),
-        *("in_words", "files", "store", "work", "carried", "lazy", "solving", "fields", "inverse", "adhesion"),
+        *("in_words", "files", "store", "work", "lazy", "solving", "fields", "inverse", "adhesion"),
         *("yields", "figures", "api", "catalogue", "explorer", "commands", "__main__"),
     ),
 }
@@ -110,7 +110,7 @@ def test_study_imports_what_is_declared(path):
     allowed = {"numpy", "scipy", "xarray", "netCDF4", "dask", "matplotlib", "pint", "solver", "study"}
     allowed |= {"SurfaceTopography"} if path.name == "scan_files.py" else set()
     allowed |= {"pandas"} if path.name == "labelled.py" else set()  # of which xarray makes its indexes
-    allowed |= {"rows.py": {"openpyxl"}, "__main__.py": {"argcomplete"}}.get(path.name, set())
+    allowed |= {"spreadsheet.py": {"openpyxl"}, "__main__.py": {"argcomplete"}}.get(path.name, set())
     allowed |= {"roughcoat"} if path.name in ("cluster.py", "lazy.py") else set()  # so that a worker takes our packages
     allowed |= {"roughcoat", "lmfit"} if path.name == "nanite_layer.py" else set()  # nanite loads it, and has lmfit
     assert tops(path) - set(sys.stdlib_module_names) <= allowed
@@ -182,6 +182,15 @@ def test_rooms_are_named(package):
     assert {path.stem for folder in folders[:1] for path in folder.glob("*.py")} | {
         folder.name for folder in folders[1:]
     } == {*ROOMS[package], "__init__"}
+
+
+@pytest.mark.parametrize("package", ["solver", "study"])
+def test_the_map_has_every_room_in_order(package):
+    """docs/extending.md begins with it: a room is in one row, and no row is above one from which it imports."""
+    page = (ROOT / "docs/extending.md").read_text(encoding="utf-8")
+    table = page.split(f"**Rooms of `{package}`**\n")[1].strip().split("\n\n")[0]
+    rows = [re.findall(r"`(\w+)`", line.split("|")[1]) for line in table.splitlines()[2:]]
+    assert [room for row in rows for room in row] == [*ROOMS[package]]
 
 
 @pytest.mark.parametrize("top", ["solver", "study", "studies", "tests", "tools"])

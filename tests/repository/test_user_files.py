@@ -46,17 +46,17 @@ OWN = {
     "study/terminal.py": "the null device",
     "study/data/provenance.py": "the name of the processor",
     "study/catalogue.py": "pictures that are drawn by hand, in the book",
-    "study/figures/beside.py": "scripts that the door has opened before, and those of the package",
+    "study/figures/figure_files.py": "scripts that the door has opened before, and those of the package",
     "study/figures/record.py": "the record of drawn figures, whose kind and size it has looked at",
     "study/files/": "results: whoever reads them looks for pipes and folders (tests/files/test_unusable.py)",
     "study/work/processes.py": "the pipe to a process of its own",
     "study/store/": "blocks of results: likewise",
     "study/inverse/fits/block.py": "a field of a tuple",
-    "study/inverse/afm/reading.py": "by afmformats, what the door has checked",
+    "study/inverse/afm/force_curves.py": "by afmformats, what the door has checked",
     "study/specimen/scan_files.py": "by SurfaceTopography, what the door has checked",
     "study/specimen/scan_grids.py": "numpy, from a file that the door has opened",
-    "study/specimen/formats/netcdf.py": "netCDF, from bytes",
-    "study/specimen/formats/x3p.py": "a zip, from bytes",
+    "study/specimen/netcdf_heights.py": "netCDF, from bytes",
+    "study/specimen/x3p.py": "a zip, from bytes",
 }
 
 

@@ -94,10 +94,10 @@ def _command(folder: Path, first: int, arguments, ignoring, stuck: bool, prepare
     import hold  # noqa: F401
 
     if stuck:
-        from study.commands import ending
+        from study.commands import signals
         from study.work.progress import Progress
 
-        ending.BUSY = PATIENCE
+        signals.BUSY = PATIENCE
 
         def close(_):
             note(folder / "ending", "")

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from surfaces import ELL, SLOPE, lattice, random_surface, spectrum
 
 from study import roughness
-from study.specimen import summits
+from study.specimen.heights import scan_peaks
 
 
 def scatter(points: int, steps_per_length: int, dimensions: int, power: int) -> float:
@@ -72,7 +72,7 @@ def test_moments_of_a_random_surface(points, dimensions):
     k = 8
     z, step = random_surface(points, k, dimensions)
     known = sampled_moments(k)
-    for found in summits.moments(z, (step,) * dimensions):
+    for found in scan_peaks.moments(z, (step,) * dimensions):
         for i in range(3):
             assert_allclose(found[i], known[i], rtol=4 * scatter(points, k, dimensions, 2 * i))
     # Along x and y the errors are about independent, but the mean of the two may err as much as one.
@@ -166,13 +166,13 @@ def test_constants_are_those_of_the_distribution_of_curvatures():
         return quad(density, 0, 40, epsabs=1e-13)[0]
 
     mean, square = (integral(power) / integral(0) for power in (1, 2))
-    assert_allclose(mean / math.sqrt(3), summits.CURVATURE, rtol=1e-10)
-    assert_allclose(1.5 - 9 / 4 * (square - mean**2) / 3, summits.HEIGHTS, rtol=1e-9)
+    assert_allclose(mean / math.sqrt(3), scan_peaks.CURVATURE, rtol=1e-10)
+    assert_allclose(1.5 - 9 / 4 * (square - mean**2) / 3, scan_peaks.HEIGHTS, rtol=1e-9)
     # Of the peaks of a profile: their curvatures have the density k exp(-k²/2), in √m4 (Rice).
     mean, square = (quad(lambda k, n=n: k ** (n + 1) * math.exp(-(k**2) / 2), 0, 40)[0] for n in (1, 2))
-    assert_allclose(mean, summits.PEAK_CURVATURE, rtol=1e-10)
-    assert_allclose(1 - (square - mean**2), summits.PEAK_HEIGHTS, rtol=1e-9)
-    assert_allclose((summits.CURVATURE, summits.HEIGHTS), (1 / (0.375 * math.sqrt(math.pi)), 0.8968), rtol=2e-5)
+    assert_allclose(mean, scan_peaks.PEAK_CURVATURE, rtol=1e-10)
+    assert_allclose(1 - (square - mean**2), scan_peaks.PEAK_HEIGHTS, rtol=1e-9)
+    assert_allclose((scan_peaks.CURVATURE, scan_peaks.HEIGHTS), (1 / (0.375 * math.sqrt(math.pi)), 0.8968), rtol=2e-5)
 
 
 @pytest.mark.parametrize("R", [2e-3, -2e-3])
@@ -197,7 +197,7 @@ def test_the_low_pass_is_that_of_iso_16610():
     for direction in ((1, 0), (0, 1), (0.6, 0.8)):
         for length in (20.0, 30.0, 60.0):
             wave = np.cos(2 * np.pi / length * np.add.outer(direction[0] * x, direction[1] * x))
-            passed = summits.low_pass(wave, (1.0, 1.0), 30.0)
+            passed = scan_peaks.low_pass(wave, (1.0, 1.0), 30.0)
             cut = (200 - len(passed)) // 2
             assert_allclose(passed, 2 ** -((30 / length) ** 2) * wave[cut:-cut, cut:-cut], atol=2e-4)
             assert 200 - 2 * cut == len(passed) and cut == math.ceil(0.75 * 30)
@@ -207,7 +207,7 @@ def test_a_filtered_random_surface_has_the_known_moments():
     """The Gaussian filter makes ELL² to ELL² + (α λc)²/π."""
     k, cutoff = 8, 2 * ELL
     z, step = random_surface(1024, k)
-    longer = 1 + summits.ALPHA**2 * 4 / math.pi
+    longer = 1 + scan_peaks.ALPHA**2 * 4 / math.pi
     plain, filtered = (roughness.measure(roughness.height_map(z, dx=step), cutoff=c) for c in (None, cutoff))
     assert_allclose(filtered.Nbar * longer, plain.Nbar, rtol=0.03)  # two errors of 1.5 %, in part common
     assert_allclose(filtered.Ra / longer**1.5, plain.Ra, rtol=0.03)  # m0 falls by ELL²/longer, m4 with its cube

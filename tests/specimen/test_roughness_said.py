@@ -10,7 +10,7 @@ from pages import check_examples
 from surfaces import random_surface
 
 from study import roughness
-from study.specimen.heights.asperities import density, length
+from study.specimen.heights.measured_asperities import density, length
 from study.specimen.quantities import quantity
 from study.studies.paper.numbers import TABLE1
 

@@ -8,7 +8,7 @@ from line_study import load, present
 
 import study
 from study.figures import registry
-from study.figures.measured import results
+from study.figures.figure_results import results
 from study.files.seal import seal
 from study.studies.evidence import tradeoff
 from study.work import cases

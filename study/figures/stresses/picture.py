@@ -15,9 +15,9 @@ from ...terminal import shown as shown_text
 from ..labels import stated, value_text, wrapped
 from ..registry import TWO_COLUMNS
 from ..style import StyledFigure, style
-from .panels import NAMES, Units, along, mark, outline, section
-from .places import DEPTH, Stresses, of_one_contact
-from .spots import of_central_spot
+from .regions import DEPTH, Stresses, of_one_contact
+from .sections import NAMES, Units, along, mark, outline, section
+from .spot_stresses import of_central_spot
 
 #: Layer and body have one scale of colours if their largest stresses differ by less than this factor.
 _ONE_SCALE = 2.0

@@ -1,1 +1,1 @@
-"""What `fit` is made of."""
+"""The steps of `fit`: question, starts, least squares, residuals, intervals, dataset."""

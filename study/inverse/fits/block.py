@@ -8,21 +8,19 @@ from scipy import special
 
 from solver.numerics.codes import Codes
 
-from .asked import Asked
-from .curve import Curve
+from .averages import LONG, Averages, averages_of
+from .curve import MeasuredCurves
 from .intervals import covariance_of, profiles
-from .least_squares import SURE, Data, Fit, inverse, minimise, normal
-from .points.parts import parts_of
-from .points.thinned import LONG, Thinned, thinned
-from .points.worth import worth_of
+from .least_squares import SURE, Data, Minimum, inverse, minimise, normal
+from .question import Question
+from .residuals import Worth, parts_of, worth_of
 from .starts import best_of, starts_of
-from .sticking.labels import Points
-from .sticking.ladder import Ladder
-from .tables import Table
+from .tables.ratio_table import RatioTable
+from .tables.sticking_points import StickingPoints
+from .tables.term_table import TermTable
 
-_ROUGHLY = (
-    1e-4  # how sure a search from one of several starts is, some 0.03 of a spread; the best one goes on to the end
-)
+#: How sure a search from one of several starts is, some 0.03 of a spread; the best one goes on to the end.
+_ROUGHLY = 1e-4
 #: About the best work of adhesion of a retraction, its logarithm less that: searches begin there.
 _ABOUT = np.linspace(-0.3, 0.3, 8)
 _SURE = 0.999  # level of the F test that there is a contact
@@ -30,7 +28,7 @@ _SAME = 1e-3  # minima whose unknowns differ by less than this part of a spread 
 
 
 class FitStatus(Codes):
-    """What became of the fit of a curve; the first that holds in the order of `_ORDER`."""
+    """How the fit of a curve ended."""
 
     CONVERGED = 0
     AT_BOUND = 1
@@ -41,170 +39,56 @@ class FitStatus(Codes):
     INVALID_INPUT = 6
 
 
-class _Posed(NamedTuple):
-    """Curves as a problem of least squares: all points, and fewer if the curves are long."""
+class _LeastSquares(NamedTuple):
+    """Curves as a problem of least squares.
 
-    asked: Asked
-    curve: Curve
+    few : averages of neighbouring points of long curves, with which searches begin; None: searches take all points
+    starts : unknowns (B, k) from which searches begin, one array for each start
+    variance : (B,) of a point of weight 1, if it is known without a fit of all unknowns
+    prior : (B,), the variance that stands for it in the stiffness of priors
+    """
+
+    question: Question
+    curve: MeasuredCurves
     data: Data
-    few: Thinned | None
-    starts: list
+    few: Averages | None
+    starts: list[np.ndarray]
     variance: np.ndarray
     prior: np.ndarray
 
+    @property
+    def inputs(self) -> int:
+        """How many of the unknowns are inputs: the first ones."""
+        return len(self.question.model.unknowns)
 
-def fit_block(
-    asked: Asked, table: Table | Ladder, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
-) -> dict[str, Any]:
-    """Fit curves (B, n), NaN where there is no point. Every curve has more points than unknowns.
 
-    sigma : (B, n) standard deviations of y; None: from the residuals
+class _Minima(NamedTuple):
+    """The best fits with all points; the costs (starts, B) and unknowns (starts, B, k) at which the searches from all
+    starts have ended, with fewer points if the curves are long."""
 
-    Returns the unknowns p (B, k), the ends low and high of their intervals, their covariance (B, k, k) and what the
-    spreads of other inputs add to it (`propagated`), Student's t (B, k), status (B,), the fit of y (B, n), the units of
-    x and y (wide and top, (B,)) in which D0, P0 and tilt are, what the residuals say (:class:`.points.worth.Worth`)
-    and the first unknown by parts of the contact (`parts`, (B, PARTS)).
+    best: Minimum
+    costs: np.ndarray
+    places: np.ndarray
+
+
+class _Spread(NamedTuple):
+    """How sure the unknowns of the best fits are.
+
+    variance : (B,) of a point of weight 1
+    share : (B, n), the depth of each point over that of the deepest
+    t : (B, k), Student's t of the level of the intervals
+    covariance : (B, k, k)
     """
-    posed = _posed(asked, table, x, y, sigma)
-    curve, data, there = posed.curve, posed.data, np.isfinite(x) & np.isfinite(y)
-    best, costs, places = _searched(posed)
-    count, k = _count(asked, data), best.p.shape[1]
-    variance = posed.variance
-    if sigma is None and not asked.priors:
-        variance = best.cost / np.maximum(count - k, 1)
-    share = _share(curve, best)
-    worth = worth_of(curve.x, data, best, variance, posed.prior, share)
-    freedom = worth.freedom - asked.model.sticks
-    tail = (1 + asked.level) / 2
-    t = special.stdtrit(np.maximum(freedom, 1), tail)
-    t = t if sigma is None else np.where(worth.factors > 1, t, special.ndtri(tail))
-    root = np.sqrt(worth.factors)
-    covariance = covariance_of(data, best, variance) * root[:, :, None] * root[:, None, :]
-    sd = np.sqrt(np.einsum("bii->bi", covariance))
-    sides = _Ends(best.p - t * sd, best.p + t * sd, np.zeros(len(x), bool), np.zeros(len(x), bool))
-    above = (t**2 * variance[:, None] * worth.factors)[:, : len(asked.model.unknowns)]
-    sides = _intervals(posed, best, (costs, places), sides, sd, above)
-    at_bound = ((best.p <= data.low) | (best.p >= data.high))[:, : above.shape[1]].any(axis=1)
-    no_contact = _no_contact(curve, data, best, count, k) & (asked.model.x == "D")  # else the contact is not in doubt
-    status = np.select(
-        [no_contact, ~best.ended, at_bound, sides.open, sides.several],
-        [
-            FitStatus.NO_CONTACT,
-            FitStatus.ITERATION_LIMIT,
-            FitStatus.AT_BOUND,
-            FitStatus.NOT_IDENTIFIABLE,
-            FitStatus.SEVERAL_MINIMA,
-        ],
-        FitStatus.CONVERGED,
-    )
-    status = np.where(np.isfinite(best.cost), status, FitStatus.INVALID_INPUT)
-    numbers = {"p": best.p, "low": sides.low, "high": sides.high, "covariance": covariance, "t": t, "status": status}
-    numbers |= {"propagated": _propagated(asked, curve, data, best), "wide": curve.wide, "top": curve.high}
-    numbers |= {"parts": parts_of(curve, data, best, share, worth), **worth._asdict()}
-    return numbers | {"fit": np.where(there, best.model * curve.high[:, None], np.nan)}
+
+    variance: np.ndarray
+    share: np.ndarray
+    worth: Worth
+    t: np.ndarray
+    covariance: np.ndarray
 
 
-def _posed(asked: Asked, table: Table | Ladder, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None) -> _Posed:
-    model, there = asked.model, np.isfinite(x) & np.isfinite(y)
-    top = np.where(there, y, -np.inf).max(axis=1) - np.where(there, y, np.inf).min(axis=1)
-    largest, least = np.where(there, x, -np.inf).max(axis=1), np.where(there, x, np.inf).min(axis=1)
-    wide = np.where(largest - least > 0, largest - least, largest) if "D0" in asked.shifts else largest
-    x = np.where(there, x, largest[:, None])
-    curve = Curve(table, x, wide, top, asked.shifts)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        w = np.where(there, 1.0 if sigma is None else top[:, None] / np.where(there, sigma, 1.0), 0.0)
-    y = np.where(there, y, 0.0)
-    k = len(curve.names)
-    none = np.zeros((len(x), k))
-    data = Data(y / top[:, None], w, none, none, none, none.copy(), asked.loss == "huber")
-    long = x.shape[1] > LONG and bool((there.sum(axis=1) > LONG).all())
-    few = thinned(curve, data) if long else None
-    of, points = (few.curve, few.data) if few else (curve, data)
-    starts, low, high = starts_of(asked, of, points.w > 0, points.y * top[:, None], top, least)
-    data, points = (part._replace(low=low, high=high, center=none.copy()) for part in (data, points))
-    if model.sticks:
-        curve, of = (replace(c, points=Points.of(c.x, d.y, d.w, k, d.huber)) for c, d in ((curve, data), (of, points)))
-        starts = best_of(of, points, starts)
-    variance = prior = np.ones(len(x))
-    if asked.priors:
-        columns = [model.unknowns.index(name) for name in asked.priors]
-        center, sd = np.array(list(asked.priors.values())).T
-        variance, prior = _scatter(curve, data, starts[0], columns, center, sigma is None)
-        for each in (data, points):
-            each.center[:, columns] = center
-        data.stiffness[:, columns] = prior[:, None] / sd**2
-        points = points._replace(stiffness=data.stiffness)
-    few = few and few._replace(curve=of, data=points)
-    return _Posed(asked, curve, data, few, starts, variance, prior)
-
-
-def _scatter(
-    curve: Curve, data: Data, start: np.ndarray, columns: list[int], center: np.ndarray, unknown: bool
-) -> tuple[np.ndarray, np.ndarray]:
-    """The variance (B,) of the points, if it is unknown, else 1, and what a prior counts it as, from a fit with the
-    inputs `columns` at their priors: points that hang together are so many fewer, and must not overrule it."""
-    begin, held = start.copy(), np.zeros(start.shape, bool)
-    begin[:, columns], held[:, columns] = center, True
-    fit = minimise(curve, data, begin, held)
-    freedom = np.maximum((data.w > 0).sum(axis=1) - start.shape[1] + len(columns), 1)
-    variance = fit.cost / freedom if unknown else np.ones(len(start))
-    worth = worth_of(curve.x, data, fit, variance, 0 * variance, _share(curve, fit))
-    return variance, variance * worth.factors[:, : len(curve.table.model.unknowns)].max(axis=1)
-
-
-def _count(asked: Asked, data: Data) -> np.ndarray:
-    """Points (B,). Of what sticks, the point above which the others are in contact counts like an unknown."""
-    return (data.w > 0).sum(axis=1) - asked.model.sticks
-
-
-def _searched(posed: _Posed) -> tuple[Fit, np.ndarray, np.ndarray]:
-    """The best fits, of all points, and the costs (starts, B) and unknowns (starts, B, k) at which searches from all
-    starts have ended, of fewer points if there are many."""
-    curve, data = (posed.few.curve, posed.few.data) if posed.few else (posed.curve, posed.data)
-    starts, B = posed.starts, len(data.y)
-    # all starts at once: what a step costs is that of its calls, hardly that of its numbers
-    every = np.tile(np.arange(B), len(starts))
-    rough = SURE if len(starts) == 1 else _ROUGHLY
-    fits = minimise(curve.take(every), data.take(every), np.concatenate(starts), sure=rough)
-    costs, places = fits.cost.reshape(len(starts), -1), fits.p.reshape(len(starts), B, -1)
-    best = fits.take(costs.argmin(axis=0) * B + np.arange(B))
-    if posed.asked.model.sticks and posed.curve.points.retracts.any():
-        costs, places = _to_the_ends(posed, (curve, data), best.p, (costs, places))
-        best = best._replace(p=places[costs.argmin(axis=0), np.arange(B)])
-    if posed.few or len(starts) > 1:
-        best = minimise(posed.curve, posed.data, best.p)
-    return best, costs, places
-
-
-def _to_the_ends(posed: _Posed, few: tuple[Curve, Data], p: np.ndarray, minima: tuple) -> tuple:
-    """The costs and unknowns of searches, of retractions those without a ramp beyond the end of the branch.
-
-    Each point that passes the end makes the cost jump, and a search from one side does not see the other. So it begins
-    about the best unknowns p (B, k) of the search with a ramp: with other works of adhesion, or values of the first
-    unknown if that is known, for which the others are fitted first.
-    """
-    (curve, data), model, (costs, places) = few, posed.asked.model, minima
-    place = model.unknowns.index("w_adhesion") if "w_adhesion" in model.unknowns else 0
-    count, B = len(_ABOUT), len(p)
-    every, begin = np.tile(np.arange(B), count), np.tile(p, (count, 1))
-    held = np.zeros(begin.shape, bool)
-    held[:, place] = True
-    begin[:, place] = np.clip(
-        begin[:, place] + np.repeat(_ABOUT, B), *(end[every, place] for end in (data.low, data.high))
-    )
-    of, to = curve.take(every), data.take(every)
-    begin = minimise(of, to, begin, held, sure=_ROUGHLY).p
-    for each in (of, curve, posed.curve):
-        each.ends = True
-    fits = minimise(of, to, begin, sure=_ROUGHLY)
-    retracts = posed.curve.points.retracts
-    more = np.where(retracts, fits.cost.reshape(count, B), np.inf)
-    costs = np.concatenate([np.where(retracts, np.inf, costs), more])
-    return costs, np.concatenate([places, fits.p.reshape(count, B, -1)])
-
-
-class _Ends(NamedTuple):
-    """The ends (B, k) of intervals, and whether one is a bound, and whether another minimum lies within, (B,)."""
+class _Intervals(NamedTuple):
+    """The ends (B, k) of intervals, whether one of them is a bound, and whether another minimum lies within, (B,)."""
 
     low: np.ndarray
     high: np.ndarray
@@ -212,26 +96,201 @@ class _Ends(NamedTuple):
     several: np.ndarray
 
 
-def _intervals(posed: _Posed, best: Fit, minima: tuple, ends: _Ends, sd: np.ndarray, above: np.ndarray) -> _Ends:
-    """Intervals of the inputs by profiles, if they are asked for; the others stay.
+def fit_block(
+    question: Question, table: RatioTable | TermTable, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
+) -> dict[str, Any]:
+    """Fit curves (B, n), NaN where there is no point. Every curve has more points than unknowns.
 
-    above : (B, inputs), by how much the cost at the ends of the interval of an input is above the least one
+    sigma : (B, n) standard deviations of y; None: from the residuals
+
+    Returns the unknowns p (B, k), the ends low and high of their intervals, their covariance (B, k, k) and what the
+    spreads of other inputs add to it (`propagated`), Student's t (B, k), status (B,), the fit of y (B, n), the units of
+    x and y (wide and top, (B,)) in which D0, P0 and tilt are, what the residuals say (:class:`.residuals.Worth`)
+    and the first unknown by parts of the contact (`parts`, (B, PARTS)).
     """
-    (costs, places), inputs = minima, above.shape[1]
-    curve, data, least = posed.curve, posed.data, best.cost
-    if posed.few:
-        few = posed.few.about(best, curve, data)
-        curve, data = few.curve, few.data
-        least = costs.min(axis=0)  # of the same points as the other minima
+    problem = _problem(question, table, x, y, sigma)
+    minima = _minima(problem)
+    spread = _spread(problem, minima.best, sigma is None)
+    intervals = _intervals(problem, minima, spread)
+    curve, data, best = problem.curve, problem.data, minima.best
+    there = np.isfinite(x) & np.isfinite(y)
+    return {
+        "p": best.p,
+        "low": intervals.low,
+        "high": intervals.high,
+        "covariance": spread.covariance,
+        "t": spread.t,
+        "status": _status(problem, best, intervals),
+        "propagated": _propagated(problem, best),
+        "wide": curve.wide,
+        "top": curve.high,
+        "parts": parts_of(curve, data, best, spread.share, spread.worth),
+        **spread.worth._asdict(),
+        "fit": np.where(there, best.model * curve.high[:, None], np.nan),
+    }
+
+
+def _problem(
+    question: Question, table: RatioTable | TermTable, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
+) -> _LeastSquares:
+    there = np.isfinite(x) & np.isfinite(y)
+    curve, data, least = _weighted(question, table, x, y, sigma)
+    few = averages_of(curve, data) if x.shape[1] > LONG and bool((there.sum(axis=1) > LONG).all()) else None
+    part, points = (few.curve, few.data) if few else (curve, data)
+    starts, low, high = starts_of(question, part, points.w > 0, points.y * curve.high[:, None], curve.high, least)
+    data, points = (each._replace(low=low, high=high) for each in (data, points))
+    if question.model.sticks:
+        curve, part = (_with_sticking_points(*pair) for pair in ((curve, data), (part, points)))
+        starts = best_of(part, points, starts)
+    variance = prior = np.ones(len(x))
+    if question.priors:
+        center, stiffness, variance, prior = _priors(question, curve, data, starts[0], sigma is None)
+        data, points = (each._replace(center=center, stiffness=stiffness) for each in (data, points))
+    few = few and few._replace(curve=part, data=points)
+    return _LeastSquares(question, curve, data, few, starts, variance, prior)
+
+
+def _weighted(
+    question: Question, table: RatioTable | TermTable, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
+) -> tuple[MeasuredCurves, Data, np.ndarray]:
+    """The curves in their units, their points with weights and without bounds, and the least x (B,) of each."""
+    there = np.isfinite(x) & np.isfinite(y)
+    top = np.where(there, y, -np.inf).max(axis=1) - np.where(there, y, np.inf).min(axis=1)
+    largest, least = np.where(there, x, -np.inf).max(axis=1), np.where(there, x, np.inf).min(axis=1)
+    wide = np.where(largest - least > 0, largest - least, largest) if "D0" in question.shifts else largest
+    curve = MeasuredCurves(table, np.where(there, x, largest[:, None]), wide, top, question.shifts)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        w = np.where(there, 1.0 if sigma is None else top[:, None] / np.where(there, sigma, 1.0), 0.0)
+    y = np.where(there, y, 0.0) / top[:, None]
+    unknown = np.zeros((len(x), len(curve.names)))
+    return curve, Data(y, w, unknown, unknown, unknown, unknown, question.loss == "huber"), least
+
+
+def _with_sticking_points(curve: MeasuredCurves, data: Data) -> MeasuredCurves:
+    points = StickingPoints.of(curve.x, data.y, data.w, len(curve.names), data.huber)
+    return replace(curve, points=points)
+
+
+def _priors(
+    question: Question, curve: MeasuredCurves, data: Data, start: np.ndarray, unknown: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The centers and the stiffness (B, k) of priors, the variance (B,) of the points, if it is `unknown`, else 1, and
+    what a prior counts it as.
+
+    These are from a fit with the inputs at their priors: points that hang together are so many fewer, and must not
+    overrule a prior.
+    """
+    columns = [question.model.unknowns.index(name) for name in question.priors]
+    center, sd = np.array(list(question.priors.values())).T
+    begin, fixed = start.copy(), np.zeros(start.shape, bool)
+    begin[:, columns], fixed[:, columns] = center, True
+    fit = minimise(curve, data, begin, fixed)
+    freedom = np.maximum((data.w > 0).sum(axis=1) - start.shape[1] + len(columns), 1)
+    variance = fit.cost / freedom if unknown else np.ones(len(start))
+    worth = worth_of(curve.x, data, fit, variance, 0 * variance, _share(curve, fit))
+    prior = variance * worth.factors[:, : len(question.model.unknowns)].max(axis=1)
+    centers, stiffness = np.zeros(start.shape), np.zeros(start.shape)
+    centers[:, columns], stiffness[:, columns] = center, prior[:, None] / sd**2
+    return centers, stiffness, variance, prior
+
+
+def _count(question: Question, data: Data) -> np.ndarray:
+    """The number (B,) of points, one less where the punch adheres: the point at which the contact begins counts like an
+    unknown."""
+    return (data.w > 0).sum(axis=1) - question.model.sticks
+
+
+def _minima(problem: _LeastSquares) -> _Minima:
+    few = problem.few
+    curve, data = (few.curve, few.data) if few else (problem.curve, problem.data)
+    starts, B = problem.starts, len(data.y)
+    # all starts at once: a step costs its calls, hardly its numbers
+    every = np.tile(np.arange(B), len(starts))
+    rough = SURE if len(starts) == 1 else _ROUGHLY
+    fits = minimise(curve.take(every), data.take(every), np.concatenate(starts), sure=rough)
+    costs, places = fits.cost.reshape(len(starts), -1), fits.p.reshape(len(starts), B, -1)
+    best = fits.take(costs.argmin(axis=0) * B + np.arange(B))
+    if problem.question.model.sticks and problem.curve.points.retracts.any():
+        costs, places = _to_the_ends(problem, (curve, data), best.p, (costs, places))
+        best = best._replace(p=places[costs.argmin(axis=0), np.arange(B)])
+    if few or len(starts) > 1:
+        best = minimise(problem.curve, problem.data, best.p)
+    return _Minima(best, costs, places)
+
+
+def _to_the_ends(problem: _LeastSquares, few: tuple[MeasuredCurves, Data], p: np.ndarray, minima: tuple) -> tuple:
+    """The costs and unknowns of searches, for retractions of searches without a ramp beyond the end of the branch.
+
+    Each point that passes the end makes the cost jump, and a search from one side does not see the other. So it begins
+    about the best unknowns p (B, k) of the search with a ramp: with other works of adhesion, or values of the first
+    unknown if that is known, for which the others are fitted first.
+    """
+    (curve, data), model, (costs, places) = few, problem.question.model, minima
+    place = model.unknowns.index("w_adhesion") if "w_adhesion" in model.unknowns else 0
+    count, B = len(_ABOUT), len(p)
+    every, begin = np.tile(np.arange(B), count), np.tile(p, (count, 1))
+    fixed = np.zeros(begin.shape, bool)
+    fixed[:, place] = True
+    begin[:, place] = np.clip(
+        begin[:, place] + np.repeat(_ABOUT, B), *(end[every, place] for end in (data.low, data.high))
+    )
+    of, to = curve.take(every), data.take(every)
+    begin = minimise(of, to, begin, fixed, sure=_ROUGHLY).p
+    for each in (of, curve, problem.curve):
+        each.ends = True
+    fits = minimise(of, to, begin, sure=_ROUGHLY)
+    retracts = problem.curve.points.retracts
+    more = np.where(retracts, fits.cost.reshape(count, B), np.inf)
+    costs = np.concatenate([np.where(retracts, np.inf, costs), more])
+    return costs, np.concatenate([places, fits.p.reshape(count, B, -1)])
+
+
+def _spread(problem: _LeastSquares, best: Minimum, unknown: bool) -> _Spread:
+    """The spread of the unknowns; `unknown` is the variance of the points, which the residuals then say."""
+    question, curve, data = problem.question, problem.curve, problem.data
+    variance = problem.variance
+    if unknown and not question.priors:
+        variance = best.cost / np.maximum(_count(question, data) - best.p.shape[1], 1)
+    share = _share(curve, best)
+    worth = worth_of(curve.x, data, best, variance, problem.prior, share)
+    tail = (1 + question.level) / 2
+    t = special.stdtrit(np.maximum(worth.freedom - question.model.sticks, 1), tail)
+    t = t if unknown else np.where(worth.factors > 1, t, special.ndtri(tail))
+    root = np.sqrt(worth.factors)
+    covariance = covariance_of(data, best, variance) * root[:, :, None] * root[:, None, :]
+    return _Spread(variance, share, worth, t, covariance)
+
+
+def _intervals(problem: _LeastSquares, minima: _Minima, spread: _Spread) -> _Intervals:
+    """Intervals of the inputs by profiles, if the question has these; the others from the covariance."""
+    best, costs, places = minima
+    inputs = problem.inputs
+    sd = np.sqrt(np.einsum("bii->bi", spread.covariance))
+    # by how much the cost at the ends of the interval of an input is above the least one
+    above = (spread.t**2 * spread.variance[:, None] * spread.worth.factors)[:, :inputs]
+    few = problem.few and problem.few.about(best, problem.curve, problem.data)
+    least = costs.min(axis=0) if few else best.cost  # of the same points as the other minima
     within = costs <= least + above.max(axis=1)
     apart = np.abs(places[:, :, :inputs] - best.p[:, :inputs]) > np.maximum(sd[:, :inputs], _SAME)
-    ends = ends._replace(several=(within & apart.any(axis=2)).any(axis=0))
-    if posed.asked.intervals != "profile" or data.huber:
+    several = (within & apart.any(axis=2)).any(axis=0)
+    ends = _Intervals(best.p - spread.t * sd, best.p + spread.t * sd, np.zeros(len(best.p), bool), several)
+    if problem.question.intervals != "profile" or problem.data.huber:
         return ends
-    if posed.few:
+    curve, data = problem.curve, problem.data
+    if few:
+        curve, data = few.curve, few.data
         best = minimise(curve, data, best.p)
         costs = costs - least + best.cost
-    every = np.arange(len(best.p))
+    return _by_profiles(curve, data, _Minima(best, costs, places), above, ends)
+
+
+def _by_profiles(curve: MeasuredCurves, data: Data, minima: _Minima, above: np.ndarray, ends: _Intervals) -> _Intervals:
+    """The intervals with those of the inputs by profiles, which begin at the farthest minima within them.
+
+    above : (B, inputs), by how much the cost at the ends of an interval is above the least one
+    """
+    best, costs, places = minima
+    inputs, every = above.shape[1], np.arange(len(best.p))
     far = [
         np.where(costs <= best.cost + above[:, i], side * places[:, :, i], -np.inf).argmax(axis=0)
         for i in range(inputs)
@@ -245,7 +304,24 @@ def _intervals(posed: _Posed, best: Fit, minima: tuple, ends: _Ends, sd: np.ndar
     return ends._replace(low=low, high=high, open=bound.any(axis=(1, 2)))
 
 
-def _share(curve: Curve, fit: Fit) -> np.ndarray:
+def _status(problem: _LeastSquares, best: Minimum, intervals: _Intervals) -> np.ndarray:
+    """The :class:`FitStatus` (B,) of each curve: the first that holds."""
+    question, data = problem.question, problem.data
+    at_bound = ((best.p <= data.low) | (best.p >= data.high))[:, : problem.inputs].any(axis=1)
+    # of curves over a load or a radius the contact is not in doubt
+    no_contact = _no_contact(problem, best) & (question.model.x == "D")
+    cases = {
+        FitStatus.NO_CONTACT: no_contact,
+        FitStatus.ITERATION_LIMIT: ~best.ended,
+        FitStatus.AT_BOUND: at_bound,
+        FitStatus.NOT_IDENTIFIABLE: intervals.open,
+        FitStatus.SEVERAL_MINIMA: intervals.several,
+    }
+    status = np.select([*cases.values()], [*cases], FitStatus.CONVERGED)
+    return np.where(np.isfinite(best.cost), status, FitStatus.INVALID_INPUT)
+
+
+def _share(curve: MeasuredCurves, fit: Minimum) -> np.ndarray:
     """The depth below the contact point of each point over that of the deepest, (B, n); 0 before the contact, and
     hardly above it where a contact sticks before that depth."""
     depth = curve.x
@@ -255,33 +331,34 @@ def _share(curve: Curve, fit: Fit) -> np.ndarray:
     return np.maximum(share, 1e-9 * (curve.contact(fit.p)[0] != 0)) if curve.table.model.sticks else share
 
 
-def _no_contact(curve: Curve, data: Data, best: Fit, count: np.ndarray, k: int) -> np.ndarray:
+def _no_contact(problem: _LeastSquares, best: Minimum) -> np.ndarray:
     """Whether a straight line fits as well: the model lowers its sum of squares by no more than chance would, in all
     but one of a thousand curves."""
+    data, k = problem.data, best.p.shape[1]
     w2 = data.w**2
-    x = curve.x / curve.wide[:, None]
+    x = problem.curve.x / problem.curve.wide[:, None]
     total = w2.sum(axis=1)
     xm, ym = (w2 * x).sum(axis=1) / total, (w2 * data.y).sum(axis=1) / total
     dx, dy = x - xm[:, None], data.y - ym[:, None]
     sxx, sxy, syy = ((w2 * a * b).sum(axis=1) for a, b in ((dx, dx), (dx, dy), (dy, dy)))
     line = syy - np.where(sxx > 0, sxy**2 / np.where(sxx > 0, sxx, 1.0), 0.0)
     residual = (w2 * (data.y - best.model) ** 2).sum(axis=1)
-    free, more = np.maximum(count - k, 1), max(k - 2, 1)
+    free, more = np.maximum(_count(problem.question, data) - k, 1), max(k - 2, 1)
     with np.errstate(divide="ignore", invalid="ignore"):
         F = (line - residual) / more / (residual / free)
     return ~(special.fdtri(more, free, _SURE) < F) & np.isfinite(best.cost)
 
 
-def _propagated(asked: Asked, curve: Curve, data: Data, best: Fit) -> np.ndarray:
+def _propagated(problem: _LeastSquares, best: Minimum) -> np.ndarray:
     """The covariance (B, k, k) that the spreads of other inputs make: the unknowns follow each of them."""
-    k = best.p.shape[1]
+    question, k = problem.question, best.p.shape[1]
     whole = np.zeros((len(best.p), k, k))
-    if not asked.model.moved:
+    if not question.model.moved:
         return whole
-    _, _, others = curve.contact(best.p, moved=True)
-    A, _ = normal(data, best.p, best.model, best.J, best.weights)
+    _, _, others = problem.curve.contact(best.p, moved=True)
+    A, _ = normal(problem.data, best.p, best.model, best.J, best.weights)
     A = inverse(A)
-    for name, by in zip(asked.model.moved, others, strict=True):
-        follows = -np.einsum("bij,bnj,bn,bn->bi", A, best.J, best.weights, by) * asked.spreads[name]
+    for name, by in zip(question.model.moved, others, strict=True):
+        follows = -np.einsum("bij,bnj,bn,bn->bi", A, best.J, best.weights, by) * question.spreads[name]
         whole += follows[:, :, None] * follows[:, None, :]
     return whole

@@ -6,40 +6,41 @@ import numpy as np
 
 from ...inputs.punch.shapes import ANGLES
 from .model import HERTZ
-from .sticking.branch import Loads, branch
-from .sticking.labels import Points
-from .sticking.ladder import Ladder
-from .tables import STEP, WIDE, Places, Table
+from .tables.branch import Loads, branch
+from .tables.lattice import WIDE
+from .tables.ratio_table import STEP, Cubics, RatioTable
+from .tables.sticking_points import StickingPoints
+from .tables.term_table import TermTable
 
 _TILES = 4  # along ln u: from the largest depth down, more than _REACH
 _REACH = np.log(800.0)  # below 1/800 of twice the range of x the curve goes on as a power of x
 
 
 @dataclass
-class Curve:
+class MeasuredCurves:
     """B curves of n points. Their unknowns are the inputs of the model, then D0/wide, P0/high and tilt wide/high.
 
     table : of the model
     x : (B, n), SI
     wide, high : (B,) the units of x and y of each curve
     shifts : which of "D0", "P0", "tilt" are unknown
-    points : of a curve that sticks, what says which points are in contact; None: all depths are
+    points : which points are in contact, of curves with adhesion; None: those at all depths
     ends : whether retractions have no load beyond the end of the branch; if not, a ramp tells a search where to go
     """
 
-    table: Table | Ladder
+    table: RatioTable | TermTable
     x: np.ndarray
     wide: np.ndarray
     high: np.ndarray
     shifts: tuple[str, ...]
-    points: Points | None = None
+    points: StickingPoints | None = None
     ends: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
         return (*self.table.model.unknowns, *self.shifts)
 
-    def take(self, index: np.ndarray) -> "Curve":
+    def take(self, index: np.ndarray) -> "MeasuredCurves":
         """Some of the curves."""
         points = self.points and self.points.take(index)
         return replace(self, x=self.x[index], wide=self.wide[index], high=self.high[index], points=points)
@@ -74,7 +75,7 @@ class Curve:
         The third value has its derivatives by the inputs `moved` of the model, (moved, B, n), if `moved` is true.
         """
         model, values = self.table.model, self.values(p)
-        if isinstance(self.table, Ladder):
+        if isinstance(self.table, TermTable):
             return self._sticking(self.table, p, values, moved)
         depth = self.x - (p[:, [self.names.index("D0")]] * self.wide[:, None] if "D0" in self.shifts else 0.0)
         inside = depth > 0
@@ -86,10 +87,9 @@ class Curve:
         last = np.floor(deepest[:, 0] / WIDE).astype(int)
         first = last - (_TILES - 1)
         coordinates = p[:, [model.unknowns.index(name) for name in model.axes]]
-        rows, by_axis = self.table.rows(coordinates, first, _TILES, moved)
-        place = (above - first[:, None] * WIDE) / STEP
-        places = Places(place, rows.shape[2])
-        g, slope = places.read(rows[0], slope=True)
+        rows = self.table.rows(coordinates, first, _TILES, moved)
+        cubics = Cubics((above - first[:, None] * WIDE) / STEP, rows.shape[2])
+        g, slope = cubics.read(rows[0], slope=True)
         slope = slope / STEP
         power, (_, *of_u) = HERTZ[model.x, model.y]
         with np.errstate(over="ignore", invalid="ignore"):
@@ -97,34 +97,34 @@ class Curve:
         F = np.where(inside, F, 0.0)
         by = {"x": F * (power[0] + slope) / depth}
         for name in model.unknowns:
-            by[name] = F * self._log_slope(name, values, power, of_u, slope, by_axis, places)
-        others = [F * places.read(rows[1 + i])[0] for i in range(len(model.moved))] if moved else []
+            by[name] = F * self._log_slope(name, values, power, of_u, slope, rows[1:], cubics)
+        others = [F * cubics.read(row)[0] for row in rows[1 + len(model.axes) :]]
         return F, by, np.array(others)
 
     def _sticking(
-        self, ladder: Ladder, p: np.ndarray, values: dict, moved: bool
+        self, table: TermTable, p: np.ndarray, values: dict, moved: bool
     ) -> tuple[np.ndarray, dict, np.ndarray]:
         """`contact` of what sticks; without adhesion at points that do not stick."""
-        model, parts = ladder.model, ladder.parts
+        model, terms = table.model, table.terms
         shift = {name: p[:, [self.names.index(name)]] for name in self.shifts}
         depth = self.x - shift.get("D0", 0.0) * self.wide[:, None]
-        made = branch(ladder.rows(values, depth.max(axis=1), moved), depth)
+        loads = branch(table.rows(values, depth.max(axis=1), moved), depth)
         base = shift.get("P0", 0.0) + shift.get("tilt", 0.0) * self.x / self.wide[:, None]
         high, contact = self.high[:, None], np.ones(depth.shape, bool)
         if self.points is not None:
-            deep = depth > np.maximum(made.D_least, 0.0)[:, None]
-            contact = self.points.in_contact(made.sticks.P / high, made.free.P / high, base, deep)
+            deep = depth > np.maximum(loads.D_least, 0.0)[:, None]
+            contact = self.points.in_contact(loads.sticks.P / high, loads.free.P / high, base, deep)
             contact |= self.points.retracts[:, None]
             if self.ends:
-                off = self.points.retracts[:, None] & (depth < made.D_off[:, None])
-                made = made._replace(sticks=Loads(*(np.where(off, 0.0, array) for array in made.sticks)))
+                off = self.points.retracts[:, None] & (depth < loads.D_off[:, None])
+                loads = loads._replace(sticks=Loads(*(np.where(off, 0.0, array) for array in loads.sticks)))
         P, slope, by_rows, by_parts = (
-            np.where(contact, *pair) / high for pair in zip(made.sticks, made.free, strict=True)
+            np.where(contact, *pair) / high for pair in zip(loads.sticks, loads.free, strict=True)
         )
         by = {"x": slope}
-        rows = dict(zip((*ladder.axes, *(model.moved if moved else ())), by_rows, strict=True))
+        rows = dict(zip((*table.axes, *(model.moved if moved else ())), by_rows, strict=True))
         for name in (*model.unknowns, *(model.moved if moved else ())):
-            factors = parts.by(name, values)
+            factors = terms.by(name, values)
             if name in ANGLES and name not in model.unknowns:  # by its logarithm, not that of its tangent
                 angle = np.radians(model.value(name))
                 factors = factors * (2 * angle / np.sin(2 * angle))
@@ -132,7 +132,7 @@ class Curve:
         others = [by[name] for name in model.moved] if moved else []
         return P, by, np.array(others)
 
-    def _log_slope(self, name, values, power, of_u, slope, by_axis, places):
+    def _log_slope(self, name, values, power, of_u, slope, by_axis, cubics):
         """d ln F by the coordinate of an input."""
         model = self.table.model
         E = {model.modulus: 1.0}
@@ -143,5 +143,5 @@ class Curve:
         if model.is_similar:
             total = total + slope * (of_u[0] * (name == "h") + of_u[1] * (name == "R") + of_u[2] * E.get(name, 0.0))
         if name in model.axes:
-            total = total + places.read(by_axis[model.axes.index(name)])[0]
+            total = total + cubics.read(by_axis[model.axes.index(name)])[0]
         return total

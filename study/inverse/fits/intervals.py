@@ -4,14 +4,14 @@ from typing import Any
 
 import numpy as np
 
-from .least_squares import HUBER, Data, Fit, inverse, minimise, normal, scale
+from .least_squares import HUBER, Data, Minimum, inverse, minimise, normal, scale
 
 _INNER, _INNER_SURE = 30, 1e-4  # steps of an inner fit, and by what part of the mean square it may be off
 _OUTWARD, _BETWEEN = 24, 8  # steps of the walk to the limit, and between its last two places
 _PRECISE = 2e-3  # of the width of an interval
 
 
-def covariance_of(data: Data, fit: Fit, variance: np.ndarray) -> np.ndarray:
+def covariance_of(data: Data, fit: Minimum, variance: np.ndarray) -> np.ndarray:
     """The covariance (B, k, k) of the unknowns, from the curvature at the minimum. Under Huber's loss it is the
     "sandwich" of two curvatures, which holds for errors that are not normal too.
 
@@ -34,7 +34,7 @@ def covariance_of(data: Data, fit: Fit, variance: np.ndarray) -> np.ndarray:
 def profiles(
     curve: Any,
     data: Data,
-    best: Fit,
+    best: Minimum,
     ends: list[tuple[np.ndarray, np.ndarray]],
     limit: np.ndarray,
     first: np.ndarray,
@@ -62,7 +62,7 @@ def profiles(
 
 def _walk(
     of: tuple[Any, Data],
-    best: Fit,
+    best: Minimum,
     begin: tuple[np.ndarray, np.ndarray],
     limit: np.ndarray,
     step: np.ndarray,
@@ -122,14 +122,14 @@ def _share(top: np.ndarray, height: np.ndarray, beyond: np.ndarray) -> np.ndarra
 def _inner(
     of: tuple[Any, Data], p: np.ndarray, which: np.ndarray, value: np.ndarray, start: np.ndarray, wanted: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Fits with unknown `which` held at a value: the unknowns, and the root of how far the cost is above the best one.
+    """Fits with unknown `which` fixed at a value: the unknowns, and the root of how far the cost is above the best one.
 
     Rows that are not `wanted` stay as they are: what a curve gets must not depend on how far others walk.
     """
     rows, p, height = np.flatnonzero(wanted), p.copy(), np.full(len(p), np.nan)
     p[rows, which[rows]] = value[rows]
-    held = np.zeros((len(rows), p.shape[1]), bool)
-    held[np.arange(len(rows)), which[rows]] = True
-    fit = minimise(of[0].take(rows), of[1].take(rows), p[rows], held, _INNER, _INNER_SURE)
+    fixed = np.zeros((len(rows), p.shape[1]), bool)
+    fixed[np.arange(len(rows)), which[rows]] = True
+    fit = minimise(of[0].take(rows), of[1].take(rows), p[rows], fixed, _INNER, _INNER_SURE)
     p[rows], height[rows] = fit.p, np.sqrt(np.maximum(fit.cost - start[rows], 0.0))
     return p, height

@@ -42,7 +42,7 @@ class Data(NamedTuple):
         return Data(*(array[index] for array in self[:6]), self.huber)
 
 
-class Fit(NamedTuple):
+class Minimum(NamedTuple):
     """Where the search ended: unknowns p (B, k), cost (B,), model (B, n) and its derivatives J (B, n, k), the weights
     (B, n) of the residuals' squares, and whether it ended by itself (B,)."""
 
@@ -53,23 +53,23 @@ class Fit(NamedTuple):
     weights: np.ndarray
     ended: np.ndarray
 
-    def take(self, index: np.ndarray) -> "Fit":
+    def take(self, index: np.ndarray) -> "Minimum":
         """Those of some curves."""
-        return Fit(*(array[index] for array in self))
+        return Minimum(*(array[index] for array in self))
 
 
 def minimise(
-    curve: Any, data: Data, p: np.ndarray, held: np.ndarray | None = None, steps: int = STEPS, sure: float = SURE
-) -> Fit:
+    curve: Any, data: Data, p: np.ndarray, fixed: np.ndarray | None = None, steps: int = STEPS, sure: float = SURE
+) -> Minimum:
     """Minimise the sum of the squares of w (y - curve(p)), from p on, within the bounds.
 
     curve : p -> values (B, n) and derivatives (B, n, k), NaN where there is none; `take(index)` has some of the curves
-    held : (B, k) bool, unknowns that stay
+    fixed : (B, k) bool, unknowns that stay
     sure : the search ends where a step would lower the cost by less than this part of the mean square
     """
-    held = np.zeros(p.shape, bool) if held is None else held
+    fixed = np.zeros(p.shape, bool) if fixed is None else fixed
     model, J = curve(p)
-    fit = Fit(p.copy(), np.zeros(len(p)), model, J, *weighed(data, p, model)[:1], np.zeros(len(p), bool))
+    fit = Minimum(p.copy(), np.zeros(len(p)), model, J, *weighed(data, p, model)[:1], np.zeros(len(p), bool))
     fit.cost[:] = weighed(data, p, model)[1]
     count = np.maximum((data.w > 0).sum(axis=1), 1)
     left, damping = np.flatnonzero(np.isfinite(fit.cost)), np.full(len(p), 1e-3)
@@ -81,7 +81,7 @@ def minimise(
         # Curves that are done leave the batch, which stays a multiple of AT_LEAST: the order of a sum, and with it
         # the last digit, may depend on the size of the batch
         rows = left if len(left) % AT_LEAST == 0 else np.resize(left, -(-len(left) // AT_LEAST) * AT_LEAST)
-        new, decrease = _step(data.take(rows), fit.take(rows), held[rows], damping[rows])
+        new, decrease = _step(data.take(rows), fit.take(rows), fixed[rows], damping[rows])
         part = curve.take(rows)
         new_model, new_J = part(new)
         # The new cost is by Huber's limit of the old residuals, so that the two can be compared. By a limit of its own
@@ -106,17 +106,17 @@ def minimise(
     return fit
 
 
-def _step(data: Data, fit: Fit, held: np.ndarray, damping: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _step(data: Data, fit: Minimum, fixed: np.ndarray, damping: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where a damped step leads, within the bounds, and by how much it should lower the cost."""
     p, eye = fit.p, np.eye(fit.p.shape[1], dtype=bool)
     A, slope = normal(data, p, fit.model, fit.J, fit.weights)
-    still = held | ((p <= data.low) & (slope < 0)) | ((p >= data.high) & (slope > 0))
+    still = fixed | ((p <= data.low) & (slope < 0)) | ((p >= data.high) & (slope > 0))
     diagonal = np.maximum(np.einsum("bii->bi", A), 1e-300)
     damped = np.where(still[:, :, None] | still[:, None, :], eye, A + eye * (damping[:, None] * diagonal)[:, :, None])
     damped = np.where(np.isfinite(damped), damped, eye)
     slope = np.where(still, 0.0, slope)
     step = np.linalg.solve(damped, slope[:, :, None])[:, :, 0]
-    return np.where(held, p, np.clip(p + step, data.low, data.high)), (slope * step).sum(axis=1)
+    return np.where(fixed, p, np.clip(p + step, data.low, data.high)), (slope * step).sum(axis=1)
 
 
 def normal(data: Data, p: np.ndarray, model: np.ndarray, J: np.ndarray, weights: np.ndarray) -> tuple:

@@ -35,7 +35,7 @@ def is_ratio(name: str) -> bool:
 
 
 @dataclass(frozen=True)
-class Model:
+class CurveModel:
     """A curve y(x) of one contact.
 
     scene : its inputs in SI; those in `unknowns` have any value
@@ -52,7 +52,9 @@ class Model:
     moved: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, definition: Definition, x: str, y: str, unknowns: tuple[str, ...], moved: tuple[str, ...]) -> "Model":
+    def of(
+        cls, definition: Definition, x: str, y: str, unknowns: tuple[str, ...], moved: tuple[str, ...]
+    ) -> "CurveModel":
         """The model of a checked call. Raises StudyError for an input with several values."""
         several = [*definition.grid.sizes]
         if several:

@@ -1,1 +1,1 @@
-"""What is done to the heights of a scan, what is doubted of them, and the asperities that come out."""
+"""From the heights of a scan to asperities: form, row jumps, missing points, low-pass, summits, and doubts."""

@@ -38,16 +38,16 @@ def treated(z: np.ndarray, missing: str, name: str) -> tuple[np.ndarray, tuple[s
         return z, ()
     if count == z.size:
         raise ValueError(f"{name}: all {z.size} heights are not numbers (NaN)")
-    said = (
+    gaps = (
         f"{count} of {z.size} heights are not numbers (NaN), the first in {_place(absent)}: {_percent(share)} missing"
     )
     out = 'missing="skip" takes the statistics of the points that are there, or crop the scan to a part without gaps'
     if missing == "refuse":
         raise ValueError(
-            f'{name}: {said}, and missing="refuse" allows none; missing="fill" interpolates up to 1 %, {out}'
+            f'{name}: {gaps}, and missing="refuse" allows none; missing="fill" interpolates up to 1 %, {out}'
         )
     if missing == "fill" and share > FILLED:
-        raise ValueError(f"{name}: {said}, and at most {FILLED:.0%} is interpolated; {out}")
+        raise ValueError(f"{name}: {gaps}, and at most {FILLED:.0%} is interpolated; {out}")
     if missing == "fill":
         verb = "was" if count == 1 else "were"
         return filled(z), (f"{count} of {z.size} heights ({_percent(share)}) {verb} missing, and interpolated",)

@@ -45,15 +45,15 @@ def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
     >>> get("ptfe").nu
     0.46
     """
-    known = _built_in() if among is None else among
-    spelled = {plainly(word): entry for entry in known.values() for word in entry.also}
-    spelled |= {plainly(entry.name): entry for entry in known.values()}  # names win over other names
+    materials = _built_in() if among is None else among
+    spelled = {plainly(word): entry for entry in materials.values() for word in entry.also}
+    spelled |= {plainly(entry.name): entry for entry in materials.values()}  # names win over other names
     plain = plainly(name)
     if plain in spelled:
         return spelled[plain]
     near = [word for word in spelled if plain and plain in word] or difflib.get_close_matches(plain, spelled, n=3)
-    meant = [f'"{name}"' for name in known if name in {spelled[word].name for word in near}]
-    hint = f"did you mean {' or '.join(meant[:6])}?" if meant else f"known: {', '.join(known)}"
+    meant = [f'"{name}"' for name in materials if name in {spelled[word].name for word in near}]
+    hint = f"did you mean {' or '.join(meant[:6])}?" if meant else f"known: {', '.join(materials)}"
     raise LookupError(f"{written(name)} is no material; {hint}")
 
 
@@ -109,7 +109,7 @@ def table() -> str:
 
 
 def markdown() -> str:
-    """The table of docs/materials.md: what `table` shows, other names, strengths, condition and sources."""
+    """The table of docs/materials.md: that of `table`, other names, strengths, condition and sources."""
     head = ("material", "E", "ν", "E/(1 − ν²)", "strengths", "holds for", "source", "read", "source of the strengths")
     rows = [head, ("---",) * len(head)]
     for entry in _built_in().values():
@@ -151,8 +151,8 @@ def _numbers(entry: Material) -> tuple[str, str, str, str]:
 
 def _strengths(entry: Material) -> str:
     """The strengths that are known: "hardness 8.0 ± 0.7 GPa"."""
-    known = [(name, getattr(entry, name), getattr(entry, f"{name}_spread")) for name in STRENGTHS]
-    words = [f"{name.replace('_', ' ')} {_in_multiples(value, spread)}" for name, value, spread in known if value]
+    strengths = [(name, getattr(entry, name), getattr(entry, f"{name}_spread")) for name in STRENGTHS]
+    words = [f"{name.replace('_', ' ')} {_in_multiples(value, spread)}" for name, value, spread in strengths if value]
     return "; ".join(words)
 
 

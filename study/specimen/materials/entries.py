@@ -38,7 +38,7 @@ OTHERS |= _STRENGTH | {"strength_source": "a text"}
 
 @dataclass(frozen=True)
 class Material:
-    """An isotropic elastic material; what `get` and `read` return has passed their checks.
+    """An isotropic elastic material. Materials that `get` and `read` return have passed their checks.
 
     Attributes
     ----------
@@ -124,36 +124,36 @@ def read(path: str | os.PathLike) -> dict[str, Material]:
 
 def of_sections(sections: dict, file: str) -> dict[str, Material]:
     """The materials of the sections of a file. Raises ValueError with every complaint, a line each."""
-    errors = [f"{file}: [{written(name)}] {error}" for name, given in sections.items() for error in _errors(given)]
+    errors = [f"{file}: [{written(name)}] {error}" for name, section in sections.items() for error in _errors(section)]
     if errors:
         raise ValueError("\n".join(errors))
-    found: dict[str, Material] = {}
+    materials: dict[str, Material] = {}
     owners: dict[str, str] = {}
-    for name, given in sections.items():
-        numbers = {key: float(given[key]) for key in (*NUMBERS, *_STRENGTH) if key in given}
-        found[name] = Material(name, **(given | numbers | {"also": tuple(given.get("also", ()))}))
-        for word in (name, *found[name].also):
+    for name, section in sections.items():
+        numbers = {key: float(section[key]) for key in (*NUMBERS, *_STRENGTH) if key in section}
+        materials[name] = Material(name, **(section | numbers | {"also": tuple(section.get("also", ()))}))
+        for word in (name, *materials[name].also):
             first = owners.setdefault(plainly(word), name)
             if first != name:
                 errors.append(f"{file}: [{written(name)}] is called {written(word)}, and so is [{written(first)}]")
     if errors:
         raise ValueError("\n".join(errors))
-    return found
+    return materials
 
 
-def _errors(given) -> list[str]:
-    """What is wrong with a section of the file."""
-    if not isinstance(given, dict):
-        return [f"= {written(given)}: must be a section with the keys {', '.join(NUMBERS)}"]
+def _errors(section) -> list[str]:
+    """The errors of a section of the file."""
+    if not isinstance(section, dict):
+        return [f"= {written(section)}: must be a section with the keys {', '.join(NUMBERS)}"]
     allowed = NUMBERS | OTHERS
-    errors = [f"{written(key)} is no key; known: {', '.join(allowed)}" for key in given if key not in allowed]
-    errors += [f"{key} is missing: must be {words}" for key, words in NUMBERS.items() if key not in given]
-    modulus = given.get("E")
+    errors = [f"{written(key)} is no key; known: {', '.join(allowed)}" for key in section if key not in allowed]
+    errors += [f"{key} is missing: must be {words}" for key, words in NUMBERS.items() if key not in section]
+    modulus = section.get("E")
     for key in allowed:
-        if key in given and not _is_allowed(key, given[key], modulus):
-            errors.append(f"{key} = {written(given[key])}: must be {allowed[key]}")
+        if key in section and not _is_allowed(key, section[key], modulus):
+            errors.append(f"{key} = {written(section[key])}: must be {allowed[key]}")
     for name in STRENGTHS:
-        strength, spread = given.get(name), given.get(f"{name}_spread")
+        strength, spread = section.get(name), section.get(f"{name}_spread")
         if (strength is None) != (spread is None):
             errors.append(f"{name} and {name}_spread go together: one of them is missing")
         elif strength is not None and _is_number(strength) and _is_number(spread) and spread >= strength:

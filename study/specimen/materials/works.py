@@ -72,8 +72,8 @@ def work_of_adhesion(first: str, second: str) -> Pair:
     for pair in pairs():
         if sorted(map(plainly, pair.bodies)) == wanted:
             return pair
-    known = "; ".join(" and ".join(pair.bodies) for pair in pairs())
-    raise LookupError(f"no work of adhesion is known of {written(first)} and {written(second)}; known: {known}")
+    every_pair = "; ".join(" and ".join(pair.bodies) for pair in pairs())
+    raise LookupError(f"no work of adhesion is known of {written(first)} and {written(second)}; known: {every_pair}")
 
 
 def markdown() -> str:

@@ -10,7 +10,7 @@ from conftest import ROOT
 
 from study import materials, pages, roughness
 from study.__main__ import main
-from study.commands import reading
+from study.commands import lookup
 
 SOURCES = [path for folder in ("roughcoat", "solver", "study") for path in (ROOT / folder).rglob("*") if path.is_file()]
 PAGE = re.compile(r"docs/(\w+)\.md(?:, ([A-Z][\w -]*[\w]))?")
@@ -115,14 +115,14 @@ def test_a_scan_that_is_not_there(capsys):
 
 def test_a_scan_takes_what_read_and_measure_take():
     taken = {name: [*inspect.signature(getattr(roughness, name)).parameters][1:] for name in ("read", "measure")}
-    assert taken == {"read": [*reading.READING], "measure": [*reading.MEASURING]}
+    assert taken == {"read": [*lookup.READING], "measure": [*lookup.MEASURING]}
 
 
 def test_words_of_a_scan_reach_read_and_measure_as_python_has_them(scan, monkeypatch, capsys):
     seen = {}
     for name in ("read", "measure"):
         monkeypatch.setattr(roughness, name, lambda _, found=seen, **given: found.update(given))
-    monkeypatch.setattr(reading, "answer", lambda *_: 0)
+    monkeypatch.setattr(lookup, "answer", lambda *_: 0)
     words = "unit=um dx=0.5 columns=1 crop=1,20um missing=fill huge=true form=2 cutoff=2.5um,0.8um"
     with pytest.raises(AttributeError):  # what measures gives nothing here
         main(["scan", scan, *words.split()])

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 import study
 from study.figures.stresses.picture import drawn
-from study.figures.stresses.spots import of_central_spot
+from study.figures.stresses.spot_stresses import of_central_spot
 from study.inputs.definition import StudyError
 
 H, PITCH = 0.001, 6.0

@@ -9,9 +9,9 @@ from drawn import contours, frame, lines
 from matplotlib.figure import Figure
 
 import study
-from study.figures.stresses.panels import Units
 from study.figures.stresses.picture import drawn
-from study.figures.stresses.places import of_one_contact
+from study.figures.stresses.regions import of_one_contact
+from study.figures.stresses.sections import Units
 from study.inputs.definition import StudyError
 
 COATED = {"P": 1e-5, "h": 0.02, "n": 4.0, "nu1": 0.25, "bonding": "bonded", "micro": "smooth", "base": "layered"}

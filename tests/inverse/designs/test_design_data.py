@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from test_design import LINING
 
 import study
-from study.inverse import design_answer, design_cases
+from study.inverse import design_cases, design_search
 
 # Of steel and DLC, whose asperities would yield in some of these contacts.
 pytestmark = pytest.mark.filterwarnings("ignore:a contact found is beyond")
@@ -46,7 +46,7 @@ def test_solutions_outside_the_model_are_told():
 
 
 def test_an_interrupt_keeps_what_was_searched(monkeypatch):
-    monkeypatch.setattr(design_answer, "CHUNK", 2)
+    monkeypatch.setattr(design_search, "CHUNK", 2)
     results, calls = design_cases.Wanted.results, itertools.count()
 
     def interrupted(self, t, index):

@@ -7,7 +7,7 @@ import pytest
 
 import study
 from study.__main__ import main
-from study.commands.design import asked
+from study.commands.designing import asked
 from study.commands.point import parameters_of
 
 # Of steel and DLC, whose asperities would yield in some of these contacts.

@@ -8,7 +8,7 @@ import pytest
 from measured_curves import DEPTHS, GEL, fit, gel, status
 
 import study
-from study.inverse.fits import parts as room
+from study.inverse.fits import tasks as room
 from study.work import engine
 
 NOISE = np.random.default_rng(7).standard_normal(len(DEPTHS))

@@ -5,11 +5,11 @@ import pytest
 from scipy.optimize import least_squares
 
 from study.inputs.reading import from_call
-from study.inverse.fits.curve import Curve
+from study.inverse.fits.curve import MeasuredCurves
 from study.inverse.fits.intervals import covariance_of
 from study.inverse.fits.least_squares import HUBER, Data, minimise, scale
-from study.inverse.fits.model import Model
-from study.inverse.fits.tables import Table
+from study.inverse.fits.model import CurveModel
+from study.inverse.fits.tables.ratio_table import RatioTable
 
 GEL = {"R": "5 um", "nu1": 0.49, "h": "1.5 um", "E2": "70 GPa", "nu2": 0.2, "bonding": "bonded", "micro": "smooth"}
 CURVES, POINTS, DEEP = 12, 120, 0.8e-6  # m
@@ -17,7 +17,7 @@ CURVES, POINTS, DEEP = 12, 120, 0.8e-6  # m
 
 def table(*unknowns):
     definition = from_call({**GEL, "E1": "5 kPa", "D": "1 um"}, [], False, {"output": {"profiles": False}})
-    return Table(Model.of(definition, "D", "P", unknowns, ()))
+    return RatioTable(CurveModel.of(definition, "D", "P", unknowns, ()))
 
 
 def measured(*unknowns, noise=0.01, outliers=0.0, seed=47):
@@ -28,7 +28,7 @@ def measured(*unknowns, noise=0.01, outliers=0.0, seed=47):
     truth += [np.log(rng.uniform(1.2e-6, 1.8e-6, CURVES))] * ("h" in unknowns)
     truth += [rng.uniform(-0.05, 0.05, CURVES), rng.uniform(-0.05, 0.05, CURVES)]
     p = np.column_stack(truth)
-    curve = Curve(table(*unknowns), x, np.full(CURVES, DEEP), np.ones(CURVES), ("D0", "P0"))
+    curve = MeasuredCurves(table(*unknowns), x, np.full(CURVES, DEEP), np.ones(CURVES), ("D0", "P0"))
     curve.high = curve(np.column_stack([p[:, :-1], 0 * p[:, -1]]))[0].max(axis=1)
     y = curve(p)[0] + noise * rng.standard_normal(x.shape)
     y += 20 * noise * np.sign(rng.standard_normal(x.shape)) * (rng.random(x.shape) < outliers)
@@ -49,7 +49,7 @@ def begin(p):
 
 
 def alone(curve, i):
-    return Curve(curve.table, curve.x[[i]], curve.wide[[i]], curve.high[[i]], curve.shifts)
+    return MeasuredCurves(curve.table, curve.x[[i]], curve.wide[[i]], curve.high[[i]], curve.shifts)
 
 
 def by_scipy(curve, data, start, i, **options):
@@ -146,7 +146,7 @@ def test_points_of_weight_0_are_none():
     spoilt = np.where(w > 0, y, np.nan)
     fit = minimise(curve, data_of(np.where(w > 0, spoilt, 1e9), truth, w=w), begin(truth))
     kept = w[0] > 0
-    shorter = Curve(curve.table, curve.x[:, kept], curve.wide, curve.high, curve.shifts)
+    shorter = MeasuredCurves(curve.table, curve.x[:, kept], curve.wide, curve.high, curve.shifts)
     other = minimise(shorter, data_of(y[:, kept], truth), begin(truth))
     np.testing.assert_allclose(fit.p, other.p, rtol=0, atol=1e-8)
 
@@ -156,10 +156,10 @@ def test_a_curve_does_not_depend_on_its_company():
     curve, y, truth = measured("E1", "h")
     fit = minimise(curve, data_of(y, truth), begin(truth))
     order = np.arange(CURVES)[::-1]
-    turned = Curve(curve.table, curve.x[order], curve.wide[order], curve.high[order], curve.shifts)
+    turned = MeasuredCurves(curve.table, curve.x[order], curve.wide[order], curve.high[order], curve.shifts)
     other = minimise(turned, data_of(y[order], truth[order]), begin(truth[order]))
     assert np.array_equal(fit.p, other.p[order])
     same = np.zeros(CURVES, int) + 3
-    filled = Curve(curve.table, curve.x[same], curve.wide[same], curve.high[same], curve.shifts)
+    filled = MeasuredCurves(curve.table, curve.x[same], curve.wide[same], curve.high[same], curve.shifts)
     again = minimise(filled, data_of(y[same], truth[same]), begin(truth[same]))
     assert (again.p == fit.p[3]).all()

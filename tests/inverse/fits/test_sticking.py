@@ -9,11 +9,11 @@ from measured_curves import solved, status
 from numpy.testing import assert_allclose
 
 import study
-from study.inverse.fits.asked import asked
-from study.inverse.fits.curve import Curve
-from study.inverse.fits.sticking.branch import branch
-from study.inverse.fits.sticking.labels import Points
-from study.inverse.fits.sticking.ladder import Ladder
+from study.inverse.fits.curve import MeasuredCurves
+from study.inverse.fits.question import read_question
+from study.inverse.fits.tables.branch import branch
+from study.inverse.fits.tables.sticking_points import StickingPoints
+from study.inverse.fits.tables.term_table import TermTable
 
 GEL = {"R": "5 um", "punch": "rigid", "nu1": 0.45, "E2": "20 kPa", "nu2": 0.45, "h": "3 um", "bonding": "bonded"}
 GEL |= {"micro": "smooth"}
@@ -44,14 +44,14 @@ def fitted(depths, P, free, **inputs):
 
 
 def curve_of(inputs, free, **options):
-    """The Curve of a call at DEPTHS, and its unknowns (1, k) at the values of the call."""
+    """The MeasuredCurves of a call at DEPTHS, and its unknowns (1, k) at the values of the call."""
     usual = {"contact_point": True, "baseline": True, "tilt": False, "sigma": None, "loss": "linear"}
     usual |= {"intervals": "profile", "level": 0.95, "plan": False} | options
     inputs = {name: value for name, value in inputs.items() if value is not None}
-    question = asked(free, inputs, "D", "P", usual)
+    question = read_question(free, inputs, "D", "P", usual)
     model = question.model
     p = [float(model.coordinate(name, model.value(name))) for name in model.unknowns]
-    curve = Curve(Ladder(model), DEPTHS[None], np.array([1e-6]), np.array([1e-8]), question.shifts)
+    curve = MeasuredCurves(TermTable(model), DEPTHS[None], np.array([1e-6]), np.array([1e-8]), question.shifts)
     return curve, np.array([[*p, *np.zeros(len(question.shifts))]])
 
 
@@ -93,7 +93,7 @@ def test_points_are_in_contact_above_the_depth_that_fits_best():
         off = first > DEPTHS
         y = np.where(off, free, P)
         order = np.random.default_rng(0).permutation(len(DEPTHS))
-        points = Points.of(DEPTHS[None, order], y[:, order], np.ones(y.shape), 3, False)
+        points = StickingPoints.of(DEPTHS[None, order], y[:, order], np.ones(y.shape), 3, False)
         contact = points.in_contact(P[:, order], free[:, order], np.zeros(y.shape))
         assert (contact[0] == ~off[order]).all()
 

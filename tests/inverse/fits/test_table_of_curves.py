@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from study.inputs.reading import from_call
-from study.inverse.fits.model import HERTZ, Model
-from study.inverse.fits.tables import STEP, WIDE, Places, Table
+from study.inverse.fits.model import HERTZ, CurveModel
+from study.inverse.fits.tables.lattice import WIDE
+from study.inverse.fits.tables.ratio_table import STEP, Cubics, RatioTable
 
 GEL = {"R": "5 um", "nu1": 0.45, "h": "1.5 um", "E2": "1 MPa", "nu2": 0.3, "bonding": "bonded", "E1": "1 MPa"}
 ROUGH = {"R": "50 um", "micro": "disc_cell", "Nbar": "1 1/um^2", "Ra": "1 um"}
@@ -25,7 +26,7 @@ ABSCISSA = {"D": ("1 nm", 3e-9, 3e-7), "P": ("1 nN", 1e-9, 1e-6), "a": ("1 nm", 
 def test_as_the_solver(name):
     given, unknowns, (x, y), tolerance = CASES[name]
     text, low, high = ABSCISSA[x]
-    model = Model.of(from_call(given | {x: text}, [], False, {}), x, y, unknowns, ())
+    model = CurveModel.of(from_call(given | {x: text}, [], False, {}), x, y, unknowns, ())
     random = np.random.default_rng(1)
     values = {"E1": np.exp(random.uniform(np.log(1e5), np.log(1e7), 25))}
     values |= {"h": np.exp(random.uniform(np.log(5e-7), np.log(5e-6), 25))} if "h" in unknowns else {}
@@ -35,7 +36,7 @@ def test_as_the_solver(name):
     u = model.log_u(values, places)
     first = np.floor(u / WIDE).astype(int) - 1
     coordinates = np.stack([model.coordinate(axis, values[axis]) for axis in model.axes], axis=1)
-    rows, _ = Table(model).rows(coordinates, first, 3)
-    g, _ = Places(((u - first * WIDE) / STEP)[:, None], rows.shape[2]).read(rows[0])
+    rows = RatioTable(model).rows(coordinates, first, 3)
+    g, _ = Cubics(((u - first * WIDE) / STEP)[:, None], rows.shape[2]).read(rows[0])
     table = model.hertz(values, places, HERTZ[x, y][0]) * np.exp(g[:, 0])
     np.testing.assert_allclose(table, exact, rtol=tolerance)

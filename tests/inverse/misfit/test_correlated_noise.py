@@ -5,7 +5,7 @@ import pytest
 from conftest import ROOT
 
 import study
-from study.inverse.fits.points.noise import noise_of
+from study.inverse.fits.residuals import noise_of
 
 MEASURED = ROOT / "tests/inverse/misfit/measured"
 BARE = {"R": "5 um", "punch": "rigid", "nu2": 0.3, "micro": "smooth", "base": "half_space", "progress": False}

@@ -5,7 +5,7 @@ import pytest
 from surfaces import rough
 
 from study import roughness
-from study.specimen import summits
+from study.specimen.heights import scan_peaks
 from study.specimen.heights.missing import filled
 
 STEP = 1e-7
@@ -122,7 +122,7 @@ def test_too_few_points_are_refused(method):
 
 
 def moments(z):
-    found = summits.gaussian_summits(summits.mean_moments(summits.moments(z, (STEP, STEP))))
+    found = scan_peaks.gaussian_summits(scan_peaks.mean_moments(scan_peaks.moments(z, (STEP, STEP))))
     return np.array([found.density, found.curvature])
 
 
@@ -133,10 +133,10 @@ def test_a_low_pass_over_gaps_as_wide_as_asperities(share):
     for seed in range(3):
         whole, gaps = rough(seed=seed), rough(shortest=20, seed=seed + 50)
         holes = np.where(gaps > np.quantile(gaps, 1 - share), np.nan, whole)
-        known = moments(summits.low_pass(whole, steps, cutoff))
-        np.testing.assert_allclose(moments(summits.low_pass(holes, steps, cutoff)), known, rtol=0.01, atol=0)
+        known = moments(scan_peaks.low_pass(whole, steps, cutoff))
+        np.testing.assert_allclose(moments(scan_peaks.low_pass(holes, steps, cutoff)), known, rtol=0.01, atol=0)
         there = np.isfinite(holes)
-        means = summits.low_pass(np.where(there, holes, 0.0), steps, cutoff) / summits.low_pass(
+        means = scan_peaks.low_pass(np.where(there, holes, 0.0), steps, cutoff) / scan_peaks.low_pass(
             1.0 * there, steps, cutoff
         )
         assert moments(means)[0] > (1.1 if share < 0.1 else 1.6) * known[0]

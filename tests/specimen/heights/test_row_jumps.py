@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from surfaces import rough
 
 from study import roughness
-from study.specimen.heights.rows import jumps
+from study.specimen.heights.row_jumps import jumps
 
 #: Correlation lengths along y and x, in points, of surfaces that are ground along one axis.
 GROUND = [(1, 40), (1.4, 8), (2, 40), (8, 100), (40, 1), (8, 1.4), (40, 2), (100, 8)]

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from study.specimen import roughness, summits
+from study.specimen import roughness
+from study.specimen.heights import scan_peaks
 
 BUMP = np.exp(-(np.linspace(-3, 3, 21) ** 2))
 
@@ -18,16 +19,16 @@ def test_a_flat_top_is_one_summit(top):
     z = np.multiply.outer(BUMP, BUMP)
     for i, j in top:
         z[10 + i, 10 + j] = 1.5
-    assert summits.counted_summits(z, (1.0, 1.0)).counted == 1
+    assert scan_peaks.counted_summits(z, (1.0, 1.0)).counted == 1
     profile = BUMP.copy()
     profile[10 : 10 + len(top)] = 1.5
-    assert summits.counted_summits(profile, (1.0,)).counted == 1
+    assert scan_peaks.counted_summits(profile, (1.0,)).counted == 1
 
 
 def test_none_on_a_slope_or_at_the_border():
     slope = np.add.outer(np.arange(20.0), np.arange(20.0))
-    assert summits.counted_summits(slope, (1.0, 1.0)) is None
-    assert summits.counted_summits(-np.abs(np.arange(20.0) - 19), (1.0,)) is None
+    assert scan_peaks.counted_summits(slope, (1.0, 1.0)) is None
+    assert scan_peaks.counted_summits(-np.abs(np.arange(20.0) - 19), (1.0,)) is None
 
 
 @pytest.mark.parametrize("method", ["moments", "summits"])

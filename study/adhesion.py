@@ -1,0 +1,106 @@
+"""What roughness leaves of the work of adhesion of two surfaces in full contact."""
+
+from typing import Any
+
+import numpy as np
+
+from solver import Problem
+from solver.body import BODIES
+from solver.scaling import dimensionless, with_rigid_punch
+
+from .inputs.definition import StudyError
+from .inputs.reading import from_call
+from .inputs.vocabulary import PARAMETERS
+from .specimen.heights.form import without_form
+from .specimen.scan import Scan
+
+#: Waves of a scan whose kernel is computed at a time.
+_BLOCK = 1 << 16
+
+
+def effective_work(scan: Scan, *, form: Any = "plane", periodic: bool = False, **parameters: Any) -> float:
+    """The work of adhesion that is left when a rough surface is pressed flat, by its elastic energy (Persson):
+
+        w_eff = w - (E/4) ∫ q C(q)/L(qh) d²q,
+
+    with the spectrum C of the heights of a map, and E and L of what touches, of a layer or stack and the punch. It says
+    what `w_adhesion` of a smooth punch stands for a rough one whose asperities are flat. Waves shorter than two steps
+    of the scan are not in it: it is the most that may be left.
+
+    Parameters
+    ----------
+    scan : a map of heights, of `roughness.read` or `roughness.height_map`; of punch or surface, or of their sum
+    form : what is taken off the heights first, as of `roughness.measure`
+    periodic : whether the map is one period of the surface. If not, a Hann window hides its borders
+    parameters : those of `study.solve` with units: w_adhesion, the moduli, and the layer. `R` does not count
+
+    Returns
+    -------
+    float : in J/m². 0 and below: full contact costs more than it gives
+
+    Raises
+    ------
+    StudyError : input that cannot be used, a profile, or a map with missing points
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import study
+    >>> wave = 1e-8 * np.cos(2 * np.pi * np.arange(64) / 16)
+    >>> scan = study.roughness.height_map(np.tile(wave, (64, 1)), dx=1e-7)
+    >>> rubber = {"E2": "1 MPa", "nu2": 0.5, "base": "half_space"}
+    >>> f"{study.effective_work(scan, w_adhesion='50 mJ/m^2', **rubber, form='mean', periodic=True):.6f}"
+    '0.049935'
+    """
+    if not isinstance(scan, Scan) or scan.z.ndim != 2:
+        raise StudyError(["effective_work: a map of heights is needed, of roughness.read or roughness.height_map"])
+    if np.isnan(scan.z).any():
+        raise StudyError([f"effective_work: {scan.name} has missing points: crop it, or fill them"])
+    if not isinstance(periodic, (bool, np.bool_)):
+        raise StudyError([f"effective_work: periodic = {periodic!r}: must be True or False"])
+    scene, problem = _asked(parameters)
+    q, power = _spectrum(scan, form, periodic)
+    body = BODIES[str(problem.base[0])](problem)
+    yields = np.ones(len(q))
+    for low in range(0, len(q) if hasattr(body, "kernel") else 0, _BLOCK):
+        u = q[None, low : low + _BLOCK] * (body.h[0] * scene.R)
+        yields[low : low + _BLOCK] = ((body.kernel.whole(u) + body.m[0]) / (1 + body.m[0]))[0]
+    energy = float((q * power / yields).sum()) * float(body.E[0] * problem.E2[0] * scene.unit) / 4
+    return float(scene.values["w_adhesion"]) - energy
+
+
+def _asked(parameters: dict[str, Any]) -> tuple[Any, Problem]:
+    """The scene of a call and its numbers for the solver."""
+    usual = {"R": "1 um", "P": "0 N", "micro": "smooth"}
+    inputs = usual | {name: value for name, value in parameters.items() if value is not None}
+    if "w_adhesion" not in inputs:
+        raise StudyError(["effective_work: give w_adhesion"])
+    try:
+        definition = from_call(inputs, [], False, {"output": {"profiles": False}})
+    except StudyError as error:
+        raise StudyError(text.replace("solve: ", "effective_work: ", 1) for text in error.messages) from None
+    scene = definition.scene
+    assert scene is not None  # R has a unit, so all have
+    if definition.grid.sizes:
+        several = ", ".join(definition.grid.sizes)
+        raise StudyError([f"effective_work: {several} has several values: one surface at a time"])
+    names = {name: value for name, value in scene.parameters.items() if name in PARAMETERS}
+    names["base"] = {"auto": "layered"}.get(word := names.get("base", "layered"), word)
+    rigid = with_rigid_punch(Problem.of(**names))
+    return scene, dimensionless(rigid).but(E2=rigid.E2)
+
+
+def _spectrum(scan: Scan, form: Any, periodic: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Wave numbers (n,) in 1/m, without 0, and the mean squares of the heights in these waves, m²."""
+    try:
+        z, _ = without_form(scan.z, scan.steps, form, scan.name)
+    except ValueError as error:
+        raise StudyError([f"effective_work: {error}"]) from None
+    if not periodic:
+        windows = [np.hanning(n + 2)[1:-1] for n in z.shape]
+        window = windows[0][:, None] * windows[1]
+        z = z * window / np.sqrt((window**2).mean())
+    power = np.abs(np.fft.fft2(z) / z.size) ** 2
+    along = [2 * np.pi * np.fft.fftfreq(n, step) for n, step in zip(z.shape, scan.steps, strict=True)]
+    q = np.hypot(along[0][:, None], along[1])
+    return q.ravel()[1:], power.ravel()[1:]

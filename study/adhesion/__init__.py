@@ -1,1 +1,0 @@
-"""What is known of adhesion before a contact is solved."""

@@ -1,0 +1,144 @@
+"""The commands that only read: pages, materials, and scans of rough surfaces."""
+
+import pydoc
+import sys
+from argparse import ArgumentTypeError
+from collections.abc import Callable
+from typing import Any
+
+from .. import pages
+from ..inputs.definition import StudyError
+from ..specimen import materials, roughness
+from ..specimen.quantities import quantity
+from ..terminal import answer, program, shown
+from . import signals
+from .arguments import SWITCH, assignment
+
+
+def items(options) -> list:
+    """Pages or materials; without any, all are listed, which "" stands for. All words of `scan` are of one scan."""
+    return [options.items] if options.command == "scan" else options.items or [""]
+
+
+def docs(_, name: str) -> int:
+    """Show a page, in a terminal by its pager; without a name the list of pages."""
+    if not name:
+        titles = pages.titles()
+        width = max(map(len, titles), default=0)
+        lines = (f"{page:{width}}  {title}" for page, title in titles.items())
+        return answer(*lines, f"\nOpen one with `{program()} docs NAME`.")
+    text = pages.page(name)
+    if sys.stdout is not None and sys.stdout.isatty():
+        signals.state.elsewhere = True  # Ctrl-C is the pager's
+        pydoc.pager(text)
+        signals.state.elsewhere = False
+        return 0
+    return answer(text.rstrip("\n"))
+
+
+def materials_(_, name: str) -> int:
+    """Say all that is known of a material; without a name the table of all."""
+    if not name:
+        return answer(materials.table(), f"\nStrengths and sources of one: `{program()} materials NAME`.")
+    try:
+        return answer(materials.in_words(materials.get(name)))
+    except LookupError as error:
+        raise StudyError([f"materials: {error.args[0]}"]) from None
+
+
+def scan(_, texts: list[str]) -> int:
+    """Measure the asperities of a scan: its numbers in sentences, and as `point` takes them."""
+    path, *words = texts
+    arguments = _arguments(words)
+    heights = arguments.pop("heights", "normal")
+    reading = {name: value for name, value in arguments.items() if name in READING}
+    measuring = {name: value for name, value in arguments.items() if name in MEASURING}
+    try:
+        asperities = roughness.measure(roughness.read(path, **reading), **measuring)
+        numbers = asperities.parameters(heights)
+    except OSError as error:
+        raise StudyError([f"scan: {path}: {error.strerror or error}"]) from None
+    except (ValueError, ImportError) as error:
+        raise StudyError([f"scan: {error}"]) from None
+    if asperities.cutoff is not None:
+        return answer(asperities)
+    words = [f'{name}="{value}"' for name, value in numbers.items()]
+    return answer(asperities, f"\n{program()} point ... {' '.join(words)}")
+
+
+def _arguments(texts: list[str]) -> dict[str, Any]:
+    """Arguments of `read` and `measure` from texts NAME=VALUE. StudyError has a message for each that is none."""
+    kinds, arguments, errors = READING | MEASURING | {"heights": _text}, {}, []
+    for text in texts:
+        try:
+            name, _ = assignment(text)
+            if name not in kinds:
+                raise ValueError(f"{shown(name)} is nothing that `scan` takes; it takes {', '.join(kinds)}")
+            if name in arguments:
+                raise ValueError(f"{name} is given twice")
+            arguments[name] = kinds[name](name, text.partition("=")[2].strip())
+        except (ArgumentTypeError, ValueError) as error:
+            errors.append(f"scan: {error}")
+    if errors:
+        raise StudyError(errors)
+    return arguments
+
+
+def _text(_, text: str) -> str:
+    return text
+
+
+def _number(name: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{name} = {shown(text)}: must be a number, in `unit`") from None
+
+
+def _columns(name: str, text: str) -> list[int]:
+    try:
+        return [int(part) for part in text.split(",")]
+    except ValueError:
+        raise ValueError(f"{name} = {shown(text)}: must be columns, counted from 0, such as {name}=0,2") from None
+
+
+def _switch(name: str, text: str) -> bool:
+    if text.lower() not in SWITCH:
+        raise ValueError(f"{name} = {shown(text)}: must be {name}=true or {name}=false")
+    return SWITCH[text.lower()]
+
+
+def _crop(_, text: str) -> list[float | str]:
+    """Ends of the part to keep: numbers, or lengths with units. What is wrong with them is said by `read`."""
+    return [_number_or_text(part.strip()) for part in text.split(",")]
+
+
+def _number_or_text(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _cutoffs(name: str, text: str) -> float | list[float]:
+    """One cutoff or several, m."""
+    lengths = [quantity(name, part, "m").value for part in text.split(",")]
+    return lengths if len(lengths) > 1 else lengths[0]
+
+
+Kinds = dict[str, Callable[[str, str], Any]]
+READING: Kinds = {
+    "unit": _text,
+    "height_unit": _text,
+    "dx": _number,
+    "dy": _number,
+    "columns": _columns,
+    "channel": _text,
+    "crop": _crop,
+    "missing": _text,
+    "steep": _switch,
+    "huge": _switch,
+}
+"""The arguments of `read`, and what makes their values of texts."""
+MEASURING: Kinds = {"method": _text, "form": lambda _, text: _number_or_text(text), "rows": _text, "cutoff": _cutoffs}
+"""Those of `measure`."""

@@ -1,0 +1,387 @@
+"""Whether a contact holds, in words: what is closest to its limit, by what factor, and at which load it is there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from solver import Problem, solve
+from solver.closed_forms import yield_pressure
+from solver.kernels.two_layers import layer_modulus
+from solver.laws import LAWS
+from solver.yields import spots
+from solver.yields.below import central_spot
+from solver.yields.below.central_spot import SPOT_EXTREMES
+from solver.yields.contact import of_contacts
+from solver.yields.extremes import EXTREMES
+
+from ..again import Again, known_strengths, no_stresses, of_all_cases, strengths
+from ..arrays import xarray_later as xr
+from ..data.dataset import flag_words
+from ..inputs.definition import StudyError
+from ..inputs.punch.shapes import ROUND
+from ..inputs.vocabulary import bodies_of
+from ..rules.assumptions import FEW_SPOTS
+from ..rules.yield_bounds import stress_below_one
+from ..specimen import materials
+from ..specimen.quantities import readable
+from ..terminal import rounded
+from .inputs import is_rigid
+
+#: Below this modulus in Pa a material is a rubber or a gel, which tears and does not yield. Nearly all have a Poisson
+#: ratio close to 0.5.
+RUBBER = 1e8
+#: Stresses of thinner films, in a, take many seconds.
+_THINNEST = 2e-3
+#: The load at a limit is found to this part, or not said after so many contacts.
+_SAME, _MOST = 1e-3, 8
+#: Beside rubber or gel nothing is said of what has less than this part of its strength.
+_FAR = 0.01
+#: Nothing is said of contacts wider than this, in R.
+_WIDEST = 0.2
+_THROUGH = "The layer is thin against the pitch: single spots press on the body through it, which is left out."
+_SHAPE = "Not looked at under this shape: study.extremes computes the stresses, study.first_yield the loads."
+_FILM = "The layer is so thin (h < 0.002 a) that its stresses take long: study.extremes computes them"
+_OWN_LAW = (
+    "The law of the asperities does not say what is below them: as of a sphere, the stress there is pmax - p(0) over "
+    "{q:.3g}."
+)
+#: A sphere yields so deep below it, in the radius of its contact (nu = 0.3).
+_DEEP = 0.48
+_SPOTS, _PUNCH = "of spots", "of the punch"
+
+
+class _Limit(NamedTuple):
+    """Something that may fail.
+
+    who : words for it, as a subject; verb : what it does there; ing : the same, doing it
+    what : words for its stress; of : words for its strength
+    stress : its name among the extremes; or _PUNCH, or _SPOTS
+    strength, spread : in the unit of E2; NaN: not known
+    needs : the input that is its strength; "": nothing is said where it is not known
+    hard : bool, the strength is the hardness over 2.84
+    """
+
+    who: str
+    verb: str
+    ing: str
+    what: str
+    of: str
+    stress: str
+    strength: float
+    spread: float
+    needs: str
+    hard: bool = False
+
+    @property
+    def plural(self) -> bool:
+        return self.who == "the asperities"
+
+
+class Margin(NamedTuple):
+    """What is said of the strengths of a contact, a sentence each, and whether one of them is exceeded."""
+
+    sentences: list[str]
+    exceeded: bool = False
+
+
+class _Compared(NamedTuple):
+    """A limit and the stress there, with its place in a."""
+
+    limit: _Limit
+    stress: float
+    r: float
+    z: float
+
+    @property
+    def share(self) -> float:
+        return self.stress / self.limit.strength
+
+
+class _Looked(NamedTuple):
+    """A contact of which something is known: its problem and solution at the radius, and what was compared, the closest
+    first; of those whose strength is not known, the stress.
+
+    hard : bool, no body is rubber or gel
+    """
+
+    again: Again
+    problem: Problem
+    solution: Any
+    compared: list[_Compared]
+    lacking: list[_Compared]
+    hard: bool
+
+
+def holds(case: xr.Dataset) -> Margin:
+    """Sentences about one contact that is solved; none where nothing is known of its strengths, and it has no units."""
+    looked = _looked_at(case)
+    if isinstance(looked, str):
+        return Margin([looked] * bool(looked))
+    again, compared, hard = looked.again, looked.compared, looked.hard
+    far = not compared or not hard and compared[0].share < _FAR
+    said = [] if far else _closest(looked, case)
+    if "pitch_not_small_against_h" in flag_words(case["validity"]).item().split() and not is_rigid(case, "base"):
+        said = [*said, _THROUGH] if said else []
+    said += _needed(again, looked.lacking) if looked.lacking and hard else []
+    said = [*(_flowing(case) if said else []), *said, *_of_own_law(again, said)]
+    return Margin(said, bool(compared) and compared[0].share > 1)
+
+
+def closest(case: xr.Dataset) -> str:
+    """What is closest to its limit, and its share of that, in a few words: "asperities 1.1"; "-" where it is not
+    known."""
+    looked = _looked_at(case) if case["status"] == 0 else ""
+    if isinstance(looked, str) or not looked.compared:
+        return "-"
+    limit = looked.compared[0].limit
+    return f"{limit.who.removeprefix('the ')} {rounded(looked.compared[0].share)}"
+
+
+def _looked_at(case: xr.Dataset) -> _Looked | str:
+    """What is known of a contact; else why it is not, "" where nothing is to be said."""
+    try:
+        again = Again.of(case, "summary")
+    except StudyError:  # of a mean, say
+        return ""
+    known = {body: [column[0] for column in columns] for body, columns in known_strengths(case, again, {}).items()}
+    moduli = [case[name] for name, _, _ in bodies_of(case.variables).values() if name in case]
+    moduli = [modulus for modulus in moduli if modulus.attrs.get("units") == "Pa"]
+    hard = bool(moduli) and min(moduli) >= RUBBER
+    if not (hard or np.isfinite([value for value, *_ in known.values()]).any()):
+        return ""
+    problem = again.problem
+    if reason := no_stresses(again):
+        return f"Not known: {reason}."
+    if problem.shape[0] not in ROUND:
+        return _SHAPE
+    if problem.base[0] != "half_space" and problem.h[0] < _THINNEST * _radius(case, again):
+        return _FILM + "."
+    at_a = replace(problem, control="a", value=np.array([_radius(case, again)]))
+    solution, limits = solve(at_a), _limits(case, again, known)
+    found = [_Compared(*pair) for pair in _stresses(limits, at_a, solution, case) if np.isfinite(pair[1])]
+    compared = sorted((one for one in found if np.isfinite(one.limit.strength)), key=lambda one: -one.share)
+    lacking = [one for one in found if np.isnan(one.limit.strength) and one.limit.needs]
+    return _Looked(again, at_a, solution, compared, lacking, hard)
+
+
+def _stresses(limits: list[_Limit], problem: Problem, solution: Any, case: xr.Dataset) -> list[tuple]:
+    """(limit, stress, r, z) of each, r and z in a: those of the bodies are searched for together."""
+    names = tuple(limit.stress for limit in limits if limit.stress in EXTREMES)
+    found = of_contacts(problem, solution, names=names) if names else {}
+    if any(limit.stress in SPOT_EXTREMES for limit in limits):
+        below = central_spot.of_contacts(problem, solution)
+        found |= {name: np.stack([value, 0 * value, z]) for name, (value, z) in below.items()}
+    if any(limit.stress == _PUNCH for limit in limits):
+        nu = float(case["nu_punch"]) if "nu_punch" in case else 0.3
+        found[_PUNCH] = of_contacts(problem, solution, names=("mises2",), punch=np.array([nu]))["mises2"]
+    if any(limit.stress == _SPOTS for limit in limits):
+        found[_SPOTS] = _of_spots(problem, solution)
+    return [(limit, *found[limit.stress][:, 0].tolist()) for limit in limits]
+
+
+def _of_spots(problem: Problem, solution: Any) -> np.ndarray:
+    """(3, 1): the stress below a spot, and its place; of a law without a radius of asperities that of a sphere under
+    the same pressure, on the surface. On a half-space it is at most that of one asperity that bears the whole load."""
+    found, E, nu = spots.of_contacts(problem, solution), *_below(problem)
+    below = stress_below_one(solution.P, E, problem.Ra, nu)
+    if np.isnan(found[0, 0]):
+        largest = np.fmax(solution.p_max[0], solution.p_spot[0])
+        found[:, 0] = (largest - solution.p0[0]) / yield_pressure(nu)[0], 0.0, 0.0
+    elif below[0] < found[0, 0] and not problem.feels_layer()[0]:
+        b = np.cbrt(3 * solution.P[0] * problem.Ra[0] / (4 * E[0]))
+        found[:, 0] = below[0], 0.0, _DEEP * b / solution.a[0]
+    return found
+
+
+def _below(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
+    """The modulus that the asperities feel, in series with the punch, and the Poisson ratio below them."""
+    bare = problem.base == "half_space"
+    E = np.where(bare, 1.0, layer_modulus(problem.n)) / (1 + problem.m)
+    return E * problem.E2, np.where(bare, problem.nu2, problem.nu1)
+
+
+def _of_own_law(again: Again, said: list[str]) -> list[str]:
+    """A sentence on asperities of which no more than pmax is known, where something is said of them."""
+    if np.isfinite(again.problem.Ra[0]) or not any("asperities" in text for text in said):
+        return []
+    return [_OWN_LAW.format(q=float(yield_pressure(_below(again.problem)[1])[0]))]
+
+
+def _flowing(case: xr.Dataset) -> list[str]:
+    """A sentence on asperities whose law lets them yield."""
+    if "plastic_share" not in case or not np.isfinite(case["plastic_share"]):
+        return []
+    share = 100 * float(case["plastic_share"])
+    yielded = f"The asperities have yielded on {rounded(share)} % of the nominal contact area."
+    return [yielded if share else "No asperity yields."]
+
+
+def which_yields(contacts: xr.Dataset) -> str:
+    """Whether it is the layer or the body, of the contacts in which one of them yields."""
+    flags = contacts["validity"].values.ravel() & 512
+    try:
+        again = Again.of(contacts, "summary")
+    except StudyError:  # of a mean, say
+        return ""
+    some, known = np.flatnonzero(flags), strengths(contacts, again, {})
+    if not any(np.isfinite(known[body]).any() for body in ("layer", "body")) or no_stresses(again):
+        return ""
+    problem = again.problem.take(some)
+    stress, parts = of_contacts(problem, solve(problem), names=("mises1", "mises2")), []
+    for body, name in (("layer", "mises1"), ("body", "mises2")):
+        count = int((stress[name][0] > known[body][some]).sum())
+        parts += [f"in {count} it is the {body}" if len(flags) > 1 else f"it is the {body}"] * bool(count)
+    return f"{_capital(', '.join(parts))}." if parts else ""
+
+
+def _radius(case: xr.Dataset, again: Again) -> float:
+    return float(case["a"]) / (float(again.scene.R) if again.scene else 1.0)
+
+
+def _limits(case: xr.Dataset, again: Again, known: dict[str, list]) -> list[_Limit]:
+    """What may fail in a contact."""
+    problem, limits = again.problem, []
+    coated, mises, Y = problem.base[0] != "half_space", "largest von Mises stress", "yield strength"
+
+    def yields(who: str, stress: str, body: str, needs: str, what: str = mises) -> _Limit:
+        value, spread, hard = known[body]
+        return _Limit(who, "yield", "yielding", what, Y, stress, float(value), float(spread), needs, bool(hard))
+
+    felt, below = bool(problem.feels_layer()[0]), "below the asperities"
+    if coated:
+        limits.append(yields("the layer", "mises1", "layer", "Y1"))
+        coating, unit = _material(case, "layer"), float(again.scene.unit) if again.scene else 1.0
+        places = [
+            ("the layer", "s1_layer", "largest tension", "fracture"),
+            ("the interface", "tau_interface", "largest shear stress", "interface"),
+        ]
+        if felt:
+            limits.append(yields(f"the layer {below}", "mises1_spot", "layer", ""))
+            places.append((f"the layer {below}", "sr_interface1_spot", "radial tension", "fracture"))
+            places.append((f"the interface {below}", "tau_interface_spot", "largest shear stress", "interface"))
+        for who, stress, what, of in places:
+            if strength := getattr(coating, f"{of}_strength", None):
+                verb, name = ("crack", "fracture strength") if of == "fracture" else ("fail", "strength")
+                spread = getattr(coating, f"{of}_strength_spread") / unit
+                limits.append(_Limit(who, verb, f"{verb}ing", what, name, stress, strength / unit, spread, ""))
+    if not is_rigid(case, "base"):
+        limits.append(yields("the body", "mises2", "body", "Y2"))
+        limits += [yields(f"the body {below}", "mises2_spot", "body", "")] * felt
+    if problem.m[0] > 0:
+        limits.append(yields("the punch", _PUNCH, "punch", "Y_punch"))
+    law = LAWS[str(problem.micro[0])]
+    if law.rough and not law.yielded:
+        of_law = mises if np.isfinite(problem.Ra[0]) else "stress as of a sphere under pmax"
+        limits.append(yields("the asperities", _SPOTS, "asperities", "hardness or yield_strength", of_law))
+    return limits
+
+
+def _material(case: xr.Dataset, body: str) -> Any:
+    try:
+        return materials.get(str(case[body].values)) if body in case else None
+    except LookupError:  # of a file of the user
+        return None
+
+
+def _part(share: float) -> str:
+    return f"{rounded(share)} {'times' if share > 1 else 'of'}"
+
+
+def _closest(looked: _Looked, case: xr.Dataset) -> list[str]:
+    """What is closest to its limit, the others, and the load at which it would be there."""
+    again, first, *others = looked.again, *looked.compared
+    limit, share = first.limit, first.share
+    place = _place(again, first.r, first.z, float(looked.problem.value[0])) if np.isfinite(first.z) else ""
+    place = "" if limit.what.endswith("pmax") else f" {place}"
+    value, strength = _with_unit(again, first.stress), _with_unit(again, limit.strength, spread=limit.spread)
+    where = f"closest to {limit.ing}" if share <= 1 else f"beyond {limit.ing}"
+    of = f"{_part(share)} the {limit.of}{' from hardness' * limit.hard}, {strength}"
+    said = [f"{limit.who} {'are' if limit.plural else 'is'} {where}: the {limit.what}, {value}{place}, is {of}."]
+    if others:
+        parts = [(one.limit, _part(one.share)) for one in others]
+        texts = [f"{one.who} {part} {'their' if one.plural else 'its'} {one.of}" for one, part in parts]
+        said.append(f"Less close: {', '.join(texts)}.")
+    return [_capital(text) for text in [*said, *_at_which_load(looked, first, case)]]
+
+
+def _at_which_load(looked: _Looked, first: _Compared, case: xr.Dataset) -> list[str]:
+    """At which load the limit is reached. Where few asperities touch there, how many do."""
+    limit, share, again = first.limit, first.share, looked.again
+    found = _load(looked, first, case)
+    if found is None:
+        farther = f"No load up to a = 0.2 R makes {limit.who} {limit.verb}, as far as that was looked for."
+        return [farther] * (share < 1)
+    P, slope, solution = found
+    spread = P * slope * limit.spread / limit.strength
+    text = f"P = {_with_unit(again, P, 2, spread)}"
+    who, verb, begin = limit.who, limit.verb, "begin" if limit.plural else "begins"
+    if limit.stress != _SPOTS or not (touching := _spots_of(looked.problem, solution)) < FEW_SPOTS:
+        return [f"At about {text} {who} {begin} to {verb}." if share > 1 else f"{who} would {verb} at about {text}."]
+    E, nu = _below(looked.problem)
+    alone = (np.pi * limit.strength * yield_pressure(nu)[0]) ** 3 * looked.problem.Ra[0] ** 2 / (6 * E[0] ** 2)
+    if abs(P / alone - 1) < 3 * _SAME:
+        return [f"One asperity alone {'begins to yield' if share > 1 else 'would yield'} at about {text}."]
+    one = _with_unit(again, alone, 2, 3 * alone * limit.spread / limit.strength)
+    where = f"{text}, where {rounded(touching)} of them touch; one asperity alone yields at about P = {one}"
+    return [f"They begin to yield at about {where}." if share > 1 else f"They would yield at about {where}."]
+
+
+def _spots_of(problem: Problem, solution: Any) -> float:
+    """How many asperities touch; NaN of a law that does not know their number."""
+    return float(problem.Nbar[0] * np.pi * solution.a[0] ** 2)
+
+
+def _load(looked: _Looked, first: _Compared, case: xr.Dataset) -> tuple[float, float, Any] | None:
+    """The load at which the stress is the strength, near that of the contact, d ln P/d ln strength there and the
+    solution: by the secant in logarithms."""
+    problem, limit = looked.problem, first.limit
+    P, value, slope = np.log(looked.solution.P[0]), np.log(first.share), 1 / 3
+    for _ in range(_MOST):
+        step = float(np.clip(-value / slope, -3, 3))
+        at = replace(problem, control="P", value=np.exp([P + step]))
+        there = solve(at)
+        if there.a[0] > _WIDEST and value < 0:
+            return None
+        after = np.log(_stresses([limit], at, there, case)[0][1] / limit.strength)
+        if not np.isfinite(after):
+            return None
+        slope = max((after - value) / step, 0.05) if step else slope
+        P, value = P + step, after
+        if abs(value) < _SAME:
+            return float(np.exp(P)), 1 / slope, there
+    return None
+
+
+def _needed(again: Again, lacking: list[_Compared]) -> list[str]:
+    """Which strengths would say more, and how large they must be for the contact to hold."""
+    parts = [
+        f"of {limit.who}, which need{'' if limit.plural else 's'} above {_with_unit(again, stress)} ({limit.needs})"
+        for limit, stress, *_ in lacking
+    ]
+    return [f"Not known {'; '.join(parts)}."]
+
+
+def _place(again: Again, r: float, z: float, a: float) -> str:
+    where = "on the axis" if abs(r) < 1e-3 else f"at r = {abs(r):.2g} a"
+    if z == 0:
+        return f"on the surface {where}" if abs(r) >= 1e-3 else "in the middle of the surface"
+    deep = readable(float(f"{z * a * float(again.scene.R):.2g}"), "m") if again.scene else f"{z * a:.2g} R"
+    return f"{where} {deep} deep"
+
+
+def _with_unit(again: Again, value: float, length: int = 0, spread: float = 0.0) -> str:
+    """A stress, or with length = 2 a load, with ± if it has a spread."""
+    if not again.scene:
+        return f"{value:.2g} E2*{' R^2' * (length == 2)}"
+    scale = float(of_all_cases(again.scene.unit, (), ())[0]) * float(of_all_cases(again.scene.R, (), ())[0]) ** length
+    unit = "N" if length else "Pa"
+    if spread > 0:
+        return readable(value * scale, unit, spread * scale)
+    return readable(float(f"{value * scale:.2g}"), unit)
+
+
+def _capital(text: str) -> str:
+    return text[0].upper() + text[1:]

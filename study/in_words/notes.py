@@ -1,0 +1,207 @@
+"""Sentences about some contacts alone: shapes, adhesion, asperities that feel the layer, spots that unload."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from solver import Status, solve
+from solver.laws import LAWS
+from solver.laws.cell.family import MOST, REACH
+from solver.models.cells import last_fraction
+from solver.models.range_of_law import without_family
+from solver.parameters import one_of
+from solver.scaling import dimensionless, law_of
+from solver.shapes import PARABOLOID, SHAPES
+from solver.shapes.cone import KIND, PYRAMIDS
+
+from ..again import Again
+from ..arrays import xarray_later as xr
+from ..inputs.definition import StudyError
+from ..inputs.punch.asperities import USED
+from ..inputs.vocabulary import names
+from ..rules.rule import of_cases
+from ..specimen.quantities import readable
+from ..terminal import rounded
+from .numbers import in_its_unit
+
+#: Results of pull-off and pull-in that a summary lists, in this order.
+OF_PULL_OFF = tuple(name for name in names("pull_off") if name != "stable")
+#: Cones and what is taken for cones -> their half angle in degrees; None: it is an input.
+_CONES = {KIND.name: None} | {kind.name: float(kind.of(size=1).cot[0]) for kind in PYRAMIDS}
+#: Below this a correction is not worth a sentence: it is less than what the moduli of a material spread.
+_SMALL = 0.005
+#: A law that ends at less than this part of the largest contact fraction ends because the disc cell goes wrong.
+_EARLY = 0.999
+_FAR = f"The pitch of the asperities is above {MOST:g} h: what the layer does to them is not known there"
+_MERGED = (
+    f"The spots cover more than {REACH:g} of the area in the centre, or in a ring, and are no circles any more: the \
+law of asperities on the coated body ends there"
+)
+_HALF_SPACE = 'asperities_on = "half_space" has numbers, of a half-space of the layer\'s material.'
+#: The load is lowered to this part; pressures that are larger there by less than _SAME of the largest are the same.
+_LESS, _SAME = 0.9, 1e-6
+#: Radii in a that are looked at.
+_RADII = np.sin(np.linspace(0, np.pi / 2, 25))
+
+
+def sticks(contacts: xr.Dataset) -> bool:
+    """Whether a work of adhesion is among the inputs."""
+    return "w_adhesion" in contacts.variables
+
+
+def shape_of(case: xr.Dataset) -> str:
+    """The shape of the punch of one contact; the paraboloid where none is given."""
+    return str(case["shape"].values) if "shape" in case.variables else PARABOLOID
+
+
+def of_shape(case: xr.Dataset) -> list[str]:
+    """Sentences about the shape of the punch; none of a paraboloid."""
+    shape = shape_of(case)
+    if shape == PARABOLOID:
+        return []
+    kind = SHAPES.get(shape)
+    said = [f"Shape: {kind.words if kind else shape}{_angle_of(shape)}."]
+    if np.isposinf(case["p0"]):
+        said.append("The tip is sharp: p(0) is infinite, and so any material gives way in the centre.")
+    elif np.isnan(case["p0"]) and np.isfinite(case["a"]) and case["status"] == 0:
+        said.append("The tip is sharp: p(0), pmax and λ(0) are not known, a, P and D are.")
+    if shape == "flat" and case["status"] == 0:
+        said.append("The pressure is infinite at the edge of a flat punch: a rounded one has shape = rounded_flat.")
+    return said + _inwards(case, shape)
+
+
+def _angle_of(shape: str) -> str:
+    cot = _CONES.get(shape)
+    return f" (half angle {np.degrees(np.arctan(1 / cot)):.4g}°)" if cot else ""
+
+
+def _inwards(case: xr.Dataset, shape: str) -> list[str]:
+    """What it makes that the surface under a cone is pulled inwards: Hay, Bolshakov and Pharr (1999)."""
+    nu = case.get("nu2" if case["base"] == "half_space" else "nu1")
+    if shape not in _CONES or nu is None:
+        return []
+    cot = _CONES[shape] or float(1 / np.tan(np.radians(case["half_angle"])))
+    c = cot * (1 - 2 * float(nu)) / (4 * (1 - float(nu)))
+    gamma = np.pi * (np.pi / 4 + 0.1548 * c) / (np.pi / 2 - 0.8312 * c) ** 2
+    if gamma - 1 < _SMALL:
+        return []
+    where = "" if case["base"] == "half_space" else " on a half-space of the layer's material"
+    return [
+        f"Note: a rigid cone pulls the surface inwards, which is left out here. At one depth the load is then about "
+        f"{gamma:.3g} times as large{where} (Hay, Bolshakov and Pharr 1999; docs/shapes.md)."
+    ]
+
+
+def of_adhesion(case: xr.Dataset) -> list[str]:
+    """Sentences about a contact that may stick: whether it is stable, when it comes off, to what it jumps."""
+    if not sticks(case):
+        return []
+    if not case["w_adhesion"] > 0:
+        return ["Adhesion: w_adhesion is 0, so that nothing sticks."]
+    if not np.isfinite(case["P_off"]):
+        return ["Adhesion: pull-off is not known."]
+    off = f"P = {_text(case, 'P_off')}, D = {_text(case, 'D_off')}, a = {_text(case, 'a_off')}"
+    held = _held(case)
+    said = [f"Adhesion: {held} it comes off at {off}."]
+    if case["status"] == 0:
+        state = "This contact is stable" if case["stable"] else "This contact is not stable: left alone it comes off"
+        said.insert(0, f"{state}.")
+    if np.isfinite(case["a_in"]) and case["a_in"] > 0:
+        said.append(f"Where the surfaces meet it jumps to a = {_text(case, 'a_in')} at P = {_text(case, 'P_in')}.")
+    if case["adhesion"] == "jkr" and not ({"z0", "sigma0"} & {*case.variables}):
+        said.append("Whether the attraction reaches too far for JKR is not known without its range z0.")
+    return said
+
+
+def _held(case: xr.Dataset) -> str:
+    """How the punch is held, as the beginning of a sentence."""
+    k = case["k_machine"] if "k_machine" in case.variables else None
+    if k is not None and np.isfinite(k) and k > 0:
+        return f"on a machine of {in_its_unit(case, 'k_machine', float(k))}"
+    stiff = bool(np.isinf(k)) if k is not None and not np.isnan(k) else "D" in case.coords
+    return "if its depth is controlled" if stiff else "if its load is controlled"
+
+
+def _text(case: xr.Dataset, name: str) -> str:
+    return in_its_unit(case, name, float(case[name]))
+
+
+def unit_of_length(case: xr.Dataset) -> list[str]:
+    """A sentence where a profile is in units of a length that nobody gave as such."""
+    scale = case.attrs.get("scale", "R")
+    in_R = shape_of(case) == "power" or shape_of(case).startswith("table:") and "table_unit" not in case.variables
+    if scale in ("R", "1") or not in_R or "R" not in case.variables:
+        return []
+    length = readable(float(case["R"]), "m")
+    return [f"R, the unit of length of the profile, is not given: {scale} is taken, {length}."]
+
+
+def presses_on(case: xr.Dataset) -> str:
+    """The end of the sentence on the model: what the asperities press on, where the contact says it."""
+    if "asperities_used" not in case or case["asperities_used"] == 0:
+        return ""
+    felt = case["asperities_used"] == USED.index("layer")
+    return (
+        ", which press on the coated body itself" if felt else ", which press on a half-space of the layer's material"
+    )
+
+
+def ended(contacts: xr.Dataset) -> list[str]:
+    """Sentences on contacts at pressures that the law of asperities on their bodies does not know, and the way out."""
+    if "asperities_used" not in contacts:
+        return []
+    outside = (contacts["status"].values == Status.OUTSIDE_LAW) & (
+        contacts["asperities_used"].values == USED.index("layer")
+    )
+    if not outside.any():
+        return []
+    try:
+        problem = Again.of(contacts, "summary").problem
+    except StudyError:  # of a mean, say
+        return []
+    index, last = np.flatnonzero(outside), np.full(outside.shape, np.nan)
+    part, far = problem.take(index), np.zeros_like(outside)
+    last.flat[index], far.flat[index] = last_fraction(part), without_family(part)
+    early = outside & ~far & (last < _EARLY * REACH)
+    said = []
+    if early.any():
+        text = f"On a layer this soft the disc cell goes wrong where spots cover more than {rounded(last[early].min())}"
+        said.append(f'{of_cases(early)}{text} of the area: micro = "hex_lattice" goes on to {REACH:g}.')
+    for where, text in ((far, _FAR), (outside & ~far & ~early, _MERGED)):
+        said += [f"{of_cases(where)}{text}; {_HALF_SPACE}"] * bool(where.any())
+    return said
+
+
+def falling(contacts: xr.Dataset) -> list[str]:
+    """A sentence on contacts whose asperities yield, and whose pressure somewhere was larger at 0.9 of the load."""
+    laws = [name for name, law in LAWS.items() if law.yielded]
+    yielding = one_of(contacts["micro"].values.astype(str), laws)
+    if not yielding.any():
+        return []
+    try:
+        again = Again.of(contacts, "summary")
+    except StudyError:  # of a mean, say
+        return []
+    solved = (contacts["status"].values.ravel() == Status.CONVERGED) & one_of(again.problem.micro, laws)
+    where, index = np.zeros(len(solved), dtype=bool), np.flatnonzero(solved)
+    if len(index):
+        problem = again.problem.take(index)
+        now = solve(problem, _RADII)
+        before = solve(replace(problem, control="P", value=_LESS * now.P), _RADII)
+        r = _RADII * (now.a / before.a)[:, None]
+        p, lam = (
+            np.array([np.interp(at, _RADII, own, right=0.0) for at, own in zip(r, profile, strict=True)])
+            for profile in (before.p, before.lam)
+        )
+        yielded = np.empty(len(index))
+        for name in np.unique(problem.micro):
+            some = np.flatnonzero(problem.micro == name)
+            law = law_of(dimensionless(problem.take(some)))
+            yielded[some] = np.ravel(law.law.yielded(*law.own))
+        falls = p > now.p + _SAME * now.p.max(axis=1, keepdims=True)
+        where[index] = (falls & (lam > yielded[:, None])).any(axis=1)
+    text = "The pressure falls somewhere while the load rises: spots that have yielded there unload, and stay flatter \
+than this law has them."
+    return [of_cases(where) + text] * bool(where.any())

@@ -1,1 +1,0 @@
-"""Sentences about what a few contacts have alone: shapes, adhesion, asperities that yield."""

@@ -1,0 +1,349 @@
+"""The question of a call of `fit`: the model, its unknown inputs with bounds and priors, the spreads it takes over."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from solver.parameters import ends
+
+from ...inputs.definition import Definition, StudyError
+from ...inputs.punch.shapes import ANGLES
+from ...inputs.reading import from_call
+from ...inputs.scene.layers import short
+from ...inputs.vocabulary import BODIES, CONTROLS, ROWS, parameters_of, scene_of, suggest
+from ...specimen.quantities import has_unit, quantity
+from ...terminal import shown
+from .model import PAIRS, CurveModel, is_ratio
+
+MOST = 3  # unknown inputs
+ROUGHNESS = ("Nbar", "Ra", "sigma", "cut", "B", "beta")
+#: Pairs of inputs that change a curve alike, so that only one of them can be told.
+_ALIKE = [*combinations(ROUGHNESS, 2), ("E1", "nu1"), ("E1", "R"), ("E1", "n")]
+_ALIKE_WORDS = "a curve cannot tell them apart: give one of them a value"
+_ABSCISSA = {"D": "1 nm", "P": "1 nN", "a": "1 nm"}
+_OF_BODIES = {"layer": ("E1", "nu1"), "body": ("E2", "nu2"), "punch": ("E_punch", "nu_punch")}
+_MODULUS = "1 MPa"  # stands for a modulus that is not known while the call is checked
+DECADE = np.log(10.0)
+
+
+@dataclass(frozen=True)
+class Question:
+    """A checked call.
+
+    model : the curve, with its unknown inputs: free ones, then those with a prior
+    bounds : free input -> (low, high) in SI; other free inputs have bounds that follow from each curve
+    priors : input with ± in the call, free ones too -> (coordinate, its spread), as the unknowns of `CurveModel`
+    spreads : other input -> its spread in its coordinate
+    shifts : unknowns after the inputs
+    called : free input -> its name in the call, "layers.1.E1" of E1
+    call : arguments of `study.solve`: stand-ins for unknown inputs without a value, and for x
+    """
+
+    model: CurveModel
+    free: tuple[str, ...]
+    bounds: dict[str, tuple[float, float]]
+    priors: dict[str, tuple[float, float]]
+    spreads: dict[str, float]
+    shifts: tuple[str, ...]
+    loss: str
+    intervals: str | None
+    level: float
+    called: dict[str, str]
+    call: dict[str, Any]
+
+
+class _Unknowns(NamedTuple):
+    """The unknown inputs of a call, by their names among the inputs of a contact: E1 of "layers.1.E1".
+
+    called : free input -> its name in the call
+    priors : inputs with ± in the call that are fitted, free ones too
+    bounds : free input -> (low, high) in SI, of those for which the call has bounds
+    valued : free inputs that have a value in the call
+    """
+
+    free: tuple[str, ...]
+    called: dict[str, str]
+    priors: tuple[str, ...]
+    bounds: dict[str, tuple[float, float]]
+    valued: set[str]
+
+    @property
+    def every(self) -> tuple[str, ...]:
+        """Free inputs, then those with a prior."""
+        return (*self.free, *(name for name in self.priors if name not in self.free))
+
+
+def read_question(free: Any, parameters: dict, x: str, y: str, options: dict) -> Question:
+    """Check a call. Raises StudyError before any curve is read."""
+    unknowns = _unknowns(free, parameters, x, y, options)
+    call = _call(unknowns, parameters, x, options)
+    definition = _definition(call, "fit")
+    scene = definition.scene
+    if scene is None:
+        raise StudyError(["fit: curves have units, so that R and the moduli must have some too"])
+    priors = tuple(name for name in unknowns.priors if name in scene.spreads)  # ± 0 is exact
+    unknowns = unknowns._replace(priors=priors)
+    model = _model(definition, unknowns, x, y)
+    shifts = [
+        name for name, wanted in (("D0", "contact_point"), ("P0", "baseline"), ("tilt", "tilt")) if options[wanted]
+    ]
+    return Question(
+        model,
+        unknowns.free,
+        _all_bounds(model, unknowns),
+        {name: _prior(model, name) for name in priors},
+        {name: _log_spread(model, name) for name in model.moved},
+        tuple(shifts if x == "D" else ()),
+        options["loss"],
+        options["intervals"],
+        float(options["level"]),
+        unknowns.called,
+        call,
+    )
+
+
+def _unknowns(free: Any, parameters: dict, x: str, y: str, options: dict) -> _Unknowns:
+    """The unknown inputs of a call. Raises StudyError with all that is wrong with the names and options of the call."""
+    errors = _choices(x, y, options)
+    names, texts = _listed(free, errors), dict(free) if isinstance(free, dict) else {}
+    called = {short(name): name for name in names}
+    names, texts = tuple(map(short, names)), {short(name): pair for name, pair in texts.items()}
+    numbers = _numbers((*names, *parameters))
+    for name in names:
+        if name not in numbers:
+            near = suggest(name, numbers, ["such as E1, h or Ra"]).replace("; known: ", ", ")
+            errors.append(f"free: {shown(called[name])} is no input that can be fitted{near}")
+    errors += [f"free: {name} stands twice" for name in dict.fromkeys(names) if names.count(name) > 1]
+    errors += [f"fit: leave out {name}: curves have it" for name in CONTROLS if parameters.get(name) is not None]
+    values = _in_layers(parameters) | {short(name): value for name, value in parameters.items()}
+    written = {*map(short, parameters), *names} & {*values}  # ± of layers that are not free is taken over
+    priors = tuple(name for name in values if name in written and _has_prior(name, values[name], name in names))
+    valued = {name for name in names if values.get(name) is not None}
+    unknowns = _Unknowns(names, called, priors, {}, valued)
+    errors += _too_many(unknowns, bool(errors))
+    bounds: dict[str, tuple[float, float]] = {}
+    for name in (name for name in texts if name in numbers):
+        bounds |= _bounds(name, texts[name], errors)
+    if errors:
+        raise StudyError(errors)
+    return unknowns._replace(bounds=bounds)
+
+
+def _too_many(unknowns: _Unknowns, wrong: bool) -> list[str]:
+    """Why a curve cannot say these unknowns; that there are none only if nothing else is `wrong`."""
+    every, errors = unknowns.every, []
+    if "k_machine" in every:
+        errors.append(
+            "free: k_machine: where a punch comes off is read from the points, so they do not say what held it"
+        )
+    errors += [f"free: {a} and {b}: {_ALIKE_WORDS}" for a, b in _ALIKE if a in every and b in every]
+    if not (unknowns.free or wrong or errors):
+        errors.append('free: name at least one input, such as free=["E1"]')
+    if len(every) > MOST:
+        errors.append(
+            f"fit: at most {MOST} inputs can be unknown, here are {', '.join(every)}: leave out a ±, or fix one"
+        )
+    return errors
+
+
+def _call(unknowns: _Unknowns, parameters: dict, x: str, options: dict) -> dict[str, Any]:
+    """The call of `study.solve`: with stand-ins for free inputs without a value, and for x. Raises StudyError where
+    there is none, and where the contact does not take a bound."""
+    bounds, called = unknowns.bounds, unknowns.called
+    from_material = {name for body, rows in _OF_BODIES.items() if parameters.get(body) is not None for name in rows}
+    open_ = [name for name in unknowns.free if name not in unknowns.valued and name not in from_material]
+    stand_in = {name: _stand_in(name, bounds) for name in open_}
+    lacking = [name for name, value in stand_in.items() if value is None]
+    if lacking or (options["plan"] and open_):
+        wanted = "give the value that is assumed" if options["plan"] else "give bounds, or a value to begin with"
+        way = ', free={{"{0}": (low, high)}}, or {0}=...' if not options["plan"] else ", {0}=..."
+        raise StudyError([f"free: {name} has no value: {wanted}{way.format(name)}" for name in lacking or open_])
+    call = parameters | {called.get(name, name): value for name, value in stand_in.items()} | {x: _ABSCISSA[x]}
+    _check_ends(call, {name: pair for name, pair in bounds.items() if name not in from_material}, called)
+    return call
+
+
+def _model(definition: Definition, unknowns: _Unknowns, x: str, y: str) -> CurveModel:
+    """The model of the curve. Raises StudyError where it has no curve y(x), or an unknown does not act in it."""
+    scene, every = definition.scene, unknowns.every
+    moved = tuple(name for name in scene.spreads if name not in every and name not in CONTROLS)
+    model = CurveModel.of(definition, x, y, every, moved)
+    if model.sticks and (x, y) != ("D", "P"):
+        way = 'of what sticks the load over the depth is fitted: x = "D", y = "P"'
+        raise StudyError([f"x = {shown(x)}, y = {shown(y)}: {way}"])
+    if model.sticks and scene.parameters.get("shape") == "flat":
+        way = "its load is a straight line down to pull-off: w_adhesion follows from P_off by `design`"
+        raise StudyError([f'fit: shape = "flat" with w_adhesion: {way}'])
+    absent = [name for name in every if name not in scene.values and name not in scene.parameters]
+    if model.sticks and scene.parameters.get("adhesion") != "maugis":
+        absent += [name for name in every if name in ("sigma0", "z0")]
+    if absent:
+        raise StudyError([f"free: {name} does not act in this contact" for name in absent])
+    return model
+
+
+def _all_bounds(model: CurveModel, unknowns: _Unknowns) -> dict[str, tuple[float, float]]:
+    """Free input -> (low, high): the bounds of the call, else up to a decade from the value in the call. A modulus of
+    what is touched, and an input with a prior, has none that the call says."""
+    bounds = dict(unknowns.bounds)
+    for name in unknowns.free:
+        if name not in bounds and name != model.modulus and name not in unknowns.priors:
+            value = model.value(name)
+            bounds[name] = (0.0, 0.5) if is_ratio(name) else _within(name, value / 10, 10 * value)
+            if name in ANGLES:
+                bounds[name] = tuple(model.of_coordinate(name, model.coordinate(name, value) + [-DECADE, DECADE]))
+    return bounds
+
+
+def _in_layers(parameters: dict) -> dict[str, Any]:
+    """Input -> its value in the list of layers of a call, of layers that are tables."""
+    listed = parameters.get("layers")
+    tables = enumerate(listed, 1) if isinstance(listed, (list, tuple)) else ()
+    rows = {f"layers.{i}": layer for i, layer in tables if isinstance(layer, dict)}
+    return {short(f"{layer}.{field}"): value for layer, row in rows.items() for field, value in row.items()}
+
+
+def _choices(x: str, y: str, options: dict) -> list[str]:
+    errors = []
+    if (x, y) not in PAIRS:
+        listed = "; or ".join(f'x="{a}", y="{b}"' for a, b in PAIRS)
+        errors.append(f"x = {shown(x)}, y = {shown(y)}: must be {listed}")
+    if options["loss"] not in ("linear", "huber"):
+        errors.append(f'loss = {shown(options["loss"])}: must be "linear" or "huber"')
+    if options["intervals"] not in ("profile", "fisher", None):
+        errors.append(f'intervals = {shown(options["intervals"])}: must be "profile", "fisher" or None')
+    level = options["level"]
+    if isinstance(level, bool) or not isinstance(level, (int, float)) or not 0 < level < 1:
+        errors.append(f"level = {shown(level)}: must be between 0 and 1, such as 0.95")
+    for name in ("contact_point", "baseline", "tilt", "plan"):
+        if not isinstance(options[name], bool):
+            errors.append(f"{name} = {shown(options[name])}: must be True or False")
+    if options["plan"] is True and options["sigma"] is None:
+        errors.append("plan: give sigma, the standard deviation of a point")
+    return errors
+
+
+def _listed(free: Any, errors: list[str]) -> tuple[str, ...]:
+    several = isinstance(free, (list, tuple, dict, set, np.ndarray))
+    names = tuple(free) if several else (free,)
+    if not all(isinstance(name, str) for name in names):
+        errors.append(f'free = {shown(free)}: must be names of inputs, such as ["E1"], or {{"E1": ("1 kPa", "1 MPa")}}')
+        return ()
+    return names
+
+
+def _numbers(names: Iterable[str]) -> set[str]:
+    """Inputs that may be fitted: numbers of the contact, not settings of the solver.
+
+    names : inputs of the call and free ones, whose names say which layers there are
+    """
+    rows = {name for name in parameters_of(names) if ROWS[name].parameter.interval}
+    rows = {name for name in rows if not ROWS[name].parameter.whole}
+    return (rows | set(scene_of(names))) - {*BODIES, *CONTROLS, "rtol", "accuracy", "k", "n", "m"}
+
+
+def _has_prior(name: str, value: Any, free: bool) -> bool:
+    """Whether ± stands in the call: of R, Poisson ratios and names of materials it is taken over, not fitted, unless
+    they are `free`; that of k_machine changes no curve."""
+    if name == "k_machine" or name in BODIES or name in CONTROLS or (not free and (name == "R" or is_ratio(name))):
+        return False
+    spread = getattr(value, "std_dev", None) or getattr(getattr(value, "magnitude", None), "std_dev", None)
+    written = isinstance(value, str) and any(sign in value for sign in ("±", "+/-", "+-"))
+    return bool(spread) or (written and (free or has_unit(value)))
+
+
+def _bounds(name: str, pair: Any, errors: list[str]) -> dict[str, tuple[float, float]]:
+    unit = ROWS[name].unit
+    if pair is None:
+        return {}
+    if not isinstance(pair, (tuple, list)) or len(pair) != 2:
+        errors.append(f"free: {name} = {shown(pair)}: must be (low, high)")
+        return {}
+    try:
+        units = ("degree" if name in ANGLES and has_unit(end) else unit for end in pair)
+        low, high = (quantity(f"free: {name}", end, of).value for end, of in zip(pair, units, strict=True))
+    except ValueError as error:
+        errors.append(str(error))
+        return {}
+    if not low < high or (low <= 0 and not is_ratio(name)):
+        wanted = "below the high one" if is_ratio(name) else "above 0 and below the high one"
+        errors.append(f"free: {name} = ({pair[0]}, {pair[1]}): the low bound must be {wanted}")
+    return {name: (low, high)}
+
+
+def _definition(parameters: dict, where: str) -> Definition:
+    try:
+        return from_call(parameters, [], False, {"output": {"profiles": False}})
+    except StudyError as error:
+        raise StudyError(message.replace("solve: ", f"{where}: ", 1) for message in error.messages) from None
+
+
+def _check_ends(parameters: dict, bounds: dict, called: dict) -> None:
+    """Whether the contact takes the bounds. Raises StudyError if not. `called` : input -> its name in the call."""
+    for name, pair in bounds.items():
+        for end in pair:
+            _definition(
+                parameters | {called[name]: end if ROWS[name].unit == "1" else f"{end!r} {ROWS[name].unit}"}, "free"
+            )
+
+
+def _within(name: str, low: float, high: float) -> tuple[float, float]:
+    """Bounds within the interval of an input without unit."""
+    if ROWS[name].unit != "1":
+        return low, high
+    least, most, *_ = ends(ROWS[name].parameter.interval)
+    return max(low, least), min(high, most)
+
+
+def _stand_in(name: str, bounds: dict) -> str | float | None:
+    """A value for a free input without one, while the call is checked."""
+    if name in bounds:
+        low, high = bounds[name]
+        middle = (low + high) / 2 if is_ratio(name) else math.sqrt(low * high)
+        return middle if ROWS[name].unit == "1" else f"{middle!r} {ROWS[name].unit}"
+    return _MODULUS if name in ("E1", "E2") else 0.3 if is_ratio(name) else None
+
+
+def _prior(model: CurveModel, name: str) -> tuple[float, float]:
+    """The coordinate of an input and its spread."""
+    value = model.value(name)
+    return float(model.coordinate(name, value)), float(model.scene.spreads[name] / model.slope(name, value))
+
+
+def _log_spread(model: CurveModel, name: str) -> float:
+    spread = float(model.scene.spreads[name])
+    return spread if is_ratio(name) else spread / model.value(name)
+
+
+def region(depth: Any, x: str) -> tuple[float, float] | None:
+    """The ends in SI of the option `depth` of a fit over x. Raises StudyError."""
+    if depth is None:
+        return None
+    unit = ROWS[x].unit
+    such = '("0 nm", "500 nm")' if unit == "m" else '("0 nN", "5 nN")'
+    if not isinstance(depth, (tuple, list)) or len(depth) != 2:
+        raise StudyError([f"depth = {shown(depth)}: must be (low, high), such as {such}"])
+    try:
+        low, high = (quantity("depth", end, unit).value if isinstance(end, str) else float(end) for end in depth)
+    except (TypeError, ValueError) as error:
+        raise StudyError([f"{error}" if "depth" in str(error) else f"depth = {shown(depth)}: {error}"]) from None
+    if not (np.isfinite([low, high]).all() and low < high and high > 0):
+        wanted = f"the low end must be below the high one, and that above 0, in {unit} or with units"
+        raise StudyError([f"depth = ({depth[0]}, {depth[1]}): {wanted}"])
+    return float(low), float(high)
+
+
+def inside(x: np.ndarray, begin: dict[int, float], limits: tuple[float, float]) -> np.ndarray:
+    """Which points (curves, n) count: those in contact within the limits, and those before the contact.
+
+    begin : curve -> where its contact begins; {}: all begin at 0. All points count of a curve that is missing among
+        others
+    """
+    low, high = limits
+    depth = x - np.array([begin.get(curve, np.nan if begin else 0.0) for curve in range(len(x))])[:, None]
+    out = (depth > high) | ((depth < low) & ((depth > 0) | (low < 0)))
+    return ~out

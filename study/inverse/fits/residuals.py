@@ -1,0 +1,271 @@
+"""The residuals of fits: how many independent points they are worth, and whether an unknown changes with the depth.
+
+Points that lie close together are off together: drift, feedback, and a model that is not quite right, leave waves in
+the residuals. Points that are counted as independent then seem to say far more than they do. The residuals, averaged
+in at most _MOST blocks along x, are taken for the sum of white noise and of noise whose correlation decays. Their
+covariance is
+
+    cov(i, j) = v ((1 - s) delta_ij + s exp(-|i - j|/l)).
+
+s and l have the largest restricted likelihood, which takes into account what the fit itself has removed from the
+residuals. The noise counts as white, s = 0, unless a correlation is far likelier.
+"""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from scipy import special
+
+from .curve import MeasuredCurves
+from .least_squares import Data, Minimum, huber_limit, inverse, minimise, normal
+
+#: Blocks of points. With 100 to 10,000 points and correlations of neighbours of 0.5 to 0.95, 95 % intervals hold 94 to
+#: 98 % (tests/inverse/misfit/test_correlated_noise.py).
+_MOST = 128
+_FEWEST = 16  # blocks, below which no correlation is looked for
+_LENGTHS = 12  # lengths l, from half a block to an eighth of all blocks
+_SHARES = np.array([0.0, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.96, 1.0])
+#: Twice the logarithm of a likelihood over that of white noise, from which on noise is not white. Some 2 % of curves
+#: with white noise are beyond it.
+_LIKELIER = 6.0
+#: Standard deviations of the correlation of neighbours below which the likelihood is not asked, and above which, of
+#: single points, their noise is not white whatever the likelihood of the blocks says.
+_LAGS, _SURE_LAGS = 2.0, 3.5
+#: Level of the tests that the misfit in contact is larger than the noise before it, and that an unknown changes with
+#: the depth.
+_SURE = 0.999
+#: The first test needs so many points on either side.
+_ASIDE = 10
+#: A smaller change of an unknown is not worth a sentence.
+_LEAST = 0.03
+#: Residuals below this part of the range of y are those of the table of the model.
+_EXACT = 2e-5
+#: Freedom of Student's t that is left where hardly a point is independent of the others.
+_FREEDOM = 2.0
+#: Parts of the depth below the contact point, of equal width.
+PARTS = 4
+_STEPS, _ENOUGH = 12, 3  # steps of the search in a part, and points without which a part says nothing
+
+
+class Noise(NamedTuple):
+    """The residuals e (n,) of one curve and the derivatives X (n, k) of the fit, both over the standard deviation of a
+    point.
+
+    middle : (k, k), X' S X with S the covariance of e; None: the points are independent and of one variance
+    ratio : rms of the residuals in contact over that before it; NaN where one side has too few points
+    larger : whether the ratio is surely above 1
+    """
+
+    middle: np.ndarray | None
+    ratio: float
+    larger: bool
+
+
+class Worth(NamedTuple):
+    """How much the points of B fits say.
+
+    factors : (B, k), by what the variance of each unknown is larger than with independent points
+    freedom : (B, k) of Student's t
+    ratio, larger : (B,) of :class:`Noise`
+    change, changes : (B,) the relative change of the first unknown from the beginning of the contact to the deepest
+        point, and whether it is sure and worth a word
+    """
+
+    factors: np.ndarray
+    freedom: np.ndarray
+    ratio: np.ndarray
+    larger: np.ndarray
+    change: np.ndarray
+    changes: np.ndarray
+
+
+@lru_cache(maxsize=32)
+def _family(n: int) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Eigenvalues (n,) and eigenvectors (n, n) of exp(-|i - j|/l) for each length l."""
+    lengths = np.exp(np.linspace(np.log(0.5), np.log(n / 8), _LENGTHS))
+    apart = np.abs(np.arange(n)[:, None] - np.arange(n))
+    pairs = [np.linalg.eigh(np.exp(-apart / length)) for length in lengths]
+    return [(np.maximum(values, 1e-9), vectors) for values, vectors in pairs]
+
+
+def noise_of(x: np.ndarray, e: np.ndarray, X: np.ndarray, contact: np.ndarray) -> Noise:
+    """The :class:`Noise` of residuals at x (n,); `contact` (n,) says which points are in contact."""
+    k = X.shape[1]
+    e, X = (np.where(np.isfinite(array), array, 0.0) for array in (e, X))
+    places, blocks = _blocks(x)
+    count = np.bincount(blocks)
+    E = np.bincount(blocks, e) / np.sqrt(count)
+    single = np.bincount(places, e) / np.sqrt(np.bincount(places))
+    if len(E) < max(_FEWEST, 3 * k) or not e.any():
+        return Noise(None, np.nan, False)
+    D = np.stack([np.bincount(blocks, column) for column in X.T], axis=1) / np.sqrt(count)[:, None]
+    touches = np.bincount(blocks, contact) > count / 2
+    sure = _lag(single) > _SURE_LAGS
+    waves = sure or _hangs_together(E)
+    distinct = np.bincount(places, contact) > 0
+    ratio, larger = _ratio(single, distinct, (_worth(E[touches]), _worth(E[~touches])) if waves else (1.0, 1.0))
+    level = np.ones(len(E))
+    if larger:  # one standard deviation in contact, another before it
+        level = np.where(touches, ratio, 1.0)
+        waves = sure or _hangs_together(E / level)
+    values, vectors, variance = _likeliest(E / level, D / level[:, None], waves, 0.0 if sure else _LIKELIER)
+    if not (larger or sure) and np.all(values == 1):
+        return Noise(None, ratio, False)
+    turned = vectors.T @ (D * level[:, None])
+    return Noise(variance * (turned.T * values) @ turned, ratio, larger)
+
+
+def _blocks(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The rank (n,) of each x, and the number (n,) of its block. Readings at one x count as independent: they have one
+    rank."""
+    distinct, places = np.unique(x, return_inverse=True)
+    return places.ravel(), places.ravel() // -(-len(distinct) // _MOST)
+
+
+def _lag(E: np.ndarray) -> float:
+    """The correlation of neighbours, over its standard deviation under white noise."""
+    return float((E[1:] * E[:-1]).sum() * np.sqrt(len(E)) / max(float(E @ E), 1e-300))
+
+
+def _hangs_together(E: np.ndarray) -> bool:
+    """Whether neighbours are alike, of blocks (n,) or of averages of several of them."""
+    while len(E) >= _FEWEST:
+        if _lag(E) > _LAGS:
+            return True
+        E = E[: len(E) // 2 * 2].reshape(-1, 2).sum(axis=1)
+    return False
+
+
+def _ratio(e: np.ndarray, contact: np.ndarray, worth: tuple[float, float]) -> tuple[float, bool]:
+    """rms in contact over rms before it, and whether it is surely above 1, by an F test in which points count as the
+    parts `worth` of one."""
+    inside, outside = int(contact.sum()), int((~contact).sum())
+    if min(inside, outside) < _ASIDE or not e[~contact].any():
+        return np.nan, False
+    F = float(np.mean(e[contact] ** 2) / np.mean(e[~contact] ** 2))
+    freedom = [max(number * part, 2.0) for number, part in zip((inside, outside), worth, strict=True)]
+    return float(np.sqrt(F)), bool(special.fdtr(*freedom, F) > _SURE)
+
+
+def _worth(E: np.ndarray) -> float:
+    """The part of a point which a residual is worth in a sum of squares, as if the correlation of neighbours decayed by
+    the same factor from each to the next."""
+    if len(E) < 3 or not E.any():
+        return 1.0
+    lag = float(np.clip((E[1:] * E[:-1]).sum() / (E**2).sum(), 0.0, 0.99)) ** 2
+    return (1 - lag) / (1 + lag)
+
+
+def _likeliest(E: np.ndarray, D: np.ndarray, waves: bool, more: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """The covariance of residuals E (n,) as eigenvalues (n,), eigenvectors (n, n) and a factor; 1 each if it is white.
+
+    D (n, k) are the derivatives of the fit, `more` is by how much twice the logarithm of the likelihood must be larger
+    than that of white noise.
+    """
+    n, k = D.shape
+    white = float(E @ E) / (n - k)
+    likeliest = np.ones(n), np.eye(n), white
+    if not waves:
+        return likeliest
+    largest = None
+    for values, vectors in _family(n):
+        E_, D_ = vectors.T @ E, vectors.T @ D
+        spectra = 1 + _SHARES[:, None] * (values - 1)
+        scaled = D_ / np.sqrt(np.maximum(np.einsum("nk,nk->k", D_, D_), 1e-300))
+        A = np.einsum("sn,nk,nl->skl", 1 / spectra, scaled, scaled) + 1e-12 * np.eye(k)
+        b = np.einsum("sn,nk,n->sk", 1 / spectra, scaled, E_)
+        squares = (E_**2 / spectra).sum(axis=1) - np.einsum("sk,sk->s", b, np.linalg.solve(A, b[:, :, None])[:, :, 0])
+        squares = np.maximum(squares, 1e-300)
+        twice = -(n - k) * np.log(squares) - np.log(spectra).sum(axis=1) - np.linalg.slogdet(A)[1]
+        largest = twice[0] + more if largest is None else largest
+        best = int(twice.argmax())
+        if twice[best] > largest:
+            largest, likeliest = twice[best], (spectra[best], vectors, float(squares[best]) / (n - k))
+    return likeliest
+
+
+def worth_of(
+    x: np.ndarray, data: Data, fit: Minimum, variance: np.ndarray, prior: np.ndarray, share: np.ndarray
+) -> Worth:
+    """The :class:`Worth` of fits at x (B, n).
+
+    variance : (B,) of a point of weight 1, if points are independent
+    prior : (B,) times the stiffness of a prior this is the variance of its slope
+    share : (B, n) of the depth, 0 before the contact
+    """
+    B, k = fit.p.shape
+    rows = Worth(*(np.ones((B, k)) for _ in range(2)), *(np.full(B, value) for value in (np.nan, False, 0.0, False)))
+    A = inverse(normal(data, fit.p, fit.model, fit.J, fit.weights)[0])
+    residual = np.where(data.w > 0, data.w * (data.y - fit.model), 0.0)
+    limit = huber_limit(data, fit.model)
+    residual = residual if limit is None else np.clip(residual, -limit, limit)
+    off = np.sqrt((np.where(data.w > 0, data.y - fit.model, 0.0) ** 2).mean(axis=1))
+    for b in np.flatnonzero(off > _EXACT):
+        there = data.w[b] > 0
+        e, X = residual[b, there], (data.w[b, :, None] * fit.J[b])[there]
+        noise = noise_of(x[b, there], e, X, share[b, there] > 0)
+        rows.ratio[b], rows.larger[b] = noise.ratio, noise.larger
+        if noise.middle is not None:
+            of_points = float(e @ e) / max(len(e) - k, 1) if data.huber else variance[b]
+            usual = of_points * (X.T @ X + np.diag(data.stiffness[b]))
+            rows.factors[b] = _factors(A[b], usual, noise.middle + np.diag(data.stiffness[b] * prior[b]))
+        rows.change[b], rows.changes[b] = _change(x[b, there], e, X, share[b, there])
+    count = (data.w > 0).sum(axis=1)[:, None]
+    honest = np.maximum(count / rows.factors - k, np.minimum(count - k, _FREEDOM))
+    return rows._replace(freedom=np.where(rows.factors == 1, count - k, honest))
+
+
+def _factors(A: np.ndarray, usual: np.ndarray, whole: np.ndarray) -> np.ndarray:
+    """(k,), at least 1, by the covariance A whole A (a "sandwich") over that of independent points."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        factors = np.einsum("ij,jk,ik->i", A, whole, A) / np.einsum("ij,jk,ik->i", A, usual, A)
+    return np.where(np.isfinite(factors), np.maximum(factors, 1.0), 1.0)
+
+
+def _change(x: np.ndarray, e: np.ndarray, X: np.ndarray, share: np.ndarray) -> tuple[float, bool]:
+    """By how much the logarithm of the first unknown changes along the contact: a further unknown of the fit, at the
+    size that lowers the residuals most."""
+    z = X[:, 0] * np.where(share > 0, share - 0.5, 0.0)
+    wide = np.column_stack([z, X])
+    size = np.sqrt(np.maximum((wide**2).sum(axis=0), 1e-300))
+    A = inverse(((wide / size).T @ (wide / size))[None])[0] / size / size[:, None]
+    follows = A @ (wide.T @ e)
+    freedom = len(e) - wide.shape[1]
+    if freedom < 1 or not np.isfinite(follows).all():
+        return 0.0, False
+    left = e - wide @ follows
+    variance = float(left @ left) / freedom * A[0, 0]
+    change, t = float(follows[0]), special.stdtrit(freedom, (1 + _SURE) / 2)
+    if abs(change) < _LEAST or change**2 < t**2 * variance:
+        return change, False
+    noise = noise_of(x, left, wide, share > 0)
+    if noise.middle is not None:
+        honest = float(A[0] @ noise.middle @ A[0])
+        freedom = max(len(e) * variance / max(honest, variance) - wide.shape[1], _FREEDOM)
+        t = special.stdtrit(freedom, (1 + _SURE) / 2)
+        variance = max(honest, variance)
+    return change, bool(change**2 > t**2 * variance)
+
+
+def parts_of(curve: MeasuredCurves, data: Data, best: Minimum, share: np.ndarray, worth: Worth) -> np.ndarray:
+    """The first unknown (B, PARTS) of points from each part of the depth, for fits whose points do not agree: those
+    whose intervals are wider for it, or in which it changes with the depth. NaN elsewhere, and at a bound.
+
+    share : (B, n) of the depth, 0 before the contact
+    """
+    value = np.full((len(best.p), PARTS), np.nan)
+    rows = np.flatnonzero((worth.factors > 1).any(axis=1) | worth.changes)
+    if not len(rows):
+        return value
+    every, part = np.repeat(rows, PARTS), np.tile(np.arange(PARTS), len(rows))
+    inside = (share[every] > part[:, None] / PARTS) & (share[every] <= (part[:, None] + 1) / PARTS)
+    some = data.take(every)
+    some = some._replace(w=np.where(inside, some.w, 0.0), stiffness=0 * some.stiffness)
+    fixed = np.ones((len(every), best.p.shape[1]), bool)
+    fixed[:, 0] = False
+    fit = minimise(curve.take(every), some, best.p[every], fixed, _STEPS)
+    p = fit.p[:, 0]
+    good = ((some.w > 0).sum(axis=1) >= _ENOUGH) & (p > some.low[:, 0]) & (p < some.high[:, 0]) & np.isfinite(fit.cost)
+    value[every, part] = np.where(good, p, np.nan)
+    return value

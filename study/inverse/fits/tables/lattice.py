@@ -1,0 +1,117 @@
+"""A fixed lattice of tiles, made where a table needs them: polynomials through Chebyshev points.
+
+The first coordinate of a table is its abscissa, a logarithm, along which a tile has evenly spaced points. Along the
+others, the coordinates of unknown inputs, it has Chebyshev points. The lattice is fixed, so that the numbers of a curve
+do not depend on which other curves there are.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+#: Width of a tile along the abscissa, and along a Poisson ratio.
+WIDE, WIDE_RATIO = np.log(16.0), 0.25
+
+
+class Chebyshev:
+    """Polynomials through so many Chebyshev points of the first kind, `t`."""
+
+    def __init__(self, points: int):
+        angles = np.pi * (np.arange(points) + 0.5) / points
+        self.points, self.t = points, np.cos(angles)
+        self.of_points = (-1.0) ** np.arange(points) * np.sin(angles)
+
+    def lagrange(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Lagrange polynomials of the points at s (B,), and their derivatives: (B, points) each."""
+        away = s[:, None] - self.t
+        away = np.where(np.abs(away) < 1e-13, 1e-13, away)
+        part = self.of_points / away
+        total = part.sum(axis=1, keepdims=True)
+        values = part / total
+        slopes = -part / away / total + values * (part / away).sum(axis=1, keepdims=True) / total
+        return values, slopes
+
+
+Tile = Callable[[tuple[int, ...], bool], np.ndarray]
+
+
+class Position(NamedTuple):
+    """Where B curves lie among the tiles.
+
+    numbers : (B, axes), of the tile along each coordinate of the unknown inputs
+    weights : (1 + axes, B, C), of the C points of that tile: for a value, and for its derivative by each coordinate
+    """
+
+    numbers: np.ndarray
+    weights: np.ndarray
+
+    def values_of(self, index: np.ndarray) -> "Position":
+        """Some of the curves, without the weights for derivatives."""
+        return Position(self.numbers[index], self.weights[:1, index])
+
+
+class Lattice:
+    """The tiles of one table. Not for several threads.
+
+    axes, wide : Chebyshev points and width of a tile along each coordinate of the unknown inputs
+    tile : (place, moved) -> the tile at a place, whole numbers along the abscissa and each coordinate, (rows, parts,
+        points, C). One row has the values; with `moved` each row has their derivatives by one of the inputs moved
+    parts, points : functions that are tabulated, and points of a tile along the abscissa
+    """
+
+    def __init__(self, axes: list[Chebyshev], wide: list[float], tile: Tile, parts: int, points: int):
+        self.axes, self.wide, self.tile, self.parts, self.points = axes, np.array(wide, float), tile, parts, points
+        self.tiles: dict[tuple, np.ndarray] = {}
+        self.stacks: dict[tuple, np.ndarray] = {}
+
+    def position(self, coordinates: np.ndarray) -> Position:
+        """The position of curves with coordinates (B, axes)."""
+        numbers = np.floor(coordinates / self.wide).astype(int)
+        s, by = 2 * (coordinates / self.wide - numbers) - 1, 2 / self.wide
+        both = [axis.lagrange(column) for axis, column in zip(self.axes, s.T, strict=True)]
+        factors = [
+            [slopes * by[i] if i == j else values for i, (values, slopes) in enumerate(both)]
+            for j in range(-1, len(both))
+        ]
+        return Position(numbers, np.array([_products(factor, len(s)) for factor in factors]))
+
+    def read(self, first: np.ndarray, position: Position, count: int, moved: int = 0) -> np.ndarray:
+        """Rows (weights + moved, B, parts, points) of B curves along `count` tiles: values, their derivatives by the
+        coordinates and, if there are `moved` inputs, by these.
+
+        first : (B,), the first tile along the abscissa
+        """
+        key, weights = np.column_stack([first, position.numbers]), position.weights
+        rows = np.empty((len(weights) + moved, len(key), self.parts, count * self.points))
+        for place in map(tuple, np.unique(key, axis=0).tolist()):
+            here = np.flatnonzero((key == place).all(axis=1))
+            # einsum, not BLAS: the sums of a curve do not depend on how many others stand here
+            values = self._stack(place, count, False)[0]
+            rows[: len(weights), here] = np.einsum("wbc,ilc->wbil", weights[:, here], values)
+            if moved:
+                changes = self._stack(place, count, True)
+                rows[len(weights) :, here] = np.einsum("bc,kilc->kbil", weights[0, here], changes)
+        return rows
+
+    def made(self, place: tuple[int, ...], moved: bool = False) -> np.ndarray:
+        """The tile at a place."""
+        if (moved, *place) not in self.tiles:
+            self.tiles[moved, *place] = self.tile(place, moved)
+        return self.tiles[moved, *place]
+
+    def _stack(self, place: tuple[int, ...], count: int, moved: bool) -> np.ndarray:
+        """Tiles one after another along the abscissa."""
+        key = (moved, count, *place)
+        if key not in self.stacks:
+            tiles = [self.made((place[0] + k, *place[1:]), moved) for k in range(count)]
+            self.stacks[key] = np.concatenate(tiles, axis=2) if count > 1 else tiles[0]
+        return self.stacks[key]
+
+
+def _products(factors: list[np.ndarray], B: int) -> np.ndarray:
+    """The outer product of factors (B, n1), (B, n2) ... of each row: (B, n1 n2 ...)."""
+    whole = np.ones((B, 1))
+    for factor in factors:
+        whole = (whole[:, :, None] * factor[:, None, :]).reshape(B, -1)
+    return whole

@@ -1,0 +1,136 @@
+"""The four terms of a contact with adhesion: powers of inputs times functions of the radius and of the other inputs.
+
+P = P₀ - pull_P and D = D₀ - pull_D, :mod:`solver.smooth_contact.adhesion.apart`. P₀ and pull_P have the modulus E of
+what is touched as a factor. Under :mod:`~solver.smooth_contact.adhesion.jkr` both pulls go with the root of w/E, and
+under a paraboloid or a cone lengths act through a/h alone. So w and k_machine are no coordinates of a table, and often
+E, h, R and half_angle are not.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from solver import Problem
+from solver.shapes import PARABOLOID
+from solver.smooth_contact.adhesion.apart import apart
+
+from ....inputs.scene.scales import with_unit
+from ....inputs.vocabulary import PARAMETERS
+from ..model import CurveModel, is_ratio
+
+#: Powers of E, w, of the length that is the unit of a, and of R in P₀, D₀, pull_P and pull_D.
+_USUAL = {"E": (1, 0, 0.5, -0.5), "w": (0, 0, 0.5, 0.5)}
+_USUAL |= dict.fromkeys(("length", "R", "cotangent"), (0, 0, 0, 0))
+_SIMILAR = {"length": (3, 2, 1.5, 0.5), "R": (-1, -1, 0, 0)}
+#: A cone has no length, but the cotangent of its half angle.
+_CONE = {"length": (2, 1, 1.5, 0.5), "cotangent": (1, 1, 0, 0)}
+_DMT = {"E": (1, 0, 0, 0), "w": (0, 0, 1, 0)}
+_DMT_SIMILAR = {"length": (3, 2, 0, 0), "R": (-1, -1, 1, 0)}
+#: SI powers of the modulus and of R in these terms.
+_OF_PARTS = ((1, 2), (0, 1), (1, 2), (0, 1))
+#: In place of the logarithm of 0, such as of pull_D under "dmt".
+_NOTHING = -700.0
+#: By how much inputs are moved for derivatives by their logarithms (ratios: by themselves).
+_MOVE = 1e-5
+
+
+def is_modulus(name: str) -> bool:
+    """Whether an input is a Young's modulus, of any body or layer."""
+    return name.rpartition(".")[2].startswith("E")
+
+
+class Terms(NamedTuple):
+    """How the terms of a model depend on its inputs.
+
+    powers : name of a factor, "E", "w", "length", "R", "cotangent" -> its power (4,) in each term
+    axes : unknown inputs on which they depend apart from these factors
+    length : the input that is the unit of the radius: "h" or "R"
+    """
+
+    model: CurveModel
+    powers: dict[str, np.ndarray]
+    axes: tuple[str, ...]
+    length: str
+
+    @classmethod
+    def of(cls, model: CurveModel) -> "Terms":
+        values, numbers = model.scene.values, model.scene.parameters
+        law = numbers.get("adhesion", "jkr")
+        powers = _USUAL | (_DMT if law == "dmt" else {})
+        left_out = {"k_machine"} | ({"w_adhesion"} if law != "maugis" else set())
+        shape = numbers.get("shape", PARABOLOID)
+        similar = shape in (PARABOLOID, "cone") and law != "maugis"
+        similar &= numbers.get("base", "layered") in ("layered", "half_space", "auto")
+        length = "h" if "h" in values and similar and numbers.get("base", "layered") != "half_space" else "R"
+        if similar:
+            powers = powers | (_DMT_SIMILAR if law == "dmt" else _CONE if shape == "cone" else _SIMILAR)
+            left_out |= {"h", "R", "half_angle"}
+        moduli = {name for name in values if is_modulus(name)} - {model.modulus}
+        if law != "maugis" and all(np.all(np.isinf(values[name])) for name in moduli):
+            left_out.add(model.modulus)
+        axes = tuple(name for name in model.unknowns if name not in left_out)
+        return cls(model, {name: np.array(row, float) for name, row in powers.items()}, axes, length)
+
+    def factors(self, values: dict[str, Any]) -> np.ndarray:
+        """The logarithm (4, ...) of the factors, for values (...) of inputs in SI."""
+        every = self.model.scene.values | {"R": self.model.scene.R} | values
+        numbers = {"E": self.model.touched(values), "w": every["w_adhesion"], "length": every[self.length]}
+        numbers["R"] = every["R"]
+        if self.powers["cotangent"].any():
+            angle = values.get("half_angle", self.model.scene.parameters["half_angle"])
+            numbers["cotangent"] = 1 / np.tan(np.radians(angle))
+        shape = np.broadcast_shapes(*(np.shape(value) for value in numbers.values()))
+        total = np.zeros((4, *shape))
+        for name, value in numbers.items():
+            total += self.powers[name].reshape(4, *[1] * len(shape)) * np.log(value)
+        return total
+
+    def by(self, name: str, values: dict[str, Any]) -> np.ndarray:
+        """Derivatives (4,) or (4, B, 1) of the logarithms of the factors by the coordinate of an input."""
+        total = np.zeros(4)
+        nu = {"E1": "nu1", "E2": "nu2"}[self.model.modulus]
+        if name == self.model.modulus:
+            total = total + self.powers["E"]
+        if name == nu:
+            ratio = values.get(nu, self.model.value(nu))
+            return self.powers["E"].reshape(4, *[1] * np.ndim(ratio)) * (2 * ratio / (1 - ratio**2))
+        total = total + self.powers["w"] * (name == "w_adhesion") - self.powers["cotangent"] * (name == "half_angle")
+        return total + self.powers["length"] * (name == self.length) + self.powers["R"] * (name == "R")
+
+    def logarithms(self, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:
+        """The logarithms of the terms without their factors, and their slopes by x, (8, C, m), at the radii x (m,) of
+        contacts with values (C,) of inputs: x is the logarithm of the radius over the length, or what the solver takes
+        for shapes that end or are flat around the axis."""
+        model = self.model
+        count = len(next(iter(values.values()), np.zeros(1)))
+        changed = model.scene_of(values)
+        names = {name: value for name, value in changed.parameters.items() if name in PARAMETERS}
+        names = {name: value for name, value in names.items() if name not in ("P", "a", "D", "k_machine", "branch")}
+        names["base"] = {"auto": "layered"}.get(word := names.get("base", "layered"), word)
+        problem = Problem.of(**names, a=np.full(count, 0.01))
+        shift = np.log(names["h"]) if self.length == "h" else 0.0
+        terms = apart(problem, np.broadcast_to(x + np.reshape(shift, (-1, 1)), (count, len(x))))
+        factors = np.broadcast_to(self.factors(values).reshape(4, -1), (4, count))
+        out = np.empty((8, count, len(x)))
+        for i, powers in enumerate(_OF_PARTS):
+            unit = np.broadcast_to(with_unit(1.0, powers, changed.unit, changed.R), (count,))
+            positive = np.where(terms.values[i] > 0, terms.values[i], np.where(terms.values[i] == 0, 1.0, np.nan))
+            nothing = terms.values[i] == 0
+            out[i] = np.where(nothing, _NOTHING, np.log(positive) + (np.log(unit) - factors[i])[:, None])
+            out[4 + i] = np.where(nothing, 0.0, terms.slopes[i] / positive)
+        return out
+
+    def moved(self, name: str, values: dict[str, np.ndarray], x: np.ndarray, still: np.ndarray) -> np.ndarray:
+        """Derivatives of `logarithms`, which are `still` (8, C, m), by the logarithm of an input that is not unknown;
+        by a ratio itself."""
+        if name in ("k_machine", "w_adhesion") and name not in self.axes_of_law:
+            return 0 * still
+        value = np.full(still.shape[1], self.model.value(name))
+        by = _MOVE * (-1.0 if is_ratio(name) else value)  # a ratio of 0.5 does not rise
+        return (self.logarithms(values | {name: value + by}, x) - still) / (-_MOVE if is_ratio(name) else _MOVE)
+
+    @property
+    def axes_of_law(self) -> tuple[str, ...]:
+        """Inputs of adhesion that are no mere factors."""
+        law = self.model.scene.parameters.get("adhesion", "jkr")
+        return ("w_adhesion", "sigma0", "z0") if law == "maugis" else ()

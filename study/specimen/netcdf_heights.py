@@ -1,0 +1,158 @@
+"""Heights in netCDF files, classic and of version 4. Axes are told by the names of the dimensions, x and y.
+
+SurfaceTopography takes the first dimension for x whatever it is called, and its length for that of x.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .scan import UNEVEN, metres, number, spelt
+
+#: The first bytes of a netCDF file: of a classic one, and of HDF5, the form of version 4.
+MAGIC = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF\r\n\x1a\n")
+
+
+class Heights(NamedTuple):
+    """Heights over (y, x) or (x), their positions along each axis, steps or None, units of length, notes."""
+
+    z: np.ndarray
+    positions: list[np.ndarray]
+    steps: list[float] | None
+    units: tuple[str, str]
+    notes: tuple[str, ...]
+
+
+def read(raw: bytes, arguments: dict, channel: str | None, name: str) -> Heights | None:
+    """The heights of a netCDF file over dimensions x and y, or over x; None where it has none.
+
+    arguments : unit, height_unit, dx, dy, where the file does not state them
+
+    Raises ValueError: several variables of which none is chosen, no steps or units, or those of the file given again.
+    """
+    import netCDF4  # heavy: it is needed for these files alone
+    from xarray.backends.netCDF4_ import NETCDF4_PYTHON_LOCK
+
+    with NETCDF4_PYTHON_LOCK:
+        try:
+            file = netCDF4.Dataset("heights", memory=raw)
+        except (OSError, ValueError, RuntimeError):
+            return None
+        try:
+            named = {key: each for key, each in file.variables.items() if _is_map(each)}
+            if not named:
+                return None
+            variable = named[_chosen(list(named), channel, name)]
+            return _heights(file, variable, arguments, name, tuple(named))
+        finally:
+            file.close()
+
+
+def _axes(variable: Any) -> list[str]:
+    """The dimensions of more than one point, "x" and "y" in small letters."""
+    pairs = zip(variable.dimensions, variable.shape, strict=True)
+    return [dim.lower() for dim, points in pairs if points != 1]
+
+
+def _is_map(variable: Any) -> bool:
+    """Whether a variable may be heights: numbers over x and y, or over x, that are neither positions nor a mask."""
+    axes = _axes(variable)
+    numeric = getattr(variable.dtype, "kind", "O") in "iuf"
+    return sorted(axes) in (["x"], ["x", "y"]) and numeric and variable.name.lower() not in ("x", "y", "mask")
+
+
+def _chosen(names: list[str], channel: str | None, name: str) -> str:
+    listed = ", ".join(map(repr, names))
+    if channel is not None:
+        if channel == "Default" and "heights" in names:  # as SurfaceTopography calls it
+            return "heights"
+        if channel not in names:
+            raise ValueError(f"{name}: channel = {channel!r}, but the file has {listed}")
+        return channel
+    if len(names) > 1 and "heights" not in names:
+        raise ValueError(f"{name}: the file has {listed} over x and y: choose the heights with channel=")
+    return "heights" if "heights" in names else names[0]
+
+
+def _heights(file: Any, variable: Any, arguments: dict, name: str, named: tuple) -> Heights:
+    axes = _axes(variable)
+    z = np.ma.filled(np.ma.asarray(variable[...], dtype=float), np.nan).reshape([n for n in variable.shape if n != 1])
+    mask = next((each for key, each in file.variables.items() if key.lower() == "mask"), None)
+    if mask is not None and mask.dimensions == variable.dimensions:
+        mask.set_auto_maskandscale(False)
+        z = np.where(np.asarray(mask[...]).reshape(z.shape) != 0, np.nan, z)
+    order = [axes.index(axis) for axis in ("y", "x") if axis in axes]
+    z, axes = z.transpose(order), [axes[i] for i in order]
+    axis_positions = {axis: _positions(file, axis, points, name) for axis, points in zip(axes, z.shape, strict=True)}
+    units = _units(file, variable, axes, arguments, name)
+    if lacking := [axis for axis in axes if axis_positions[axis] is None]:
+        if "dx" not in arguments:
+            missing = " and ".join(f"no positions of {axis}" for axis in lacking)
+            raise ValueError(f"{name}: the file states {missing}: give dx{' (and dy)' * (len(axes) == 2)}")
+    elif more := [key for key in ("dx", "dy") if key in arguments]:
+        raise ValueError(f"{name}: the file states the positions of its points itself; leave out {', '.join(more)}")
+    positions, steps = [], []
+    for axis, points in zip(axes, z.shape, strict=True):
+        step = arguments.get("dy", arguments.get("dx")) if axis == "y" else arguments.get("dx")
+        steps.append(axis_positions[axis][0] if axis_positions[axis] else number(f"{name}: d{axis}", step, units[0]))
+        positions.append(axis_positions[axis][1] if axis_positions[axis] else steps[-1] * np.arange(points))
+    notes = (f"channel {variable.name!r}" + f" of {', '.join(map(repr, named))}" * (len(named) > 1),)
+    return Heights(z, positions, steps, units, notes)
+
+
+def _positions(file: Any, axis: str, points: int, name: str) -> tuple[float, np.ndarray] | None:
+    """Step and positions along an axis, in the unit of the file; None where it has none.
+
+    Raises ValueError: positions without equal steps.
+    """
+    variable = next((each for key, each in file.variables.items() if key.lower() == axis), None)
+    if variable is None:
+        return None
+    length = float(getattr(variable, "length", "nan"))  # of `points` steps
+    x = np.ma.filled(np.ma.asarray(variable[...], dtype=float), np.nan) if variable.shape == (points,) else np.empty(0)
+    if not np.isfinite(x).all() or not x.size:
+        return (length / points, length / points * np.arange(points)) if np.isfinite(length) else None
+    step = (x[-1] - x[0]) / (points - 1)
+    off = np.abs(x - (x[0] + step * np.arange(points))).max()
+    if not (step != 0 and off <= UNEVEN * abs(step)):
+        raise ValueError(f"{name}: the positions {axis} have no equal steps: interpolate to a grid")
+    rounded = abs(length / points - abs(step)) <= 1e-6 * abs(step)
+    return length / points if rounded else abs(step), x
+
+
+def _units(file: Any, variable: Any, axes: list[str], arguments: dict, name: str) -> tuple[str, str]:
+    """The units of positions and of heights, of the file or, where it has none, of the call."""
+    units = {axis: _unit(file, axis, name) for axis in axes}
+    lateral = {unit for unit in units.values() if unit}
+    if len({metres(unit, name) for unit in lateral}) > 1:
+        raise ValueError(f"{name}: x is in {units['x']}, y in {units['y']}: write both in one unit")
+    unit = next(iter(lateral), None)
+    height = _unit_of(variable, name)
+    if height is None and unit and hasattr(file.variables.get("x"), "unit"):  # of SurfaceTopography: of all lengths
+        height = unit
+    stated = {"unit": unit, "height_unit": height}
+    for key, value in stated.items():
+        if value and key in arguments and metres(arguments[key], name) != metres(value, name):
+            raise ValueError(f"{name}: {key} is {arguments[key]}, but the file states {value}: leave out {key}")
+    stated = {key: value or arguments.get(key) for key, value in stated.items()}
+    if not height and "unit" in arguments and not unit:
+        stated["height_unit"] = arguments.get("height_unit", arguments["unit"])
+    if lacking := [key for key, value in stated.items() if not value]:
+        raise ValueError(f"{name}: the file states no {' and no '.join(lacking)}: give {', '.join(lacking)}")
+    return stated["unit"], stated["height_unit"]
+
+
+def _unit(file: Any, axis: str, name: str) -> str | None:
+    variable = next((each for key, each in file.variables.items() if key.lower() == axis), None)
+    return None if variable is None else _unit_of(variable, name)
+
+
+def _unit_of(variable: Any, name: str) -> str | None:
+    """The unit of a variable: its attribute `units` (CF) or `unit` (SurfaceTopography). Raises ValueError for another
+    than one of length."""
+    word = str(getattr(variable, "units", getattr(variable, "unit", ""))).strip()
+    if word in ("", "1"):
+        return None
+    if spelt(word) is None:
+        raise ValueError(f"{name}: {variable.name} is in {word!r}, which is no unit of length")
+    return word

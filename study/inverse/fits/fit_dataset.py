@@ -1,4 +1,4 @@
-"""The Dataset of a fit: from the unknowns of each curve to inputs in SI with their intervals."""
+"""The Dataset of a fit: inputs in SI with their intervals, validity, and words for its summary."""
 
 import warnings
 from typing import Any

@@ -12,7 +12,7 @@ import numpy as np
 
 from .arrays import xarray_later as xr
 from .data.coordinates import with_coordinates
-from .data.dataset import Parts, parts
+from .data.dataset import DatasetParts, parts
 from .data.one_case import OneCase
 from .data.si import dataset_in_units, in_units
 from .derivatives import sensitivities as derivatives_of
@@ -191,7 +191,7 @@ def solve_one(stresses: str = "", /, *, same_piece: bool = False, **parameters: 
     return OneCase(_solved_parts(definition, None, screen_of(None), begun))
 
 
-def _solved_parts(definition: Definition, workers: int | None, stream: TextIO | None, begun: float) -> Parts:
+def _solved_parts(definition: Definition, workers: int | None, stream: TextIO | None, begun: float) -> DatasetParts:
     arrays = solved(definition, workers, stream, begun)
     return in_units(definition, parts(definition, arrays, "study.solve").settings_apart())
 

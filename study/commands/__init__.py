@@ -1,1 +1,1 @@
-"""What the command line reads and says."""
+"""The command line: a file has the commands of one kind."""

@@ -119,7 +119,7 @@ def state_line(definition: Definition, state: dict) -> str:
 
 
 def verified_line(name: str | Path, condition: Condition) -> str:
-    """What `verify` says of a results file."""
+    """The words of `verify` on a results file."""
     said = {
         "sound": "verified, every number is the one that was written"
         + f"; it holds results of the study {condition.name}" * (condition.name not in ("", Path(name).stem)),
@@ -139,7 +139,7 @@ def failure_lines(report: Report, name: str) -> list[str]:
 
 
 def report_line(report: Report, name: str) -> str:
-    """What a run without failed blocks did."""
+    """The work of a run without failed blocks, in words."""
     if not report.counts and not report.computed:
         return f"{report.path} is up to date ({counted(report.cases, 'case')}), nothing to do"
     if not report.complete:

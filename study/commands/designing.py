@@ -62,7 +62,7 @@ def asked(parameters: dict[str, Any]) -> tuple[dict, dict, dict]:
 
 
 def _as_json(designed: xr.Dataset, name: str) -> str:
-    """What was found for a contact, with the numbers of each solution; of several contacts a list."""
+    """The answer for a contact, with the numbers of each solution; for several contacts a list."""
     if not designed["design_status"].dims:
         return json.dumps(_one(designed, name), indent=2, ensure_ascii=False)
     cases = designed.stack({"case": designed["design_status"].dims}, create_index=False)

@@ -77,7 +77,7 @@ def _curves(options, name: str) -> int:
 
 
 def _said(error: Exception) -> str:
-    """What an exception says, and where to look."""
+    """The message of an exception, and where to look."""
     return f"{type(error).__name__}: {on_one_line(str(error), 300)}; -v before the command shows where"
 
 

@@ -76,7 +76,7 @@ def _reading(words: list[str]) -> dict[str, Any]:
 
 
 def asked(words: list[str]) -> tuple[Any, dict, dict]:
-    """What is free, options of the fit, and inputs. An input "LOW .. HIGH" is free within these bounds. StudyError."""
+    """Free inputs, options of the fit, other inputs. An input "LOW .. HIGH" is free within these bounds. StudyError."""
     texts = {word.partition("=")[0].strip(): word.partition("=")[2].strip() for word in words}
     settings: dict[str, Any] = {name: text for name, text in texts.items() if name in _OPTIONS}
     errors = [message for name in dict.fromkeys(texts) if (message := _no_option(name))]
@@ -109,7 +109,7 @@ def asked(words: list[str]) -> tuple[Any, dict, dict]:
 
 
 def _no_option(name: str) -> str:
-    """What is said of a name that is like an option but none; "" of others."""
+    """The complaint about a name that is like an option but none; "" for others."""
     if name in _PYTHON:
         return f"{name} is an option of study.fit in Python alone (docs/fit.md): leave it out"
     near = "" if name in (*_OPTIONS, *ROWS) or absent(name) else suggest(name, (*_OPTIONS, *_READING))

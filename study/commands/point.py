@@ -32,7 +32,7 @@ from .arguments import SWITCH, assignment
 
 _DERIVED = ("p_ring", "r_ring", "p_peak", "D_body")  # of QUANTITIES, that JSON has besides
 _PICTURES = (".png", ".pdf", ".svg")  # endings of `--stresses`
-#: What divides a list: a comma and a blank, or a comma behind a unit.
+#: The divider of a list: a comma and a blank, or a comma behind a unit.
 _LIST = re.compile(r",\s|(?<=[^\W\d_]),(?=[-+.\d])")
 #: Numbers with a decimal point or an exponent each, whose commas can be no decimal ones.
 _NUMBERS = re.compile(r"[-+]?(?:\d*\.\d+|\d+(?:\.\d*)?e[-+]?\d+)(?:,[-+]?(?:\d*\.\d+|\d+(?:\.\d*)?e[-+]?\d+))+", re.I)

@@ -1,4 +1,4 @@
-"""How a command ends when a signal comes, at whatever moment.
+"""The end of a command when a signal comes, at whatever moment.
 
 While it starts, it ends at once. While it works, KeyboardInterrupt ends it in good order, and a second signal at once.
 When it is done, it ends at once with the exit code of its work. A signal that the parent process ignores is ignored.
@@ -82,7 +82,7 @@ def _end_at_once(*_) -> None:
 
 
 def _unraisable(unraisable) -> None:
-    """What Python calls with an exception that it cannot raise, such as one in the destructor of an object."""
+    """Python calls this with an exception that it cannot raise, such as one in the destructor of an object."""
     if unraisable.exc_type is KeyboardInterrupt:
         _end_at_once()
     sys.__unraisablehook__(unraisable)

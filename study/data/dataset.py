@@ -60,7 +60,7 @@ STRENGTHS = {"layer": "Y1", "body": "Y2", "punch": "Y_punch"}
 """Body -> the input that is its yield strength."""
 
 
-class Parts(NamedTuple):
+class DatasetParts(NamedTuple):
     """What a dataset is made of. The dataset itself is made last and once, since that takes as long as a contact.
 
     by_input : result -> its derivatives by the inputs of the definition, (*grid.shape, k) and (*grid.shape, k, m)
@@ -85,7 +85,7 @@ class Parts(NamedTuple):
         coords = {name: variable for name, variable in coords.items() if name not in NUMERICS} | last
         return without_fill_values(xr.Dataset(variables, coords, self.attributes))
 
-    def settings_apart(self) -> Parts:
+    def settings_apart(self) -> DatasetParts:
         """The parts with numerical settings that all cases share as attributes, not as coordinates.
 
         Dropping variables of a dataset would copy all others.
@@ -103,7 +103,7 @@ def validity_of_rows(arrays: dict[str, np.ndarray], times: float = 1.0) -> Label
     return validity_of(variables, times)
 
 
-def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:
+def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> DatasetParts:
     """The parts of the dataset of a grid, from flat arrays (B, ...): dimensions in the order of the study, then `x`."""
     made = labelled(definition, arrays, command)
     variables = made.variables
@@ -131,7 +131,7 @@ def _strengths(definition: Definition) -> dict[str, Labelled]:
     return variables
 
 
-def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:
+def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> DatasetParts:
     """As `parts`, of some of the arrays or none, without `validity` and the names of flags."""
     grid = definition.grid
     rigid = bool((along(grid, "n") == 0).any())  # if one layer is on a rigid base, all are
@@ -154,7 +154,7 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     about = provenance(definition, command) | ({"micro_laws": "\n".join(laws)} if laws else {})
     if "shape" in grid.values:  # what 1 is of a length
         about["scale"] = (definition.scene.scale or "R") if definition.scene else "1"
-    return Parts(variables, coordinates, about, by_input)
+    return DatasetParts(variables, coordinates, about, by_input)
 
 
 def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:

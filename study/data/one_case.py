@@ -8,7 +8,7 @@ from solver.numerics.kept import once
 
 from ..arrays import xarray_later as xr
 from ..arrays.labelled import Labelled
-from .dataset import Parts
+from .dataset import DatasetParts
 
 
 class OneCase:
@@ -19,7 +19,7 @@ class OneCase:
     attrs : of the dataset
     """
 
-    def __init__(self, parts: Parts):
+    def __init__(self, parts: DatasetParts):
         self.variables, self.coords, self.attrs = parts.variables | parts.coords, parts.coords, parts.attributes
         self._parts = parts
 

@@ -14,7 +14,7 @@ from ..inputs.definition import Definition
 from ..inputs.scene.scene import Scene, bare_variable
 from ..inputs.vocabulary import ROWS, VOCABULARY
 from ..specimen.materials import Strength, known_strength
-from .dataset import Parts, labelled
+from .dataset import DatasetParts, labelled
 from .spreads import spreads_of
 from .units import PHYSICAL_SCALE, physical_attributes, with_unit
 
@@ -25,12 +25,12 @@ materials of the user's own."""
 SAME_PIECE = "same_piece: bodies of one material are one piece of it"
 
 
-def dataset_of(definition: Definition, parts: Parts) -> xr.Dataset:
+def dataset_of(definition: Definition, parts: DatasetParts) -> xr.Dataset:
     """The dataset of a study: in SI units if the study has units, else dimensionless."""
     return dataset_in_units(definition, in_units(definition, parts))
 
 
-def dataset_in_units(definition: Definition, parts: Parts) -> xr.Dataset:
+def dataset_in_units(definition: Definition, parts: DatasetParts) -> xr.Dataset:
     """The dataset of parts that `in_units` has made."""
     if not definition.scene or not definition.grid.sizes:  # there is nothing to search along
         return parts.dataset()
@@ -45,12 +45,12 @@ def axes_of(definition: Definition) -> dict[str, np.ndarray]:
     return {dim: np.asarray(coords[dim].data) for dim in definition.in_results(definition.grid.sizes)}
 
 
-def in_units(definition: Definition, parts: Parts) -> Parts:
+def in_units(definition: Definition, parts: DatasetParts) -> DatasetParts:
     """The parts, dimensionless before, in the units of the study."""
     return results(definition, parts) if definition.scene else parts
 
 
-def results(definition: Definition, parts: Parts) -> Parts:
+def results(definition: Definition, parts: DatasetParts) -> DatasetParts:
     """The parts in SI units, from dimensionless ones: inputs in SI units, results with their spreads."""
     scene, results, coords = definition.scene, {}, {}
     spreads = spreads_of(definition, parts) if parts.by_input else {}
@@ -86,7 +86,7 @@ def results(definition: Definition, parts: Parts) -> Parts:
     pairs = [f"{first} and {second}: {v:g}" for (first, second), v in scene.correlations.items() if np.ndim(v) == 0]
     correlations = {"correlations": "; ".join(pairs)} if pairs else {}
     attributes = parts.attributes | correlations | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
-    return Parts(_renamed(scene, results), _renamed(scene, coords), attributes)
+    return DatasetParts(_renamed(scene, results), _renamed(scene, coords), attributes)
 
 
 def _of_users(texts: list[str], known: Sequence[Strength]) -> dict[str, str]:

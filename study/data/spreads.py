@@ -7,10 +7,10 @@ from ..inputs.scene.changes import SCALES, changes_by_spread
 from ..inputs.scene.pieces import matrix
 from ..inputs.scene.scene import over
 from ..inputs.vocabulary import VOCABULARY
-from .dataset import Parts
+from .dataset import DatasetParts
 
 
-def spreads_of(definition: Definition, parts: Parts) -> dict[str, np.ndarray]:
+def spreads_of(definition: Definition, parts: DatasetParts) -> dict[str, np.ndarray]:
     """Result -> its standard deviation, of its shape and in its unit: the root of Σ g_i C_ij g_j.
 
     g_i is the change of the result when input i of the scene changes by its spread; C are the correlations of inputs.

@@ -15,7 +15,7 @@ from ..inputs.vocabulary import VOCABULARY
 from ..rules import assumptions, doubts
 from ..specimen import materials
 
-#: How the page begins: by this a file is known to be one.
+#: The beginning of the page, by which a file is known to be one.
 MARK = b"<!-- a page of roughcoat explore -->"
 #: Nodes of the two meshes that the page solves on; their difference is its error (tests/explorer/test_core.py).
 NODES = (16, 22)
@@ -43,7 +43,7 @@ def page() -> str:
 
 
 def contents() -> dict:
-    """What the scripts take from the program: meshes, materials, bounds, limits of assumptions."""
+    """The data of the program for the scripts: meshes, materials, bounds, limits of assumptions."""
     entries = (materials.get(name) for name in materials.names())
     numbers = ("name", "E", "nu", "E_spread", "nu_spread", "condition", "source")
     bounded = ("P", "a", "D", "h", "n", "m", "Nbar", "Ra")

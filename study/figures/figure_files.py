@@ -42,7 +42,7 @@ def book_files() -> list[Path]:
 
 
 class Text(NamedTuple):
-    """What stands in one file.
+    """The figures and tables of one file.
 
     modules : those beside it that it imports; entries : (kind, name) -> whether it is `long`
     """
@@ -70,7 +70,7 @@ def names_in(file: Path) -> dict[tuple[str, str], bool]:
 
 @lru_cache(maxsize=256)  # every command asks several times for each figure; a file is read in a millisecond
 def read(path: Path, _: tuple) -> Text:
-    """What stands in a file; the second argument changes when the file does. Raises StudyError if it is no Python."""
+    """The text of a file; the second argument changes when the file does. Raises StudyError if it is no Python."""
     try:
         nodes = list(ast.walk(ast.parse(content(path, LARGEST_TEXT))))
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:  # some of a null byte, or of deep brackets

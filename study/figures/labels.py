@@ -1,4 +1,4 @@
-"""What quantities are called on axes, in legends and in the line that states the parameters of a figure."""
+"""Labels of quantities on axes, in legends and in the line that states the parameters of a figure."""
 
 import re
 from collections.abc import Iterable
@@ -109,7 +109,7 @@ def legend_texts(dataset: xr.Dataset, hue: str) -> tuple[str, list[str]]:
 
 
 def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
-    """What is stated above a figure: `value_text` of each input that has one value in all the datasets.
+    """The texts above a figure: `value_text` of each input that has one value in all the datasets.
 
     Inputs that no case uses are left out, and so are axes, which the figure shows, and names of models and materials,
     but the shape of the punch. A rigid base, which has no modulus, is stated in words.

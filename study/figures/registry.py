@@ -199,7 +199,7 @@ def names(kind: str, *, long: bool = True) -> list[str]:
 
 
 def entry(kind: str, name: str) -> Any:
-    """What is registered under a name, by the program itself or by code beside studies, which runs now.
+    """The entry of a name, registered by the program itself or by code beside studies, which runs now.
 
     Raises StudyError, which suggests another name, if there is none.
     """

@@ -1,4 +1,4 @@
-"""What each input changes of one result: bars, the longest above."""
+"""The change of one result by each input: bars, the longest above."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""What can be said of contacts before they are solved: that they are far outside the model's validity."""
+"""Estimates of contacts before they are solved: whether they are far outside the model's validity."""
 
 from __future__ import annotations
 

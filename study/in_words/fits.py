@@ -32,7 +32,7 @@ _SENTENCES = {
 }
 
 
-#: Of a load that rises from the shallowest point on, as well described by a straight line.
+#: A load that rises from the shallowest point on, and is as well described by a straight line.
 _THROUGHOUT = (
     "The load rises from the shallowest point on, nearly along a straight line: either the baseline drifts, or the "
     "curve is in contact throughout, such as an unloading is. P(D) alone does not say where such a contact begins, and "
@@ -120,7 +120,7 @@ def _rises_throughout(curve: xr.Dataset) -> bool:
 
 
 def _residual(curve: xr.Dataset) -> list[str]:
-    """How far the points are from the fit; nothing of a plan."""
+    """The distance of the points from the fit; nothing for a plan."""
     if "residual" not in curve:
         return []
     name, rms = curve.attrs["y"], float(np.sqrt((curve["residual"] ** 2).mean()))
@@ -177,7 +177,7 @@ def _doubts(curve: xr.Dataset, inputs: list[str]) -> list[str]:
 
 
 def _points(curve: xr.Dataset) -> list[str]:
-    """What is unusual about the points of a curve: gaps, equal x, no order; nothing of a plan. NaN after the last point
+    """Unusual points of a curve: gaps, equal x, no order; nothing for a plan. NaN after the last point
     fills a shorter curve up and is no gap."""
     if "residual" not in curve:
         return []
@@ -226,7 +226,7 @@ def _rounded(end: float, spread: float) -> float:
 
 
 def _known(curve: xr.Dataset, inputs: list[str]) -> list[str]:
-    """Of two inputs that cannot be told apart: which product of their powers is known, and how well."""
+    """The product of powers of two inputs that the curve says, and how well, where it cannot tell these apart."""
     lines = []
     for a, first in enumerate(inputs):
         for second in inputs[a + 1 :]:

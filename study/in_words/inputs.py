@@ -134,7 +134,7 @@ def _stack(case: xr.Dataset, used: list[str]) -> list[str]:
 
 
 def _pieces(case: xr.Dataset, used: list[str]) -> list[str]:
-    """Of bodies of one material whose moduli have a spread, whether these are independent: it changes every ±."""
+    """Whether bodies of one material, whose moduli have a spread, are independent pieces: it changes every ±."""
     of_material: dict[str, list[str]] = {}
     for body, (modulus, ratio, _) in bodies_of(case.variables).items():
         if body in case and modulus in used and spread_of(case, modulus) + spread_of(case, ratio) > 0:

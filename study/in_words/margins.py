@@ -81,7 +81,7 @@ class _Limit(NamedTuple):
 
 
 class Margin(NamedTuple):
-    """What is said of the strengths of a contact, a sentence each, and whether one of them is exceeded."""
+    """Sentences on the strengths of a contact, and whether one of them is exceeded."""
 
     sentences: list[str]
     exceeded: bool = False
@@ -131,8 +131,8 @@ def holds(case: xr.Dataset) -> Margin:
 
 
 def closest(case: xr.Dataset) -> str:
-    """What is closest to its limit, and its share of that, in a few words: "asperities 1.1"; "-" where it is not
-    known."""
+    """The body or spots closest to their limit, and their share of it, in a few words: "asperities 1.1"; "-" where it
+    is not known."""
     looked = _looked_at(case) if case["status"] == 0 else ""
     if isinstance(looked, str) or not looked.compared:
         return "-"
@@ -141,7 +141,7 @@ def closest(case: xr.Dataset) -> str:
 
 
 def _looked_at(case: xr.Dataset) -> _Looked | str:
-    """What is known of a contact; else why it is not, "" where nothing is to be said."""
+    """The stresses and limits of a contact; else why they are not known, "" where nothing is to be said."""
     try:
         again = Again.of(case, "summary")
     except StudyError:  # of a mean, say
@@ -242,7 +242,7 @@ def _radius(case: xr.Dataset, again: Again) -> float:
 
 
 def _limits(case: xr.Dataset, again: Again, known: dict[str, list]) -> list[_Limit]:
-    """What may fail in a contact."""
+    """The limits of a contact at which something fails."""
     problem, limits = again.problem, []
     coated, mises, Y = problem.base[0] != "half_space", "largest von Mises stress", "yield strength"
 
@@ -291,7 +291,7 @@ def _part(share: float) -> str:
 
 
 def _closest(looked: _Looked, case: xr.Dataset) -> list[str]:
-    """What is closest to its limit, the others, and the load at which it would be there."""
+    """Sentences on the closest limit, on the others, and on the load at which the closest is reached."""
     again, first, *others = looked.again, *looked.compared
     limit, share = first.limit, first.share
     place = _place(again, first.r, first.z, float(looked.problem.value[0])) if np.isfinite(first.z) else ""
@@ -330,7 +330,7 @@ def _at_which_load(looked: _Looked, first: _Compared, case: xr.Dataset) -> list[
 
 
 def _spots_of(problem: Problem, solution: Any) -> float:
-    """How many asperities touch; NaN of a law that does not know their number."""
+    """The number of asperities that touch; NaN under a law that does not know it."""
     return float(problem.Nbar[0] * np.pi * solution.a[0] ** 2)
 
 

@@ -78,7 +78,7 @@ def _angle_of(shape: str) -> str:
 
 
 def _inwards(case: xr.Dataset, shape: str) -> list[str]:
-    """What it makes that the surface under a cone is pulled inwards: Hay, Bolshakov and Pharr (1999)."""
+    """A note on the surface under a cone, which is pulled inwards: Hay, Bolshakov and Pharr (1999)."""
     nu = case.get("nu2" if case["base"] == "half_space" else "nu1")
     if shape not in _CONES or nu is None:
         return []
@@ -116,7 +116,7 @@ def of_adhesion(case: xr.Dataset) -> list[str]:
 
 
 def _held(case: xr.Dataset) -> str:
-    """How the punch is held, as the beginning of a sentence."""
+    """The control of the punch, as the beginning of a sentence."""
     k = case["k_machine"] if "k_machine" in case.variables else None
     if k is not None and np.isfinite(k) and k > 0:
         return f"on a machine of {in_its_unit(case, 'k_machine', float(k))}"

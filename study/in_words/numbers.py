@@ -14,7 +14,7 @@ from ..specimen.quantities import READABLE, readable
 
 #: Words that a text needs before it, to be understood among others.
 _WORDS = {"shape": "shape", "tip": "tip", "adhesion": "adhesion", "branch": "branch"}
-#: What asperities press on, by the word of `asperities_on`.
+#: The word of `asperities_on` -> the ground of the asperities.
 _ASPERITIES = {
     "auto": "asperities on the layer where their pitch is above h",
     "layer": "asperities on the layer",
@@ -95,6 +95,6 @@ def _with_spread(case: xr.Dataset, name: str, value: float, spread: float, error
 
 
 def _size(case: xr.Dataset, name: str, value: float) -> float:
-    """What the errors of a result are relative to: of a load and a depth of what sticks, those of pull-off at least."""
+    """The size to which errors of a result are relative: with adhesion at least the load and depth of pull-off."""
     off = case.get(f"{name}_off")
     return abs(value) if off is None or not np.isfinite(off) else max(abs(value), abs(float(off)))

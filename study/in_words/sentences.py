@@ -46,18 +46,18 @@ def doubts(contact: xr.Dataset) -> list[str]:
 
 
 def beside_rules(contact: xr.Dataset) -> list[str]:
-    """What is said of contacts beside the rules, which see no problem that could be solved again."""
+    """Sentences on contacts beside those of the rules, which see no problem that could be solved again."""
     return falling(contact) + ended(contact)
 
 
 def _near_0(case: xr.Dataset) -> str:
-    """What else an error is relative to: a load or a depth of what sticks may be 0."""
+    """The second size to which an error is relative: with adhesion a load or a depth may be 0."""
     names = [name for name in "PD" if abs(case[name]) < abs(case.get(f"{name}_off", 0.0))]
     return f" ({' and '.join(names)}: of the size at pull-off)" * bool(names)
 
 
 def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
-    """How well the case is solved, by which model, which assumptions it violates, and whether it holds.
+    """Sentences on a case: how well it is solved, by which model, which assumptions it violates, whether it holds.
 
     judged : the quantities shown of which `error` is the largest error; p_max is among them where there are asperities
     """

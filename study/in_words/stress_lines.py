@@ -1,4 +1,4 @@
-"""What `study.first_yield`, `h_protect`, `extremes` and `stresses` found, in words."""
+"""The answers of `study.first_yield`, `h_protect`, `extremes` and `stresses` in words."""
 
 from __future__ import annotations
 

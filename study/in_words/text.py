@@ -26,7 +26,7 @@ SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
 _JUDGED = tuple(name for name in SHOWN if name != "dP_dD")  # what `error` is the largest error of
 #: Left out of smooth contacts: there the real pressure is the nominal one, and the real area is the nominal area.
 OF_ASPERITIES = ("p_max", "Ar_An")
-#: What stands behind "indentation depth" where the punch yields too, or may.
+#: Words behind "indentation depth" where the punch yields too, or may.
 OF_BOTH = " (approach of both bodies)"
 SPOT_LABEL = "largest real pressure in the central spot"
 RING_LABEL, PEAK_LABEL = "largest nominal pressure, in a ring", "largest real pressure, in the ring"
@@ -53,7 +53,7 @@ class Summary(str):
 
 
 def summary(contact: xr.Dataset) -> Summary:
-    """What `study.solve` found, in words.
+    """The answer of `study.solve` in words.
 
     The text has the inputs; each quantity with its unit and ±; status, model used and validity as sentences. ± is one
     standard deviation: the root of the sum of the squares of `error`, of `model_error` and of what the spreads of the
@@ -114,7 +114,7 @@ def summary(contact: xr.Dataset) -> Summary:
 
 
 def _of_design(designed: xr.Dataset) -> Summary:
-    """What `study.design` found for each contact that was asked for; of a single one each solution in words."""
+    """The answer of `study.design` for each contact; for a single contact each solution in words."""
     dims = [str(dim) for dim in designed["design_status"].dims]
     if not dims:
         solutions = [designed.isel(solution=number) for number in range(designed.sizes["solution"])]
@@ -159,8 +159,8 @@ def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:
 
 
 def columns(contacts: xr.Dataset) -> str:
-    """A line for each contact of a grid: what differs, the results that `summary` has, status, where strengths are
-    known what is closest to its limit with its share of that, and validity.
+    """A line for each contact of a grid: the inputs that differ, the results that `summary` has, status, validity;
+    where strengths are known, the body or spots closest to their limit, with their share of it.
 
     contacts : of `study.solve`, over one dimension or more; above 20 the last lines are counted, not written
     """
@@ -169,7 +169,8 @@ def columns(contacts: xr.Dataset) -> str:
     shown = [cases.isel(case=i) for i in range(min(cases.sizes["case"], MOST_CASES))]
     smooth = all(case["micro"].values in smooth_laws() for case in shown)
     names = [name for name in SHOWN if name not in dims and not (smooth and name in OF_ASPERITIES)]
-    rows = [[*dims, *names, "status", "strength", "validity"], *(_row(case, dims, names) for case in shown)]
+    heading = [*map(str, dims), *names, "status", "strength", "validity"]
+    rows: list[list[str]] = [heading, *(_row(case, dims, names) for case in shown)]
     left = [-1] * (not any(row[-1] for row in rows[1:])) + [-2] * all(row[-2] == "-" for row in rows[1:])
     rows = [[cell for place, cell in enumerate(row, -len(row)) if place not in left] for row in rows]
     widths = [max(map(len, cells)) for cells in zip(*rows, strict=True)]

@@ -11,7 +11,7 @@ SCAN = 24
 EDGE = 1e-6
 """A crossing as near as this to a bound, in ln of the input, is at the bound."""
 #: A turn is looked for where the second difference of three points exceeds this part of the middle one. Below it stand
-#: curves that are flat but for the error of the solver.
+#: curves that are flat except for the error of the solver.
 _BENT = 1e-5
 #: Places of turns, in parts of the distance of two points of the scan: a turn is flat, and errs by the square of this.
 _TURN = 1e-3

@@ -20,7 +20,7 @@ from ..work.engine import computed_tasks
 from ..work.progress import Progress, screen_of
 from .curves import measured
 from .fits.block import FitStatus
-from .fits.fit_dataset import answered, said
+from .fits.fit_dataset import fit_dataset, words_of
 from .fits.least_squares import AT_LEAST
 from .fits.model import HERTZ, CurveModel
 from .fits.question import Question, inside, read_question, region
@@ -118,13 +118,13 @@ def fit(
     if limits:
         there = _within(question, (X, Y, S), there, limits)
     rows, status = _every(question, (X, Y, S), there, screen_of(progress))
-    fitted = answered(question, rows, status, X, Y, there, plan)
+    fitted = fit_dataset(question, rows, status, X, Y, there, plan)
     fitted = fitted.assign_coords({name: data[name] for name in data.coords})
     fitted = fitted.assign_attrs({"depth": list(limits)} if limits else {})
     if "w_adhesion" in question.bounds and "w_adhesion" not in question.priors and len(question.free) > 1 and not plan:
         options |= {"depth": limits, "x": x, "y": y, "progress": progress}
         fitted = _with_and_without(fitted, (X, Y, S), (free, options, parameters), question.bounds["w_adhesion"][0])
-    return _as_called(fitted.assign_attrs(said(question, fitted)), question.called)
+    return _as_called(fitted.assign_attrs(words_of(question, fitted)), question.called)
 
 
 def _within(question: Question, arrays: tuple, there: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
@@ -167,11 +167,11 @@ def _every(question: Question, arrays: tuple, there: np.ndarray, screen: Any) ->
     rows: dict[int, tuple] = {}
     most = _STICKING if question.model.sticks else _BLOCK
     blocks = list(_blocks(there, status < 0, _stiffness(X, Y, question) if X.size else np.zeros(len(X)), most))
-    with Progress("fit", int((status < 0).sum()), screen, passing=True) as told:
+    with Progress("fit", int((status < 0).sum()), screen, passing=True) as progress:
         try:
             for index, fits in _fits(question, blocks, arrays, there):
                 rows |= {int(curve): (fits, i) for i, curve in enumerate(index)}
-                told.update(len(index), 0)
+                progress.update(len(index), 0)
         except KeyboardInterrupt:
             if not rows:
                 raise
@@ -189,16 +189,16 @@ def _contact_points(question: Question, rows: dict[int, tuple]) -> dict[int, flo
 def _fits(question: Question, blocks: list, arrays: tuple, there: np.ndarray) -> Iterator[tuple[np.ndarray, dict]]:
     """The curves of each block and their fits, by the processors that may be used."""
     call = f"{os.getpid()} {next(_calls)}"
-    parts = [
+    tasks = [
         Task(call, question, *(None if A is None else _packed(A, there, filled, points) for A in arrays))
         for _, filled, points in blocks
     ]
     of_users = laws_of_users(np.array([question.model.scene.parameters.get("micro", "disc_cell")]))
     try:
-        with closing(computed_tasks(fit_task, parts, can_leave=not of_users)) as results:
+        with closing(computed_tasks(fit_task, tasks, can_leave=not of_users)) as results:
             for number, fits in results:
                 # a process that was killed, or what it raised: then it is raised here
-                yield blocks[number][0], fit_task(parts[number]) if isinstance(fits, Failure) else fits
+                yield blocks[number][0], fit_task(tasks[number]) if isinstance(fits, Failure) else fits
     finally:
         forget(call)
 

@@ -28,7 +28,7 @@ def read(raw: bytes, arguments: dict, channel: str | None, name: str) -> Heights
 
     arguments : unit, height_unit, dx, dy, where the file does not state them
 
-    Raises ValueError: several variables of which none is chosen, no steps or units, or those of the file given again.
+    Raises ValueError: several variables and none chosen, no steps or units, or those of the file given again.
     """
     import netCDF4  # heavy: it is needed for these files alone
     from xarray.backends.netCDF4_ import NETCDF4_PYTHON_LOCK

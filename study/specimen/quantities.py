@@ -49,7 +49,7 @@ _THOUSANDS = re.compile(r"(\d{2,3})\.000[^A-Za-z\d]*(?:[\d.]+\s*)?(?:N/mm|MPa)")
 _MINUS = re.compile(r"^−|(?<=\d[eE])−|(?<=\^)−")
 #: A power without ^, as in "mm2" and "mm-2". The letters must not follow a digit: the e of "1e2" is no unit.
 _POWER = re.compile(r"(?<![\d.A-Za-z])([A-Za-zµ]+)(-?[23])(?![\w.])")
-#: Words for the micrometre that pint does not know. It takes µ alone for a quantity of its own.
+#: Words for the micrometre that pint does not have. It takes µ alone for another quantity.
 _MICRONS = re.compile(r"(?<=[\d\s.])(?:mu|µ|μ|mum|microns?)$")
 
 
@@ -204,7 +204,7 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
 
 
 def _near(text: str, unit: str) -> str:
-    """A hint at a unit that is the same but for capitals: "GPa" for "Gpa", "meter" for "Meter"; "" if there is none."""
+    """A hint at a unit that differs only in capitals: "GPa" for "Gpa", "meter" for "Meter"; "" if there is none."""
     word = text[_NUMBER.match(text).end() :].strip()
     near = [name for name, _ in READABLE.get(unit, ("", ()))[1] if name.lower() == word.lower() != ""]
     near += [word.lower()] * (_size(word.lower(), unit) is not None)

@@ -179,7 +179,7 @@ def _rounded_step(x: np.ndarray) -> float | None:
 
 
 def scan_of(name, z, positions, *, steps=None, units=("m", "m"), crop=None, notes=(), how) -> Scan:
-    """The scan of heights at positions, of which `crop` is kept.
+    """The scan of heights at positions, cut to `crop`.
 
     z : heights (x) or (y, x) in units[1], NaN where a point is missing
     positions : of each axis of z, in units[0]; uniform ones of a map

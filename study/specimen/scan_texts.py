@@ -85,7 +85,7 @@ def table_of(text: str, name: str, channel: str | None = None) -> NumberTable:
     A line before the first clean row that has as many fields, most of them numbers, is a row too.
 
     Raises ValueError: no numbers; a row with another number of fields, or with a word, which the message names with
-    its line; channels of which none is chosen, or another.
+    its line; no channel of several is chosen, or one that is not there.
     """
     lines, channel_note = _of_channel(Lines(text.split("\n"), 1), name, channel)
     contents = Lines([_content(full) for full in lines.texts], lines.first)
@@ -316,7 +316,7 @@ class _Table:
 
 
 def _no_rows_in_heading(contents: Lines, dialect: tuple, table: np.ndarray, name: str) -> None:
-    """Raise ValueError for a line of the heading that is a row of the table but for a word in it."""
+    """Raise ValueError for a line of the heading that is a row of the table except for a word in it."""
     width = table.shape[1]
     for number, content in contents:
         fields = _fields(content, dialect[0])

@@ -14,7 +14,7 @@ from line_study import COUNT, ending, leftovers, load, store_block
 from same import assert_same_numbers
 
 import study
-from study.data.dataset import Parts
+from study.data.dataset import DatasetParts
 from study.inputs.reading import from_tables
 from study.store.blocks import Store
 from study.work import cases
@@ -26,7 +26,7 @@ def as_solved(dataset):
     variables, coords = (
         {name: dataset.variables[name] for name in part} for part in (dataset.data_vars, dataset.coords)
     )
-    return Parts(variables, coords, dataset.attrs).settings_apart().dataset()
+    return DatasetParts(variables, coords, dataset.attrs).settings_apart().dataset()
 
 
 @pytest.mark.parametrize("workers", [1, 2, 5])

@@ -44,7 +44,7 @@ def plot_stresses(
 
     Parameters
     ----------
-    contact : one contact of `study.solve` or of a results file: a dataset without dimensions, but for `x`
+    contact : one contact of `study.solve` or of a results file: a dataset without dimensions, except for `x`
     mu, sigma_res : as of `study.stresses`; with mu > 0 the section is the plane y = 0, and the punch moves to the right
     below : "contact"; or "spot", the central spot of asperities that feel the layer, up to half of the pitch beside its
         axis, where mu is 0. The stresses are then means over the angle, those of the nominal pressure included
@@ -142,7 +142,7 @@ def _draw_sections(panels, contact: xr.Dataset, shown: Stresses, largest: dict[s
 
 
 def _heights(shown: Stresses) -> list[float]:
-    """Of the panels of layer and body: to scale, where the layer is neither very thin nor very thick."""
+    """The heights of the panels of layer and body: to scale, where the layer is neither very thin nor very thick."""
     if not (shown.layer and shown.body):
         return [1.0]
     depth = DEPTH if shown.edge == 1 else shown.body.z[-1] - shown.h  # of a spot in pitches
@@ -151,7 +151,7 @@ def _heights(shown: Stresses) -> list[float]:
 
 
 def _above(contact: xr.Dataset, mu: float, sigma_res: float | str) -> list[str]:
-    """What is stated above the panels: the inputs, and what the contact violates of the model's assumptions."""
+    """The texts above the panels: the inputs, and the assumptions of the model that the contact violates."""
     stress = str(sigma_res).replace("-", "\u2212")
     sliding = [rf"$\mu$ = {mu:g}"] * (mu > 0) + [rf"$\sigma_{{\mathrm{{res}}}}$ = {stress}"] * bool(sigma_res != 0)
     bodies = [name for name in ("nu1", "nu2") if name in contact and not (name == "nu2" and is_rigid(contact, "base"))]

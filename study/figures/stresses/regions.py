@@ -30,7 +30,7 @@ class Region(NamedTuple):
 
 
 class Stresses(NamedTuple):
-    """What the picture shows, in Pa or in units of the solver.
+    """The stresses of a picture, in Pa or in units of the solver.
 
     layer, body : Region or None where it is not there, or a rigid body
     surface, interface : name -> values along r; the interface is {} without a layer, or under a thick one

@@ -177,8 +177,8 @@ def _priors(
     """The centers and the stiffness (B, k) of priors, the variance (B,) of the points, if it is `unknown`, else 1, and
     what a prior counts it as.
 
-    These are from a fit with the inputs at their priors: points that hang together are so many fewer, and must not
-    overrule a prior.
+    These are from a fit with the inputs at their priors. Points with correlated errors are worth fewer independent
+    ones, and must not overrule a prior.
     """
     columns = [question.model.unknowns.index(name) for name in question.priors]
     center, sd = np.array(list(question.priors.values())).T
@@ -333,7 +333,7 @@ def _share(curve: MeasuredCurves, fit: Minimum) -> np.ndarray:
 
 def _no_contact(problem: _LeastSquares, best: Minimum) -> np.ndarray:
     """Whether a straight line fits as well: the model lowers its sum of squares by no more than chance would, in all
-    but one of a thousand curves."""
+    curves except one of a thousand."""
     data, k = problem.data, best.p.shape[1]
     w2 = data.w**2
     x = problem.curve.x / problem.curve.wide[:, None]

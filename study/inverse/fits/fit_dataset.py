@@ -1,7 +1,7 @@
-"""The Dataset of a fit: from the unknowns of each curve to inputs in SI with their intervals."""
+"""The Dataset of a fit: inputs in SI with their intervals, validity, and words for its summary."""
 
 import warnings
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -20,70 +20,110 @@ from .model import CurveModel
 from .question import Question
 from .residuals import PARTS
 
+_WITHOUT_FIT = (FitStatus.INVALID_INPUT, FitStatus.NO_CONTACT)
 #: At most so many curves have all places solved at once: a call costs more than some hundred contacts.
 _FEW = 8
 _HALVINGS = 4  # the depth at which the first assumption fails is right to 1/2**4 of the deepest
+#: Bodies at least as stiff, in Pa, flow below a sharp tip, whatever they are made of: the mean pressure of the elastic
+#: contact, E* cot(half_angle)/2, is 0.18 E* under a Berkovich tip, and their hardness is at most some 0.1 E*. Rubbers
+#: and gels, which do not flow, are softer than 0.1 GPa.
+HARD = 1e9
+#: cot(half_angle)/2 of tips that count as sharp: hardness over E* is above this in few metals.
+_BLUNT = 0.02
+_POINTED = ("berkovich", "vickers", "cube_corner")
+_TANGENT = 3.0  # a blunt cone is sharp where the contact is so many times as wide as its ball
 
 
-def answered(
+class _Numbers(NamedTuple):
+    """The fits of C curves in SI, NaN where a curve has none.
+
+    value, low, high, spread : (C, k) of the unknowns
+    covariance : (C, k, k); fit : (C, n) of y
+    """
+
+    value: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    spread: np.ndarray
+    covariance: np.ndarray
+    fit: np.ndarray
+
+
+def fit_dataset(
     question: Question, rows: dict, status: np.ndarray, X: np.ndarray, Y: np.ndarray, there: np.ndarray, plan: bool
 ) -> xr.Dataset:
-    model, C = question.model, len(X)
-    names = (*model.unknowns, *question.shifts)
-    k, unit = len(names), ROWS[model.y].unit
-    value, low, high, spread = (np.full((C, k), np.nan) for _ in range(4))
-    covariance, drawn = np.full((C, k, k), np.nan), np.full(X.shape, np.nan)
+    """The Dataset that `fit` returns; for a `plan` without values and residuals.
+
+    rows : curve -> (numbers of `fit_block`, row of the curve in them)
+    status : (curve,) of curves without a row
+    X, Y, there : (curve, point), x and y, and whether there is a point
+    """
+    model, names = question.model, (*question.model.unknowns, *question.shifts)
     status = status.astype(np.int8)
-    for curve, (answer, i) in rows.items():
-        status[curve] = answer["status"][i]
-        if status[curve] in (FitStatus.INVALID_INPUT, FitStatus.NO_CONTACT):
-            continue
-        sizes = {"D0": answer["wide"][i], "P0": answer["top"][i], "tilt": answer["top"][i] / answer["wide"][i]}
-        p, more = answer["p"][i], answer["propagated"][i]
-        total = answer["covariance"][i] + more
-        by = np.array([_slope(model, name, p[j], sizes) for j, name in enumerate(names)])
-        for j, name in enumerate(names):
-            ends = [_end(p[j], answer[end][i, j], answer["t"][i, j] * np.sqrt(more[j, j])) for end in ("low", "high")]
-            value[curve, j], low[curve, j], high[curve, j] = (_value(model, name, v, sizes) for v in (p[j], *ends))
-        covariance[curve] = total * by[:, None] * by[None, :]
-        spread[curve] = np.sqrt(np.diag(covariance[curve]))
-        drawn[curve, there[curve]] = answer["fit"][i][: there[curve].sum()]
-    variables: dict[str, Any] = {}
-    for j, name in enumerate(names):
-        si = ROWS[name].unit if name in ROWS else {"D0": "m", "P0": unit, "tilt": "N/m"}[name]
-        words = ROWS[name].long_name if name in ROWS else NAMES_OF_SHIFTS[name]
-        if not plan:
-            variables[name] = ("curve", value[:, j], {"units": si, "long_name": words})
-        ends_of = (("low", low), ("high", high)) if question.intervals and not plan else ()
-        variables |= {
-            f"{name}_{end}": ("curve", array[:, j], {"units": si}) for end, array in (*ends_of, ("spread", spread))
-        }
+    for curve, (block, i) in rows.items():
+        status[curve] = block["status"][i]
+    fits = {curve: row for curve, row in rows.items() if status[curve] not in _WITHOUT_FIT}
+    numbers = _in_si(question, names, fits, X, there)
+    variables = _of_unknowns(question, names, numbers, plan)
     coordinates: dict[str, Any] = {"cov_i": list(names), "cov_j": list(names)}
-    variables["covariance"] = (("curve", "cov_i", "cov_j"), covariance)
+    variables["covariance"] = (("curve", "cov_i", "cov_j"), numbers.covariance)
+    about = {"units": ROWS[model.y].unit}
     if not plan:
-        about = {"units": unit}
-        variables[f"{model.y}_fit"] = (("curve", "point"), drawn, about)
-        variables["residual"] = (("curve", "point"), Y - drawn, about | {"long_name": f"{model.y} - fit"})
-        variables |= _of_points(question, rows, status, there.sum(axis=1)) | _from_priors(question, names, value)
+        variables[f"{model.y}_fit"] = (("curve", "point"), numbers.fit, about)
+        variables["residual"] = (("curve", "point"), Y - numbers.fit, about | {"long_name": f"{model.y} - fit"})
+        variables |= _of_points(question, fits, there.sum(axis=1)) | _from_priors(question, names, numbers.value)
         coordinates["part"] = ("part", (np.arange(PARTS) + 0.5) / PARTS, {"long_name": "share of the depth"})
     meanings = {int(s): s.name.lower() for s in FitStatus} | ({NOT_RUN: "not_run"} if NOT_RUN in status else {})
     flags = {"flag_values": np.array([*meanings], np.int8), "flag_meanings": " ".join(meanings.values())}
     variables["fit_status"] = ("curve", status, flags)
     variables[model.x] = (("curve", "point"), X, {"units": ROWS[model.x].unit})
     if not plan:
-        variables[model.y] = (("curve", "point"), Y, {"units": unit})
-    fitted = xr.Dataset(
-        variables, coordinates, {"level": question.level, "x": model.x, "y": model.y, "free": " ".join(question.free)}
+        variables[model.y] = (("curve", "point"), Y, about)
+    attributes = {"level": question.level, "x": model.x, "y": model.y, "free": " ".join(question.free)}
+    fitted = xr.Dataset(variables, coordinates, attributes)
+    return fitted.merge(_validity(question, fitted, numbers.value, X, there))
+
+
+def _in_si(question: Question, names: tuple, fits: dict, X: np.ndarray, there: np.ndarray) -> _Numbers:
+    """The numbers of the unknowns `names` of curves with fits, curve -> (numbers of `fit_block`, row)."""
+    model, C, k = question.model, len(X), len(names)
+    numbers = _Numbers(
+        *(np.full((C, k), np.nan) for _ in range(4)), np.full((C, k, k), np.nan), np.full(X.shape, np.nan)
     )
-    return fitted.merge(_validity(question, fitted, value, X, there))
+    for curve, (block, i) in fits.items():
+        sizes = {"D0": block["wide"][i], "P0": block["top"][i], "tilt": block["top"][i] / block["wide"][i]}
+        p, more = block["p"][i], block["propagated"][i]
+        by = np.array([_slope(model, name, p[j], sizes) for j, name in enumerate(names)])
+        for j, name in enumerate(names):
+            ends = [_end(p[j], block[end][i, j], block["t"][i, j] * np.sqrt(more[j, j])) for end in ("low", "high")]
+            for array, v in zip(numbers[:3], (p[j], *ends), strict=True):
+                array[curve, j] = _value(model, name, v, sizes)
+        numbers.covariance[curve] = (block["covariance"][i] + more) * by[:, None] * by[None, :]
+        numbers.spread[curve] = np.sqrt(np.diag(numbers.covariance[curve]))
+        numbers.fit[curve, there[curve]] = block["fit"][i][: there[curve].sum()]
+    return numbers
 
 
-def _of_points(question: Question, rows: dict, status: np.ndarray, count: np.ndarray) -> dict[str, tuple]:
+def _of_unknowns(question: Question, names: tuple, numbers: _Numbers, plan: bool) -> dict[str, Any]:
+    """The variables of the unknowns: values, ends of intervals, spreads; for a `plan` spreads alone."""
+    variables: dict[str, Any] = {}
+    for j, name in enumerate(names):
+        si = ROWS[name].unit if name in ROWS else {"D0": "m", "P0": ROWS[question.model.y].unit, "tilt": "N/m"}[name]
+        words = ROWS[name].long_name if name in ROWS else NAMES_OF_SHIFTS[name]
+        if not plan:
+            variables[name] = ("curve", numbers.value[:, j], {"units": si, "long_name": words})
+        ends = ("low", "high") if question.intervals and not plan else ()
+        for end in (*ends, "spread"):
+            variables[f"{name}_{end}"] = ("curve", getattr(numbers, end)[:, j], {"units": si})
+    return variables
+
+
+def _of_points(question: Question, fits: dict, count: np.ndarray) -> dict[str, tuple]:
     """Variables that say how far the points agree with the fit (docs/fit.md, Points that do not agree).
 
     count : (curve,) of points
     """
-    model, C, name = question.model, len(status), question.model.unknowns[0]
+    model, C, name = question.model, len(count), question.model.unknowns[0]
     words = {
         "effective_points": "number of independent points that say as much",
         "misfit_ratio": "rms of the residuals in contact over that before it",
@@ -95,13 +135,11 @@ def _of_points(question: Question, rows: dict, status: np.ndarray, count: np.nda
     values = {key: np.full(C, np.nan) for key in words}
     values |= {key: np.zeros(C, bool) for key in ("misfit_larger", "changes")}
     parts = np.full((C, PARTS), np.nan)
-    for curve, (answer, i) in rows.items():
-        if status[curve] in (FitStatus.INVALID_INPUT, FitStatus.NO_CONTACT):
-            continue
-        values["effective_points"][curve] = count[curve] / answer["factors"][i][: len(model.unknowns)].max()
+    for curve, (block, i) in fits.items():
+        values["effective_points"][curve] = count[curve] / block["factors"][i][: len(model.unknowns)].max()
         for key, short in keys.items():
-            values[key][curve] = answer[short][i]
-        parts[curve] = model.of_coordinate(name, answer["parts"][i])
+            values[key][curve] = block[short][i]
+        parts[curve] = model.of_coordinate(name, block["parts"][i])
     about = {
         "units": ROWS[name].unit,
         "long_name": f"{name} by parts of the depth, the other unknowns as fitted to all",
@@ -222,20 +260,10 @@ def _contacts(question: Question, value: np.ndarray, x: np.ndarray) -> xr.Datase
         return solve(**arrays, x=2, profiles=False, progress=False)
 
 
-#: Bodies at least as stiff, in Pa, flow below a sharp tip, whatever they are made of: the mean pressure of the elastic
-#: contact, E* cot(half_angle)/2, is 0.18 E* under a Berkovich tip, and their hardness is at most some 0.1 E*. Rubbers
-#: and gels, which do not flow, are softer than 0.1 GPa.
-HARD = 1e9
-#: cot(half_angle)/2 of tips that count as sharp: hardness over E* is above this in few metals.
-_BLUNT = 0.02
-_POINTED = ("berkovich", "vickers", "cube_corner")
-_TANGENT = 3.0  # a blunt cone is sharp where the contact is so many times as wide as its ball
-
-
 def flows(model: CurveModel, modulus: np.ndarray, contacts: xr.Dataset) -> np.ndarray:
     """Which contacts (M,) of a fit are those of a sharp tip in a body that flows below it.
 
-    modulus : (M,) in Pa, of what is touched
+    modulus : (M,) in Pa, of the touched body
     contacts : the contacts at the deepest points, of `solve`
     """
     numbers = model.scene.parameters
@@ -252,14 +280,14 @@ def flows(model: CurveModel, modulus: np.ndarray, contacts: xr.Dataset) -> np.nd
     return hard & (slope / 2 > _BLUNT)
 
 
-def said(question: Question, fitted: xr.Dataset) -> dict[str, str]:
+def words_of(question: Question, fitted: xr.Dataset) -> dict[str, str]:
     """Attributes of a Dataset of `fit`: `given`, the inputs that are not free; `assumed`, the defaults that stand for
     inputs which were not given, and may be far from them, if there are any."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         contact = solve(**question.call, x=2, profiles=False, progress=False)
-    free = [name for name in question.free if name in fitted]  # of a plan none: these are its assumed values
-    for name in free:  # what is assumed depends on how soft the layer is
+    free = [name for name in question.free if name in fitted]  # none of a plan: these are its assumed values
+    for name in free:  # the assumptions depend on how soft the layer is
         if np.isfinite(value := fitted[name].median().item()):
             contact[name] = contact[name].copy(data=value)
     words = {"given": "\n".join(given(contact, free))}

@@ -113,7 +113,7 @@ def _walk(
 
 
 def _share(top: np.ndarray, height: np.ndarray, beyond: np.ndarray) -> np.ndarray:
-    """Which part of the way from `height` to `beyond` is up to the top, if the way is straight."""
+    """The part of the way from `height` to `beyond` at which a straight line reaches the top."""
     with np.errstate(divide="ignore", invalid="ignore"):
         share = (top - height) / (beyond - height)
     return np.where(np.isfinite(share), share, 0.5)
@@ -124,7 +124,7 @@ def _inner(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Fits with unknown `which` fixed at a value: the unknowns, and the root of how far the cost is above the best one.
 
-    Rows that are not `wanted` stay as they are: what a curve gets must not depend on how far others walk.
+    Rows that are not `wanted` stay as they are: the numbers of a curve must not depend on how far others walk.
     """
     rows, p, height = np.flatnonzero(wanted), p.copy(), np.full(len(p), np.nan)
     p[rows, which[rows]] = value[rows]

@@ -16,12 +16,12 @@ AT_LEAST = 8  # a batch is filled up to a multiple of so many curves
 #: crease, along which steps are short. Unknowns are then within some 1e-3 of their spreads.
 _IDLE = 30
 _STIFF = 1e10  # damping at which only rounding is left
-#: Of Huber's loss: residuals beyond this times the scale count linearly; the scale is this times the median deviation.
+#: Huber's loss: residuals above HUBER times the scale count linearly. The scale is MAD times the median deviation.
 HUBER, MAD = 1.345, 1.4826
 
 
 class Data(NamedTuple):
-    """Curves and what is known beforehand.
+    """The points of curves, and bounds and priors of their unknowns.
 
     y, w : (B, n), values and weights, 0 of what is no point
     low, high : (B, k) bounds of the unknowns
@@ -38,7 +38,7 @@ class Data(NamedTuple):
     huber: bool = False
 
     def take(self, index: np.ndarray) -> "Data":
-        """Those of some curves."""
+        """The data of some curves."""
         return Data(*(array[index] for array in self[:6]), self.huber)
 
 
@@ -54,7 +54,7 @@ class Minimum(NamedTuple):
     ended: np.ndarray
 
     def take(self, index: np.ndarray) -> "Minimum":
-        """Those of some curves."""
+        """The minima of some curves."""
         return Minimum(*(array[index] for array in self))
 
 

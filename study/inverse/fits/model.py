@@ -64,7 +64,7 @@ class CurveModel:
 
     @property
     def modulus(self) -> str:
-        """The modulus of what is touched: E1 of a layer, else E2."""
+        """The modulus of the touched body: E1 of a layer, else E2."""
         return "E1" if "E1" in self.scene.values else "E2"
 
     @property
@@ -81,14 +81,14 @@ class CurveModel:
 
     @property
     def scales_only(self) -> bool:
-        """Whether the modulus of what is touched is the only finite one: then it is a mere factor of y."""
+        """Whether the modulus of the touched body is the only finite one: then it is a mere factor of y."""
         values = self.scene.values
         others = {"E1", "E2", "E_punch"} - {self.modulus}
         return self.is_similar and all(np.isinf(values.get(name, np.inf)) for name in others)
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """Unknown inputs by which y over its Hertzian part depends apart from u."""
+        """Unknown inputs on which y over Hertz's y depends, besides u."""
         left_out = {"h", "R"} if self.is_similar else set()
         left_out |= {self.modulus} if self.scales_only else set()
         return tuple(name for name in self.unknowns if name not in left_out)
@@ -104,7 +104,7 @@ class CurveModel:
 
     def of_coordinate(self, name: str, coordinate: Any) -> Any:
         """The value in SI of a coordinate."""
-        with np.errstate(over="ignore"):  # of the end of an interval of what is hardly known
+        with np.errstate(over="ignore"):  # at the end of an interval of an input that the curve hardly says
             if name in ANGLES:
                 return np.degrees(np.arctan(np.exp(coordinate)))
             return np.asarray(coordinate) if is_ratio(name) else np.exp(coordinate)
@@ -129,13 +129,13 @@ class CurveModel:
         return values
 
     def hertz(self, values: dict[str, Any], x: Any, power: tuple) -> Any:
-        """x^q E^e R^r, with E the reduced modulus of what is touched."""
+        """x^q E^e R^r, with E the reduced modulus of the touched body."""
         q, e, r = power
         E, R = self.touched(values), values.get("R", self.scene.R)
         return x**q * E**e * R**r
 
     def touched(self, values: dict[str, Any]) -> Any:
-        """The reduced modulus in Pa of what is touched."""
+        """The reduced modulus in Pa of the touched body."""
         nu = {"E1": "nu1", "E2": "nu2"}[self.modulus]
         E = values.get(self.modulus, self.scene.values[self.modulus])
         return E / (1 - values.get(nu, self.scene.values.get(nu, 0.3)) ** 2)

@@ -1,7 +1,7 @@
 """The residuals of fits: how many independent points they are worth, and whether an unknown changes with the depth.
 
-Points that lie close together are off together: drift, feedback, and a model that is not quite right, leave waves in
-the residuals. Points that are counted as independent then seem to say far more than they do. The residuals, averaged
+The errors of neighbouring points are correlated: drift, feedback, and a model that is not quite right, leave waves in
+the residuals. Counted as independent, the points seem to say far more than they do. The residuals, averaged
 in at most _MOST blocks along x, are taken for the sum of white noise and of noise whose correlation decays. Their
 covariance is
 
@@ -149,8 +149,8 @@ def _ratio(e: np.ndarray, contact: np.ndarray, worth: tuple[float, float]) -> tu
 
 
 def _worth(E: np.ndarray) -> float:
-    """The part of a point which a residual is worth in a sum of squares, as if the correlation of neighbours decayed by
-    the same factor from each to the next."""
+    """The part of an independent point that a residual is worth in a sum of squares. The correlation of neighbours is
+    taken to decay by the same factor from each point to the next."""
     if len(E) < 3 or not E.any():
         return 1.0
     lag = float(np.clip((E[1:] * E[:-1]).sum() / (E**2).sum(), 0.0, 0.99)) ** 2

@@ -21,7 +21,7 @@ _SETTLED = 1e-9
 
 
 def without_form(z: np.ndarray, steps: tuple, form, name: str) -> tuple[np.ndarray, str]:
-    """The heights without their form, and what was taken off, in words.
+    """The heights without their form, and the form in words.
 
     form : "mean", "plane" (least squares), "quadratic" (least squares), "sphere" (the one that fits), or the radius of
         a sphere, in m or as text with its unit; negative: a cup

@@ -85,7 +85,7 @@ def _cutoffs(scan: Scan, cutoff) -> list[float | None]:
 
 
 def _flat(scan: Scan, form, rows) -> tuple[np.ndarray, str, tuple[str, ...]]:
-    """The heights without offsets of rows and form, what was taken off, and notes on what may still be in them."""
+    """The heights without offsets of rows and form, this treatment in words, and notes on what may still be in them."""
     if rows not in (None, "median") or (rows and scan.z.ndim == 1):
         rule = "a profile has no rows; leave it out" if scan.z.ndim == 1 else 'allowed are "median" and None'
         raise ValueError(f"{scan.name}: rows = {rows!r}; {rule}")
@@ -113,7 +113,7 @@ def _not_nothing(scan: Scan, z: np.ndarray, treatment: str) -> None:
 
 
 def _filtered(scan: Scan, z: np.ndarray, treatment: str, cutoff: float | None) -> tuple[np.ndarray, str]:
-    """The heights without short waves, and what was done to them, in words."""
+    """The heights without short waves, and the whole treatment in words."""
     if cutoff is None:
         treatment += "; no low-pass, so the shortest waves are those of the instrument and the step"
     else:

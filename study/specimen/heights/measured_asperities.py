@@ -15,7 +15,7 @@ from ...terminal import rounded
 from ..pictures import with_picture
 from ..quantities import readable
 
-#: The micro law by what is said of the heights of the summits.
+#: The law of the heights of the summits -> the micro law.
 LAWS = {"normal": "normal_heights", "equal": "disc_cell"}
 
 
@@ -143,7 +143,7 @@ class Roughness:
 
 
 def over(cutoffs: Sequence[float], answers: Sequence[Roughness], filtered: str) -> Roughness:
-    """The answers of several cutoffs as one, whose numbers are arrays; filtered : what was done at all of them.
+    """The answers of several cutoffs as one, whose numbers are arrays; filtered : the treatment at all of them.
 
     A note that not all have begins with its cutoffs.
     """

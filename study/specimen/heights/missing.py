@@ -19,7 +19,7 @@ CHOICES = ("fill", "skip", "refuse")
 
 
 def treated(z: np.ndarray, missing: str, name: str) -> tuple[np.ndarray, tuple[str, ...]]:
-    """The heights, in which NaN is a missing point, as `missing` says, and what was done with them in sentences.
+    """The heights, treated as `missing` says where a point is missing (NaN), and sentences about it.
 
     "fill": interpolated from their neighbours; "skip": NaN, which `measure` leaves out; "refuse": none may be missing.
 

@@ -21,14 +21,14 @@ _MATTERS = 0.05
 #: Largest correlation between neighbouring rows of the fourth differences of their offsets. Independent offsets have
 #: -0.8, a random walk or single steps -0.75, grooves that the step resolves above -0.5. _SCATTER/√n allows for the
 #: scatter over n rows. With both no jumps are seen on 200 isotropic, ground and white surfaces
-#: (tests/specimen/heights/test_row_jumps.py), but on one in a hundred whose grooves are as narrow as the step.
+#: (tests/specimen/heights/test_row_jumps.py), except on one in a hundred whose grooves are as narrow as the step.
 _UNLIKE, _SCATTER = -0.6, 1.1
 
 
 def aligned(z: np.ndarray) -> np.ndarray:
     """The map, each row shifted so that the median of its differences from the row before is 0.
 
-    A row without a point beside one of the row before is shifted as the row before. The median of each row itself would
+    A row that has no point next to one of the row before is shifted as that row. The median of each row itself would
     do harm: it is the height of another point from row to row, and makes N̄ 1.3 to 1.6 times too large on smooth
     surfaces without jumps (tests/specimen/heights/test_row_jumps.py).
     """

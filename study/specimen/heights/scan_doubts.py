@@ -28,12 +28,12 @@ SPIKED = 2.0
 FORMED = 0.2
 #: Steps along x and y that differ by less are equal.
 UNEQUAL = 1.001
-#: The word by which a doubt is known to be of jumps.
+#: A doubt with this word is one of jumps.
 JUMP = "jump against each other"
 
 
 def jump_doubts(z: np.ndarray) -> Iterator[str]:
-    """That the rows of a map jump, or its columns."""
+    """Doubts whether the rows of a map jump, or its columns."""
     if z.ndim == 1:
         return
     for lines, map_, way_out in (
@@ -49,7 +49,7 @@ def jump_doubts(z: np.ndarray) -> Iterator[str]:
 
 
 def form_doubts(z: np.ndarray, steps: tuple, form) -> Iterator[str]:
-    """That heights, of which a form was taken off, still have one."""
+    """Doubts whether heights without their form still have one."""
     share = 0.0 if form == "quadratic" else taken_by_polynomial(z, steps, 2)
     if share > FORMED:
         yield (

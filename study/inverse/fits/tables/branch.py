@@ -1,7 +1,7 @@
 """Loads of B curves at n depths on the stable branch of a :class:`.term_table.TermTable`, and their derivatives.
 
 The branch goes from large radii down to the last radius at which the depth turns. A depth-controlled punch is pulled
-off there; others come off before. Beyond it the load goes to 0 within _RAMP of what adhesion takes of the depth. No
+off there; others come off before. Beyond it the load goes to 0 within _RAMP of the depth that adhesion takes. No
 contact has these loads; they tell a search which way to go.
 """
 
@@ -14,7 +14,7 @@ from .term_table import LENGTH, STEP, TermTable
 
 _RAMP, _LEAST_RAMP = 0.25, 0.01
 _NEWTON, _TURN = 5, 12  # steps of the searches for a depth and for the turn
-#: dD/dx counts as at least this part of what adhesion takes of the depth: it is 0 at the turn.
+#: dD/dx counts as at least this part of the depth that adhesion takes: it is 0 at the turn.
 _STEEP = 0.02
 
 
@@ -87,7 +87,7 @@ def branch(rows: np.ndarray, depth: np.ndarray) -> Branch:
 
 
 def _least(parts: np.ndarray, f: np.ndarray) -> np.ndarray:
-    """The depth (B,) of the least load, to some percent of what adhesion takes of the depth; -inf where there is none:
+    """The depth (B,) of the least load, to some percent of the depth that adhesion takes; -inf where there is none:
     the load falls to the end."""
     slope = f[:, 0] * parts[:, 4] - f[:, 2] * parts[:, 6]
     turns = (slope[:, :-1] < 0) & (slope[:, 1:] >= 0)
@@ -129,7 +129,7 @@ def _free(rows: np.ndarray, depth: np.ndarray) -> Loads:
 
 
 def _by_rows(rows: np.ndarray, cells: _Cells, t: np.ndarray, of_parts: np.ndarray) -> np.ndarray:
-    """Derivatives (others, B, n) by what the rows behind the first are derivatives by."""
+    """Derivatives (others, B, n) of the loads by the variables of the rows behind the first."""
     others = np.empty((len(rows) - 1, *t.shape))
     for k, row in enumerate(rows[1:]):
         others[k] = sum(_value(cells.of(row, i), t) * of_parts[i] for i in range(4))

@@ -66,7 +66,7 @@ class StickingPoints(NamedTuple):
 
 
 def retractions(x: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """Which curves (B,) are retractions: x (B, n) falls in the order of the points, w is 0 of what is none."""
+    """Which curves (B,) are retractions: x (B, n) falls in the order of the points; w is 0 where there is no point."""
     there = w > 0
     place = np.cumsum(there, axis=1)
     count = np.maximum(there.sum(axis=1), 1)

@@ -1,7 +1,7 @@
 """The four terms of a contact with adhesion: powers of inputs times functions of the radius and of the other inputs.
 
 P = P₀ - pull_P and D = D₀ - pull_D, :mod:`solver.smooth_contact.adhesion.apart`. P₀ and pull_P have the modulus E of
-what is touched as a factor. Under :mod:`~solver.smooth_contact.adhesion.jkr` both pulls go with the root of w/E, and
+the touched body as a factor. Under :mod:`~solver.smooth_contact.adhesion.jkr` both pulls go with the root of w/E, and
 under a paraboloid or a cone lengths act through a/h alone. So w and k_machine are no coordinates of a table, and often
 E, h, R and half_angle are not.
 """
@@ -43,7 +43,7 @@ class Terms(NamedTuple):
     """How the terms of a model depend on its inputs.
 
     powers : name of a factor, "E", "w", "length", "R", "cotangent" -> its power (4,) in each term
-    axes : unknown inputs on which they depend apart from these factors
+    axes : unknown inputs on which they depend besides these factors
     length : the input that is the unit of the radius: "h" or "R"
     """
 

@@ -1,4 +1,4 @@
-"""docs/model.md: its equations against the solver, its tables against the code."""
+"""The pages of the model: their equations against the solver, their tables against the code."""
 
 import re
 
@@ -13,7 +13,18 @@ from study.data import derived
 from study.data.dataset import status_words
 from study.inputs.vocabulary import VOCABULARY
 
-PAGE = pages.read("docs/model.md")
+CONTENTS = "docs/model.md"
+#: Each page of the model, and how many blocks of Python it has.
+MODEL = {
+    "docs/symbols.md": 0,
+    "docs/macroscale.md": 4,
+    "docs/microscale.md": 2,
+    "docs/coated_body.md": 1,
+    "docs/solving.md": 2,
+    "docs/four_answers.md": 0,
+    "docs/paper_numbers.md": 1,
+}
+PAGE = "\n".join(map(pages.read, MODEL))
 ROLES = ("control", "material", "roughness", "numerics", "result", "profile", "flag", "count", "derived")
 PRINTED = {"m^2": "m²", "1/m^2": "m⁻²", "J/m^2": "J/m²", "1": ""}
 #: Parameters that are no inputs of a user, or of a shape of a test.
@@ -26,15 +37,49 @@ def rows(head: str, page: str = PAGE) -> list[list[str]]:
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in "".join(tables).splitlines()]
 
 
-def test_python_of_the_page_prints_what_stands_there(tmp_path):
-    assert len(pages.examples("docs/model.md")) == 10 and all(text for _, text in pages.examples("docs/model.md"))
-    pages.check_examples("docs/model.md", tmp_path)
+@pytest.mark.parametrize("page", [page for page, blocks in MODEL.items() if blocks])
+def test_python_of_the_pages_prints_what_stands_there(page, tmp_path):
+    assert len(pages.examples(page)) == MODEL[page] and all(text for _, text in pages.examples(page))
+    pages.check_examples(page, tmp_path)
+
+
+def headings(text: str) -> dict[str, str]:
+    """The headings of a page below its title, and the text below each."""
+    _, *parts = re.split(r"^##+ (.*)$", text, flags=re.MULTILINE)
+    return dict(zip(parts[::2], parts[1::2], strict=True))
+
+
+def test_each_heading_of_the_contents_leads_to_the_page_that_has_it():
+    """A message that names docs/model.md with a heading is two steps from the text. Limits stand there themselves."""
+    contents = headings(pages.read(CONTENTS))
+    assert len(contents) == 14 and contents.pop("Limits").count("\n- ") > 8
+    assert {page_of(heading, text) for heading, text in contents.items()} == set(MODEL)
+
+
+def page_of(heading: str, text: str) -> str:
+    """The page to which the text below a heading leads, and which has this heading itself."""
+    (target,) = re.findall(r"\]\((\w+\.md#[\w-]+)\)$", text.rstrip())
+    page, _, anchor = target.partition("#")
+    assert anchor == heading.lower().replace(" ", "-")
+    assert re.search(rf"^#+ {heading}$", pages.read(f"docs/{page}"), flags=re.MULTILINE), heading
+    return f"docs/{page}"
+
+
+def test_the_headings_of_the_equations_of_stresses_lead_to_them():
+    contents = headings(pages.read("docs/stresses.md"))
+    for heading in ("Transfer", "Waves", "Near the surface", "Sliding"):
+        assert page_of(heading, contents[heading]) == "docs/stress_fields.md"
+
+
+@pytest.mark.parametrize("page", [CONTENTS, *MODEL])
+def test_no_page_of_the_model_is_long(page):
+    assert len(pages.read(page).split()) <= 3500
 
 
 @pytest.mark.parametrize(
     ("page", "roles"),
     [
-        ("docs/model.md", ROLES),
+        ("docs/symbols.md", ROLES),
         ("docs/shapes.md", ("shape",)),
         ("docs/adhesion.md", ("adhesion", "pull_off")),
     ],
@@ -42,7 +87,7 @@ def test_python_of_the_page_prints_what_stands_there(tmp_path):
 def test_every_name_is_in_a_table_of_symbols_with_its_unit(page, roles):
     listed = {name: row for row in rows("symbol", pages.read(page)) for name in re.findall(r"`(\w+)`", row[1])}
     entries = {name: entry for name, entry in VOCABULARY.items() if entry.role in roles and name not in OF_TESTS}
-    assert set(listed) == set(entries) | ({"x"} if page == "docs/model.md" else set())
+    assert set(listed) == set(entries) | ({"x"} if page == "docs/symbols.md" else set())
     for name, entry in entries.items():
         *_, scale, physical = listed[name]
         plain = scale.strip("$").replace("^\\ast", "*").replace("E_2", "E2").replace("{-2}", "-2")

@@ -143,6 +143,7 @@ def test_the_table_of_real_systems_has_their_numbers_of_cases():
 RUN = (
     "README.md",
     *(f"docs/{name}.md" for name in ("accuracy", "python", "shapes", "adhesion", "stacks", "fit", "afm")),
+    "docs/other_programs.md",
 )
 
 

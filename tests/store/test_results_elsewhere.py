@@ -59,7 +59,7 @@ def test_headings_differ_without_regard_to_case(given):
 def test_what_the_page_advises_makes_no_axis_of_texts_and_no_string(tmp_path, monkeypatch):
     """The same numbers and texts; the text of an axis lies beside it."""
     monkeypatch.chdir(tmp_path)
-    page = (ROOT / "docs/studies.md").read_text(encoding="utf-8").partition("## Our files in other programs")[2]
+    page = (ROOT / "docs/other_programs.md").read_text(encoding="utf-8")
     names = {}
     exec(re.search(r"```python\n(.*?)```", page, re.DOTALL).group(1), names)
     contacts, plain = names["contacts"], xr.open_dataset("plain.nc")

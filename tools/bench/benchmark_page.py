@@ -23,50 +23,52 @@ figures are of one run; ratios are by turns, in processor time, on one BLAS thre
 
 ## What people run
 
-*r* counts cases in the time of one system of 17 unknowns of stacked `numpy.linalg.solve`, rtol is 1e-6. The floor is
-the time of the flops that form the matrices of the layer and eliminate all matrices, at the rate of a large product of
-matrices; the rest is the law, the kernel of the layer, profiles and errors, and memory.
+How many contacts a second does roughcoat solve? *r* is the number of cases in the time of one system of 17 unknowns of
+stacked `numpy.linalg.solve`; rtol is 1e-6. The floor is the time of the flops that form the matrices of the layer and
+eliminate all matrices, at the rate of a large product of matrices. The rest is the law, the kernel of the layer,
+profiles and errors, and memory.
 
 {workloads}
 
 ## Before anything is computed
 
-Processor time of a new Python, its imports and one contact, by turns with `python -c "import xarray"` (`make start`).
-A contact in the terminal is printed without xarray; scipy.special is imported for tables of layers, for panels and for
-stresses, pint for units that roughcoat does not write itself.
+The table has the processor time of a new Python, its imports and one contact, measured by turns with
+`python -c "import xarray"` (`make start`). A contact in the terminal needs no xarray. Tables of layers, panels and
+stresses import scipy.special; units that roughcoat does not write itself import pint.
 
 {start}
 
 ## Few cases
 
-A call of so many cases, and that over the time of 1,000 single solutions of 17 unknowns by `numpy.linalg.solve`.
+The table has the time of a call with a given number of cases, also over the time of 1,000 single solutions of 17
+unknowns by `numpy.linalg.solve`.
 
 {latency}
 
 ## The second core
 
-`study.solve` of 60,000 layered cases. Where the caller alone takes more wall than processor time, others used the
-machine, and the gain says little. Processes that wait are those of the call before.
+The table has `study.solve` of 60,000 layered cases. Where the caller alone takes more wall time than processor time,
+other programs used the machine, and the gain says little. Waiting processes are those of the call before.
 
 {cores_used}
 
 ## A whole run
 
-A million thin rough cases with profiles of 33 points by `python -m study run --workers 2`, from the study file to the
-netCDF file, and what the solver alone takes for them.
+`python -m study run --workers 2` computes a million thin rough cases with profiles of 33 points, from the study file to
+the netCDF file. The last rows have the time of the solver alone for these cases.
 
 {run}
 
 ## A load axis is no path
 
 Cases that differ in the load only could begin at the solutions of their neighbours. The first table has the processor
-time of a study of 8,000 cases, 20 loads each, over that of the solver as it is, if all its first guesses had an error
-of 1e-3, 1e-4 or 1e-6 *at no cost*. The second has the errors of guesses from other loads, on {nodes} nodes. By a cubic
-through every fourth load three quarters of the cases could be guessed in one batch: with five loads a decade to 1e-3 or
-little better, with more to 1e-4 and below. The parabola through the three loads before guesses nearly all, but in
-batches of as many cases as there are paths, where a case takes several times as long. What is left is three quarters
-of what the first table saves, before anything is paid for the guesses: at most a fifth on layers and a tenth on thin
-ones; and the numbers of a case would depend on its company, if only to rtol. So every case begins alone.
+time of a study of 8,000 cases, 20 loads each, over that of the present solver, if all its first guesses had an error
+of 1e-3, 1e-4 or 1e-6 *at no cost*. The second has the errors of guesses from other loads, on {nodes} nodes. A cubic
+through every fourth load could guess three quarters of the cases in one batch: with five loads a decade to 1e-3 or
+little better, with more to 1e-4 and below. The parabola through the three loads before could guess nearly all cases,
+but in batches of as many cases as there are paths, where a case takes several times as long. So three quarters of the
+saving in the first table are left, without the cost of the guesses: at most a fifth on layers and a tenth on thin
+layers. And the numbers of a case would depend on its company, if only to rtol. So every case begins alone.
 
 {saved}
 
@@ -74,9 +76,9 @@ ones; and the numbers of a case would depend on its company, if only to rtol. So
 
 ## A rough sphere with other codes
 
-Asperities on a square lattice, their pitch a tenth of the contact radius. Tamaas and ContactMechanics resolve each on a
-grid, roughcoat has its micro law in their place. Errors of D are against the finest grid of each code, and against
-rtol = 1e-12: so they say how well a code solves its own model. Seconds are wall time, of one case.
+The asperities are on a square lattice, with a pitch of a tenth of the contact radius. Tamaas and ContactMechanics
+resolve each asperity on a grid, and roughcoat has its micro law instead. Errors of D are against the finest grid of
+each code, and against rtol = 1e-12: they say how well a code solves its own model. Seconds are wall time, for one case.
 
 {peers}
 """

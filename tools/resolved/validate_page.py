@@ -27,18 +27,18 @@ from validate_tables import (
 MINUTES = 7
 PAGE = """# Two scales against one
 
-`make validate` presses rough spheres with every asperity resolved, by conjugate gradients on square elements that are
-not periodic, and compares them with what two scales say: a base and a micro law. It writes this page, its figures and
-`docs/validate.nc`. It takes {minutes} minutes of a processor. Each contact is kept once it is solved, so a run that was
-interrupted goes on where it was.
-R = E2* = 1 and Ra = {Ra:g}, on square lattices. `tests/laws/lattice/test_lattice_sphere.py`,
-`tests/resolved/test_layered_sphere.py` and `tests/laws/heights/test_heights_sphere.py` have coarse ones.
+Are two scales, a base and a micro law, right? `make validate` presses rough spheres with every asperity resolved, by
+conjugate gradients on square elements that are not periodic, and compares them with the two scales. It writes this
+page, its figures and `docs/validate.nc`. It takes {minutes} minutes of a processor. Each contact is kept once it is
+solved, so a run that was interrupted goes on where it was. R = E2* = 1 and Ra = {Ra:g}, on square lattices.
+`tests/laws/lattice/test_lattice_sphere.py`, `tests/resolved/test_layered_sphere.py` and
+`tests/laws/heights/test_heights_sphere.py` have coarse ones.
 
 A percentage is the error of the prediction. "Resolved" is extrapolated from the two finest meshes, ± half the change
 from the finest to it. The width is sqrt(5/2 <r²>), r² weighted with the pressure: Hertz's radius of a smooth contact,
-and defined as well for separate spots. The area is that of the elements with pressure, less what they stand out over
-the edges of the spots (Yastrebov, Anciaux and Molinari, Tribology International 114, 2017, 161). Cell means: the
-largest difference, over p(0), of the mean pressure of a cell of the lattice from the nominal pressure p(r) in its
+and defined for separate spots as well. The area is that of the elements with pressure, less the parts of them beyond
+the edges of the spots (Yastrebov, Anciaux and Molinari, Tribology International 114, 2017, 161). "Cell means" is the
+largest difference, over p(0), between the mean pressure of a cell of the lattice and the nominal pressure p(r) in its
 middle, in cells that lie inside the contact by a pitch.
 
 ![Cell means of the pressure, and what the laws say](validate.png)
@@ -53,8 +53,8 @@ With {spots:.0f} spots the lattice law is as right as with many. The disc cell h
 ## Layers
 
 The influence coefficients of a layer on a half-space are Love's of the layer's material, and the Hankel transform of
-L - 1 by a kernel that shares nothing with the solver's. Nothing tells the asperities which modulus they feel: that it
-is the layer's is a result. A hard bonded layer has no `thin_layer`.
+L - 1 by a kernel that shares nothing with the solver's. Nothing tells the asperities which modulus they feel: it is a
+result that they feel the layer's. A hard bonded layer has no `thin_layer`.
 
 {layer}
 
@@ -64,8 +64,8 @@ pressure to {layer_p_max:.2%}, as well as on a half-space. The real area is righ
 ## A layer that is thin against the pitch
 
 Asperities may press on a half-space of the layer's material, as in the paper, `asperities_on = "half_space"`, or on the
-[coated body itself](model.md#asperities-on-the-coated-body), `"layer"`. `"auto"`, the default, takes the coated body
-where their pitch is above h. The mean pressure is left to the base, which is exact either way.
+[coated body itself](coated_body.md), `"layer"`. `"auto"`, the default, takes the coated body where their pitch is above
+h. The base, which is exact in both cases, gives the mean pressure.
 
 ### Spheres
 
@@ -74,13 +74,13 @@ The same sphere, at a pitch of 0.0054, on four layers, and on the hardest also w
 {thin}
 
 On the coated body the lattice law is right to {thin_D:.2%} in the depth, {thin_a:.2%} in the width and {thin_p_max:.2%}
-in the largest pressure, which is known to {known_p_max:.2%}; the real area is right as well as it is known. What is
-left of depth and width is that of two scales with few spots, {thin_spots}: with four times as many the hardest
-layer has {more_D:.2%} and {more_a:.2%}. `model_error` of asperities on the half-space says what the coated body would
-change; that of the disc cell also what a lattice would.
+in the largest pressure, which is known to {known_p_max:.2%}; the real area is right as well as it is known. The
+remaining errors of depth and width are those of two scales with few spots, {thin_spots}: with four times as many the
+hardest layer has {more_D:.2%} and {more_a:.2%}. `model_error` of asperities on the half-space is the change that the
+coated body would make; that of the disc cell includes the change that a lattice would make.
 
-On a layer of n = 0.5 without friction that becomes thinner, the lattice law on a half-space of the layer's material and
-on the layer errs by
+The next table has a layer of n = 0.5 without friction that becomes thinner. The errors are those of the lattice law on
+a half-space of the layer's material and on the layer:
 
 {thinner}
 
@@ -98,7 +98,7 @@ The largest errors on the coated body are {cells_A:.2%} in A, {cells_lam:.2%} in
 
 ![Errors of A and of the largest pressure of 24 cells](validate_cells.png)
 
-Full: on the coated body; open: on a half-space of the layer's material; dotted: 1 %.
+Full points are on the coated body, open points on a half-space of the layer's material. The dotted line is 1 %.
 
 ### From which pitch on
 
@@ -107,22 +107,22 @@ of {points} elements a side:
 
 {films}
 
-Up to a pitch of h nothing of the body is seen, whatever the spots: there `"auto"` stays with the half-space. Beyond,
-the pitch over h decides, and not the spot over h alone. Of asperities on a half-space, the mask
-`spot_not_small_against_h` of [validity](model.md#four-answers) asks for b(0) ≤ 0.1 h, and `pitch_not_small_against_h`
-for a pitch ≤ 2 h. With b = 0.1 h on a bonded layer, A on the coated body is, over that on a half-space, less 1,
+Up to a pitch of h the body has no visible effect, whatever the spots: there `"auto"` stays with the half-space. Beyond,
+the pitch over h decides, not the spot over h alone. For asperities on a half-space, the mask `spot_not_small_against_h`
+of [validity](four_answers.md#validity) asks for b(0) ≤ 0.1 h, and `pitch_not_small_against_h` for a pitch ≤ 2 h. The
+next table has b = 0.1 h on a bonded layer, and shows A on the coated body, over that on a half-space, less 1:
 
 {sparse}
 
-Where the spots cover a hundredth of the area or more the first mask is stricter than need be. Sparse spots are
+Where the spots cover a hundredth of the area or more the first mask is stricter than necessary. Sparse spots are
 different: a stiff layer bends between them.
 
 ![Thin layers, and random heights](validate_limits.png)
 
-(a) Two scales against spheres on a layer that becomes thinner. (b) What the coated body changes in A of a cell: points
-resolved, lines the law. (c) Mean pressure of rings of cells: points resolved, ± two standard errors, lines the mean
-field; grey the disc cell of one height. (d) Depth of the mean plane of periodic cells: points resolved, ± two standard
-errors.
+(a) Two scales against spheres on a layer that becomes thinner. (b) The change that the coated body makes in A of a
+cell: points resolved, lines the law. (c) Mean pressure of rings of cells: points resolved, ± two standard errors, lines
+the mean field; grey the disc cell of one height. (d) Depth of the mean plane of periodic cells: points resolved, ± two
+standard errors.
 
 ### Limits
 
@@ -132,8 +132,8 @@ e^(-2Gh): the ratio of both tends to one number for all bodies.
 
 {thick}
 
-A layer *nearly like its body*, ν alike, differs from it as n - 1, here at a pitch of 8 h, and one of the same material
-not at all:
+The difference of a layer *nearly like its body*, with the same ν, is proportional to n - 1. The table is for a pitch of
+8 h. A layer of the same material does not differ at all:
 
 {alike}
 
@@ -162,12 +162,12 @@ depth of the mean plane, in A*, and in λ. p is in E pitch/Ra.
 
 {cells}
 
-σ = 0 is the error of the disc cell itself. The rest is what the mean field leaves out. A high summit presses down what
-lies under its neighbours. They carry less than the mean, and so they press it down less than the mean field has it,
-which is too deep.
+σ = 0 is the error of the disc cell itself. The rest is the error of the mean field. A high summit presses down the
+surface under its neighbours. The neighbours carry less than the mean load, and so they press the surface down less than
+the mean field assumes. So the depth of the mean field is too large.
 
-Such cells on bonded layers of a sixth of the pitch, beside the mean field of asperities on a half-space of the layer's
-material and on the layer:
+The same cells on bonded layers of a sixth of the pitch, compared with the mean field of asperities on a half-space of
+the layer's material and on the layer:
 
 {height_cells}
 """

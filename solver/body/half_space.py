@@ -65,6 +65,8 @@ class HalfSpace(NamedTuple):
     E: np.ndarray
     C: np.ndarray
 
+    kernel = None
+
     def take(self, index):
         return HalfSpace(self.E[index], self.C[index])
 

@@ -10,6 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
+from ..kernels.kernel import Kernel
 from ..numerics.mesh import Mesh
 
 
@@ -49,10 +50,13 @@ class Body(Protocol):
 
     E : (B,), modulus of the half-space to which K is relative
     C : (B,), compliance of springs on the surface, in R/E2*; 0: none
+    kernel : the :class:`~solver.kernels.kernel.Kernel` L of the Hankel integral over L - 1; None: there is no such
+        integral
     """
 
     E: np.ndarray
     C: np.ndarray
+    kernel: Kernel | None
 
     def take(self, index):
         """The body of the sub-batch at `index`."""

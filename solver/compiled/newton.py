@@ -17,7 +17,7 @@ from ..laws import LAWS
 from ..laws.cell.law import number, spot_curve
 from ..numerics.ladder import LADDER
 from ..parameters import one_of
-from ..punches import PARABOLOID
+from ..shapes.paraboloid import Paraboloid
 from ..solution import Solution
 from ..status import Status
 from .cells import cells_of
@@ -60,7 +60,7 @@ def _taken(cases, nodes):
     """(B,) bool: the cases of which the core knows law, body and punch, and whose mesh is free."""
     law, body = cases.law.law, cases.body
     taken = (nodes == 0) | one_of(nodes, _MESHES)
-    if _law_of(law) is None or cases.punch is not PARABOLOID:
+    if _law_of(law) is None or not isinstance(cases.punch, Paraboloid):
         return np.zeros_like(taken)
     if law.name == "power_law":
         taken = taken & (cases.law.own[0][:, 0] >= STEEP)

@@ -15,8 +15,8 @@ from ..numerics.mesh import mesh_of
 from ..solution import Solution
 from ..status import Status
 from .answer import Answer, Goal, Verdict, answer, at_floor, may_be_error, tensile_centre
-from .driver import BUDGET, budget_of, newton_steps, solve_on
 from .equation import evaluate
+from .newton import BUDGET, budget_of, newton_steps, solve_on
 from .panels import solve_on_panels
 from .start import first_guess, guess_radius, nodes_wanted
 
@@ -42,7 +42,7 @@ def solve_newton(cases, rtol, nodes, limit, x):
     x : (m,), radii of the profiles.
     """
     size, free = len(rtol), nodes == 0
-    direct = free & (limit == 0) & (cases.shape is not None and ~cases.shape.even)
+    direct = free & (limit == 0) & ~cases.shape.even
     if direct.any():
         return _split(cases, (rtol, nodes), direct, limit, x)
     work, before, a = np.zeros(size), np.full(size, np.inf), guess_radius(cases)
@@ -90,7 +90,7 @@ def _split(cases, settings, direct, limit, x):
 
 def _has_branches(case):
     """Whether more than one radius may have the load or depth of a case, as under a hard layer, which bends."""
-    kernel = getattr(case.body, "kernel", None)
+    kernel = case.body.kernel
     return case.control != "a" and kernel is not None and kernel.stiffness[0] > _SOFT
 
 

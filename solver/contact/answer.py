@@ -5,10 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..numerics.codes import Codes
 from ..numerics.mesh import gauss_rule
 from ..solution import Solution
-from ..status import Status
+from ..status import Codes, Status
 from . import newton
 from .equation import State
 from .error import completed, estimate, profile_error, refine

@@ -4,7 +4,7 @@ With p = p* q(y), A = A* g(y), x = r/a and s = sqrt(1 - x²), Eq. (4) divided by
 
     X K[q] + Y q + Z g - s² = 0,    X = 8 p*/(π a E),  Y = 2 C p*/a²,  Z = 2 A*/a²        (R = E2* = 1)
 
-at the nodes of the mesh. Under a punch of another shape its drop stands for s² (:mod:`..punches.punch`). The control
+at the nodes of the mesh. Under a punch of another shape its drop stands for s² (:mod:`.punch`). The control
 (load, radius or depth) is one more equation. The unknowns are y at the nodes and η = ln a. The body has E, the springs
 C and K (:mod:`..body.operator`); the law has p*, A*, q, g (:mod:`..laws.law`). At the edge of the contact q is 0, as
 polynomials in s are by themselves.
@@ -18,8 +18,8 @@ import numpy as np
 from ..body.operator import Body, Operator
 from ..laws import Bound, Curve
 from ..numerics.kept import once
-from ..punches import PARABOLOID
-from ..punches.punch import Punch, largest
+from ..shapes.shape import has_radius
+from .punch import Punch, largest
 
 #: A pressure below this part of the largest counts as none.
 _NOTHING = 1e-16
@@ -49,17 +49,17 @@ class Cases(NamedTuple):
     law: Bound
     body: Body
     value: np.ndarray
-    punch: Punch = PARABOLOID
+    punch: Punch
 
     @property
     def shape(self):
-        """The :class:`~solver.shapes.shape.Shape` of which the punch is made; None of one that has none."""
-        return getattr(self.punch, "shape", None)
+        """The :class:`~solver.shapes.shape.Shape` of the punch."""
+        return self.punch.shape
 
     @property
     def is_flat(self):
         """Whether the contact radius is that of the punch, whatever the load."""
-        return self.shape is not None and np.array_equal(self.shape.least(), self.shape.most())
+        return bool(has_radius(self.shape).all())
 
     def take(self, index):
         law, body, punch = (part.take(index) for part in (self.law, self.body, self.punch))
@@ -189,7 +189,7 @@ def _floor(body, a, nodes):
 
 def _near_flat(cases, a):
     """Rounding (B,) of the height of an edge of radius a (B,) next to a flat end; 0 of a punch without one."""
-    if cases.shape is None or cases.is_flat:
+    if cases.is_flat:
         return np.zeros(len(a))
     b = cases.shape.least()
     return np.where(b > 0, _OF_RADIUS * a / (a - b), 0.0)

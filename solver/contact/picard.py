@@ -11,8 +11,8 @@ import numpy as np
 from ..body.operator import Operator
 from ..numerics.bracket import false_position
 from ..status import Status
-from .driver import Iterated, iterate
 from .equation import Cases, State, control_residual, evaluate, groups, joined
+from .newton import Iterated, iterate
 from .start import guess_radius
 
 #: Most successive approximations at one radius.
@@ -76,7 +76,7 @@ class Approximation:
 
 
 def solve(cases, mesh, k, rtol, limit):
-    """:class:`~solver.contact.driver.Iterated` by the paper's scheme, `at` being the equation at the end; and the
+    """:class:`~solver.contact.newton.Iterated` by the paper's scheme, `at` being the equation at the end; and the
     status (B,).
 
     k, rtol : (B,) float, k >= 0; limit : int, approximations at one radius (0: LIMIT).
@@ -113,7 +113,7 @@ def _status(at, missed, spent):
 
 
 def approximate(cases, eta, mesh, k, rtol, limit):
-    """:class:`~solver.contact.driver.Iterated` of successive approximations at the radii exp(eta) (B,) from p = 0.
+    """:class:`~solver.contact.newton.Iterated` of successive approximations at the radii exp(eta) (B,) from p = 0.
 
     Where they do not settle quickly they amplify rounding. So the operator of each case is made as if it were alone:
     its numbers do not depend on the batch.

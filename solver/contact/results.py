@@ -47,7 +47,7 @@ def difference(first, second, names=JUDGED):
 def pointed(cases):
     """(B,) bool: the punch has a point, f'(0+) > 0. What asperities under it bear is set so near to the axis, within A'
     times the modulus, that no mesh tells it: the centre is not judged, and not reported."""
-    return np.zeros(len(cases.value), dtype=bool) if cases.shape is None else cases.shape.pointed
+    return cases.shape.pointed
 
 
 def judged_difference(cases, first, second):

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ..numerics.linalg import solve_stack
-from ..punches.punch import largest
 from .equation import State, evaluate, groups
+from .punch import largest
 
 #: The first guess of the pressure is nowhere below this part of the largest.
 _LEAST = 1e-12
@@ -34,9 +34,9 @@ def guess_radius(cases):
 
 def _together(shape, *radii):
     """Contact radius (B,) of what yields together, from the `radii` (B,) that each would have alone."""
-    least = 0.0 if shape is None else shape.least()
+    least = shape.least()
     a = least + sum(np.maximum(radius - least, 0.0) ** 4 for radius in radii) ** 0.25
-    return a if shape is None else np.minimum(a, (np.max(radii, axis=0) + shape.most()) / 2)
+    return np.minimum(a, (np.max(radii, axis=0) + shape.most()) / 2)
 
 
 def guess_pressure(cases, a, s):

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..contact.equation import State, control_gradient, evaluate, groups
 from ..numerics.linalg import solve_stack
+from ..shapes.shape import Shape
 
 #: Most steps on a mesh, and the residual, over 2D/a², at which only rounding is left. It is not over τ, which is far
 #: less than the displacement where asperities hardly yield. Under laws that are tables the residual stays higher, next
@@ -23,12 +24,16 @@ LIMIT, _CLOSED, _STALLED = 60, 1e-13, 1e-7
 
 
 class AsFlat(NamedTuple):
-    """The :class:`~solver.punches.punch.Punch` whose drop is `tau` (B,) at any radius. It needs no first guess."""
+    """The :class:`~solver.contact.punch.Punch` of a flat `shape` whose drop is `tau` (B,) at any radius. It needs no
+    first guess."""
 
     tau: np.ndarray
+    shape: Shape
+
+    polynomial = True
 
     def take(self, index):
-        return AsFlat(self.tau[index])
+        return AsFlat(self.tau[index], self.shape.take(index))
 
     def drop(self, a, s):
         return self.tau[:, None] + 0 * s
@@ -57,7 +62,7 @@ def first_guess(case, a, mesh):
         q = 1 / (1 / smooth + 1 / case.law.sparse(2 * value / a**2 / Z))
     y = case.law.guess(q)
     tau = (Z * case.law.evaluate(y).g)[:, 0]
-    return evaluate(case._replace(punch=AsFlat(tau)), State(y, eta), mesh)
+    return evaluate(case._replace(punch=AsFlat(tau, case.shape)), State(y, eta), mesh)
 
 
 def tangent(ev):
@@ -93,7 +98,7 @@ def step(ev):
     growth = explicit(ev.cases.control, ev) + (by_q * along).sum(axis=1)
     d_tau = np.clip(-(ev.G + (by_q * dq).sum(axis=1)) / growth, -1.0, 1.0)
     y = ev.state.y + (dq + along * d_tau[:, None]) / ev.curve.dq
-    cases = ev.cases._replace(punch=AsFlat(ev.cases.punch.tau * np.exp(d_tau)))
+    cases = ev.cases._replace(punch=AsFlat(ev.cases.punch.tau * np.exp(d_tau), ev.cases.shape))
     return evaluate(cases, State(cases.law.limit(y, ev.state.y), ev.state.eta), ev.mesh, ev.operator)
 
 

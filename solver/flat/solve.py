@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..contact.driver import BUDGET
 from ..contact.error import completed
+from ..contact.newton import BUDGET
 from ..contact.panels import ORDER, resolve
 from ..contact.results import interpolate, judged_difference, profiles, quantities
 from ..numerics.ladder import MARGIN, finer_mesh

@@ -9,8 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..contact.driver import solve_on
+from ..bases import exact_of
 from ..contact.equation import State, evaluate
+from ..contact.newton import solve_on
 from ..contact.results import difference, quantities
 from ..numerics.mesh import mesh_of
 from ..scaling import as_cases, dimensionless, kinds_of_laws, restore
@@ -28,7 +29,7 @@ def judged(problem, x):
     problem : all of base "thin_layer" or "thin_stack"; x : (m,) radii
     """
     pieces, scaled = [], dimensionless(problem)
-    exact = scaled.but(base=np.where(scaled.base == "thin_stack", "stack", "layered"))
+    exact = scaled.but(base=exact_of(scaled.base))
     kinds = problem.micro, problem.base, kinds_of_laws(exact)
     for kind in dict.fromkeys(zip(*(words.tolist() for words in kinds), strict=True)):
         index = np.flatnonzero(np.all([words == word for words, word in zip(kinds, kind, strict=True)], axis=0))

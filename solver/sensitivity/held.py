@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..bases import is_chosen
 from ..kernels.two_layers import layer_modulus
 from ..laws.disc_cell import SMOOTH
 from ..problem import Problem
@@ -36,7 +37,7 @@ class Held(NamedTuple):
 def held(scaled, used):
     """:class:`Held` of a problem in units R = E2* = 1; used : (B,), the :class:`~solver.solution.Model` of each case.
     The base "auto" stays at the model that it chose."""
-    auto, thin, exact = scaled.base == "auto", np.isin(used, _THIN), np.isin(used, _EXACT)
+    auto, thin, exact = is_chosen(scaled.base), np.isin(used, _THIN), np.isin(used, _EXACT)
     alone, added = auto & ~thin & ~exact, auto & np.isin(used, _SMOOTH) & scaled.rough()
     of_model = np.select([thin, exact], ["thin_layer", "layered"], "half_space")
     named = scaled.but(

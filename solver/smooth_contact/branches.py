@@ -84,7 +84,7 @@ class _Search:
     def first(self):
         """x (B,) to begin with, where g is negative."""
         least = self.radii.least
-        thick = self.body.h if hasattr(self.body, "h") else np.ones(len(least))
+        thick = np.ones(len(least)) if self.body.kernel is None else self.body.h
         x = self.radii.of(least + np.where(least > 0, _CORNER * least, _THIN * thick))
         x = np.where(np.isnan(x), LAST, x)
         high, (steps, width) = np.arange(len(x)), _DOWN

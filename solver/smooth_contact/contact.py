@@ -3,8 +3,9 @@
 import numpy as np
 
 from ..body import BODIES
-from ..shapes import PARABOLOID, shape_of
-from ..shapes.power import Power
+from ..numerics.batch import alike
+from ..shapes import shape_of
+from ..shapes.shape import has_radius
 from ..solution import Solution
 from ..status import Status
 from .adhesion import adhesive, limits
@@ -17,23 +18,14 @@ from .tension import judged
 
 
 def kinds_of(problem):
-    """Pairs of a mask (B,) of the cases of one base, shape and law of adhesion, and the way to solve these together."""
-    law = np.where(problem.w_adhesion > 0, problem.adhesion, "")
-    kinds = np.char.add(np.char.add(problem.base, np.char.add("|", problem.shape)), np.char.add("|", law))
-    for kind in np.unique(kinds):
-        yield kinds == kind, not_sticking if kind.endswith("|") else sticking
-
-
-def shape_in(part):
-    """The :class:`~..shapes.Shape` of cases that have one `shape`."""
-    half, two = np.full(len(part), 0.5), np.full(len(part), 2.0)
-    return Power(half, two, two) if str(part.shape[0]) == PARABOLOID else shape_of(part)
+    """The indices (b,) of the cases of one base, shape and law of adhesion, a list."""
+    return alike(problem.base, problem.shape, np.where(problem.w_adhesion > 0, problem.adhesion, ""))
 
 
 def not_sticking(part, x):
     """:class:`~..solution.Solution` of cases without adhesion in units R = E2* = 1, at the radii x (m,)."""
-    shape, body = shape_in(part), where_slow(BODIES[str(part.base[0])](part))
-    if str(part.shape[0]) == "flat":
+    shape, body = shape_of(part), where_slow(BODIES[str(part.base[0])](part))
+    if has_radius(shape).all():
         state, counts = pinned(part, shape, body), np.ones(len(part), dtype=np.int32)
         return judged(*answer(part, shape, state, counts, x), shape, body, state, x)[0]
     solution, tensile = _touching(part, shape, body, touching(part.control, part.value, shape, body), x)
@@ -59,7 +51,7 @@ def _touching(part, shape, body, at_radius, x):
 
 def sticking(part, x):
     """The same of cases with adhesion, w > 0."""
-    shape, body = shape_in(part), Tabulated.of(BODIES[str(part.base[0])](part))
+    shape, body = shape_of(part), Tabulated.of(BODIES[str(part.base[0])](part))
     solution = adhesive.solve(part, shape, body, x)
     if str(part.adhesion[0]) == "maugis":
 

@@ -101,7 +101,7 @@ class Response(NamedTuple):
 
 def respond(shape, body, a):
     """:class:`Response` of B shapes on a body at radii a (B,); NaN where a is."""
-    if not hasattr(body, "kernel"):
+    if body.kernel is None:
         return _on_half_space(shape, body, a)
     octave, place = place_of(body, a)
     sampler = None if isinstance(body, Tabulated) else body.kernel.sampler  # a table has all nodes at once

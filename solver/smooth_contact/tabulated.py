@@ -29,7 +29,7 @@ class Tabulated(NamedTuple):
     @classmethod
     def of(cls, body):
         """The body with a table of its kernel, or the body itself, if it has none."""
-        if not hasattr(body, "kernel"):
+        if body.kernel is None:
             return body
         place = np.minimum(np.searchsorted(STIFFEST, body.kernel.stiffness), len(STIFFEST) - 1)
         first = np.array(_FIRST)[place]
@@ -81,7 +81,7 @@ class Tabulated(NamedTuple):
 
 def where_slow(body):
     """The body, with a table of its kernel if that is of many layers, of which each wave takes long."""
-    return Tabulated.of(body) if hasattr(body, "kernel") and body.kernel.sampler is None else body
+    return Tabulated.of(body) if body.kernel is not None and body.kernel.sampler is None else body
 
 
 def excess(body, u):

@@ -36,7 +36,7 @@ def in_a_ring(shape, body, response, wanted):
     than all changes with the last functions of the basis nearby, of which one may be small by chance. And whether there
     may be some, (B,) bool."""
     there, doubtful = np.zeros((2, len(response.a)), dtype=bool)
-    if not hasattr(body, "kernel"):
+    if body.kernel is None:
         return there, doubtful
     thin = wanted & ~shape.even & (body.kernel.stiffness > _SOFT) & (response.size > _FEW)
     for size in np.unique(response.size[thin]).astype(int).tolist():

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..bases import is_bare
 from ..kernels.two_layers import layer_modulus
 from ..solve import solve
 from . import spots
@@ -41,7 +42,7 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slope
     if body == "asperities":
         problem = problem.but(micro=np.where(problem.micro == "elastic_plastic", "disc_cell", problem.micro))
     at_radius = replace(problem, control="a", value=problem.R)
-    left = strength - np.where(problem.base == "half_space", 0.0, np.abs(residual))
+    left = strength - np.where(is_bare(problem.base), 0.0, np.abs(residual))
     way = way_of(problem, left / problem.E2, mu, _touched(problem, body, punch))
 
     def stress(index, at, coarse):
@@ -67,7 +68,7 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slope
 
 def _touched(problem, body, punch):
     """(B,) bool: the punch touches the body, which is not incompressible; or it is the punch itself."""
-    bare = problem.base == "half_space"
+    bare = is_bare(problem.base)
     if body == "punch":
         return punch < 0.5
     return np.where(bare, (body == "body") & (problem.nu2 < 0.5), (body == "layer") & (problem.nu1 < 0.5))
@@ -75,7 +76,7 @@ def _touched(problem, body, punch):
 
 def _start(problem, body, strength, mu):
     """A radius over R below which nothing yields."""
-    n = np.where(problem.base == "half_space", 1.0, problem.n)
+    n = np.where(is_bare(problem.base), 1.0, problem.n)
     if body == "asperities":
         least = _NO_SPOT * strength / layer_modulus(n) * np.sqrt(problem.Ra / problem.R)
         soft = np.where(n > 0, np.minimum(n, 1.0), 0.1)

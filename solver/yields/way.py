@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..bases import is_bare
 from ..fields.shaped import corners
 from ..scaling import dimensionless
-from ..shapes import PARABOLOID
-from ..smooth_contact.contact import kinds_of, shape_in
+from ..shapes import PARABOLOID, shape_of
+from ..smooth_contact.contact import kinds_of
 from ..smooth_contact.rises import on_half_space
 
 #: Radii in R that are looked at: of paraboloids and spheres.
@@ -52,11 +53,10 @@ def way_of(problem, strength, mu, touched):
     if not len(others):
         return made
     scaled = dimensionless(problem.take(others))
-    E = np.where(scaled.base == "half_space", 1.0, np.maximum(scaled.n, 1.0))
+    E = np.where(is_bare(scaled.base), 1.0, np.maximum(scaled.n, 1.0))
     least = _NEVER / (1 + _BY_FRICTION * mu) * strength[others] / E
-    for mask, _ in kinds_of(scaled):
-        rows = np.flatnonzero(mask)
-        shape = shape_in(scaled.take(rows))
+    for rows in kinds_of(scaled):
+        shape = shape_of(scaled.take(rows))
         made.flat[others[rows]] = shape.least()
         made.last[others[rows]] = _last(shape)
         made.start[others[rows]] = _start(shape, made.last[others[rows]], least[rows])

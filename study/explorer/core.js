@@ -473,7 +473,7 @@ const Core = (() => {
     return found && evaluate(c, found.y, eta, mesh);
   }
 
-  /** A search for the radius where Newton's method fails, by false position; solver/contact/driver.py. */
+  /** A search for the radius where Newton's method fails, by false position; solver/contact/newton.py. */
   function byRadius(c, mesh) {
     let low = null, high = null, eta = Math.log(guessRadius(c));
     for (let count = 0; count < 60; count++) {

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from solver.bases import is_bare
 from solver.yields.crossing import NUMBERS, Crossing
 from solver.yields.first import first_yield as crossing_of
 from solver.yields.way import ROUND, STEEPEST
@@ -116,7 +117,7 @@ def first_yield(
 
 def _there(problem: Any, body: str) -> np.ndarray:
     """Which cases have such a body, and it is elastic."""
-    bare = problem.base == "half_space"
+    bare = is_bare(problem.base)
     rough = np.isfinite(problem.Nbar) & (problem.micro != "smooth")
     return {"layer": ~bare, "body": bare | (problem.n > 0), "asperities": rough, "punch": problem.m > 0}[body]
 

@@ -12,8 +12,8 @@ from solver_cases import JUDGED, MAIN, difference, layer_of
 from solver import Problem, Status, solve
 from solver.body import film, tables, wave_rule
 from solver.body.wave_rule import CUT, FILM
-from solver.contact.driver import solve_on
 from solver.contact.equation import evaluate
+from solver.contact.newton import solve_on
 from solver.contact.start import first_guess
 from solver.kernels.closed_form import decaying_part
 from solver.kernels.two_layers import SAMPLER

@@ -11,7 +11,7 @@ from solver import Problem, Status, solve
 from solver.body.tables import between, table
 from solver.kernels.two_layers import SAMPLER
 from solver.numerics.mesh import mesh_of, panel_mesh
-from solver.punches.paraboloid import HERTZ
+from solver.shapes.paraboloid import HERTZ
 
 BREAKS = (0.0, 0.01, 0.05, 0.3, 0.31, 0.32, 0.6, 1.0)
 #: Near full contact under a thin layer: the asperities saturate at s² = Z/3, inside the contact.

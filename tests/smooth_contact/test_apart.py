@@ -5,8 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solver import Problem, solve
+from solver.shapes import shape_of
 from solver.smooth_contact.adhesion.apart import apart
-from solver.smooth_contact.contact import shape_in
 from solver.smooth_contact.radius import Radii
 
 LAYER = {"h": 0.3, "nu1": 0.45, "bonding": "bonded"}
@@ -27,7 +27,7 @@ CASES = {
 def test_differences_are_the_contact(name):
     inputs, rtol = CASES[name]
     asked = Problem.of(a=np.full(3, 0.2), w_adhesion=np.array([1e-6, 1e-5, 1e-4]), micro="smooth", **inputs)
-    x = Radii(shape_in(asked)).of(asked.value)[:, None]
+    x = Radii(shape_of(asked)).of(asked.value)[:, None]
     parts = apart(asked, x)
     solved = solve(asked, np.array([0.0]))
     assert np.isfinite(solved.P).all()

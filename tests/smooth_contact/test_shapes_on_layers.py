@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from rows import SMOOTH, material, rows, shape
 
 from solver import Problem, Status, solve
-from solver.smooth_contact.contact import shape_in
+from solver.shapes import shape_of
 
 ROWS = rows("given_shapes.csv")
 IDS = [f"{int(row['case'])} {row['shape']}" for row in ROWS]
@@ -209,6 +209,6 @@ def test_all_kinks_of_a_table_count(more, tmp_path):
     weights = (np.diff(ends)[:, None] * w / 2).ravel()
     x = np.sqrt((1 - s) * (1 + s))
     flat = solve(Problem.of(D=1.0, shape="flat", flat_radius=a, **layer), x=x)
-    height = shape_in(Problem.of(a=a, shape=f"table:{path}", **layer)).height(a * x[None])[0]
+    height = shape_of(Problem.of(a=a, shape=f"table:{path}", **layer)).height(a * x[None])[0]
     lost = 2 * np.pi * a**2 * (flat.p[0] * height * s) @ weights
     assert_allclose(flat.dP_dD * contact.D - lost, contact.P, rtol=1e-8, atol=0)

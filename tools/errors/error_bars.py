@@ -20,9 +20,9 @@ sys.path.append(str(Path(__file__).parents[2] / "tests/shared"))  # pytest has i
 from solver_cases import EXTREMES, ROUGH_KINDS, random_cases  # noqa: E402
 
 from solver import Problem
-from solver.contact.driver import solve_on
 from solver.contact.equation import evaluate
 from solver.contact.error import _BLIND, _RISEN, completed, estimate, margin, refine
+from solver.contact.newton import solve_on
 from solver.contact.results import difference, quantities
 from solver.contact.start import first_guess
 from solver.numerics.ladder import MARGIN

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...shapes.shape import has_radius
 from ...status import Status
 from ..radius import guess
 from ..state import Scales, State, answer, beyond_profile, pinned
@@ -31,7 +32,7 @@ def solve(part, shape, body, x):
     law, every, ring = Jkr(shape, body, part.w_adhesion), np.arange(len(part)), None
     if str(part.adhesion[0]) == "maugis":
         law = Maugis(shape, body, part.w_adhesion, ring_stress(part))
-    if str(part.shape[0]) == "flat":
+    if has_radius(shape).all():
         return _flat(part, law, x)
     curve, at_turn = Curve(law), np.zeros(len(part), dtype=bool)
     search, counts = pulled(part, law)
@@ -166,7 +167,7 @@ def _jump(curve, holder, turn):
 
 def _flat(part, law, x):
     """A flat punch: it holds at its radius down to the load, or depth, at which its edge gives way."""
-    off, state = law.at(law.shape.b), pinned(part, law.shape, law.body)
+    off, state = law.at(law.shape.least()), pinned(part, law.shape, law.body)
     holds = (state.A >= off.A * (1 + _SAME)) & (part.branch == "stable")
     pulls = {"P_off": off.P, "D_off": off.D, "a_off": off.a, "P_in": 0 * off.a, "a_in": off.a}
     ends = pulls, _off(off), _scales(law, off, state)

@@ -11,7 +11,7 @@ import numpy as np
 from ...body import BODIES
 from ...body.graded import is_graded
 from ...scaling import dimensionless, with_rigid_punch
-from ..contact import shape_in
+from ...shapes import shape_of
 from ..equation import respond
 from ..radius import Radii
 from ..tabulated import where_slow
@@ -44,7 +44,7 @@ def apart(problem, x):
 def _apart(problem, x):
     rigid = with_rigid_punch(problem)
     part, (rows, points) = dimensionless(rigid), x.shape
-    shape, body = shape_in(part), where_slow(BODIES[str(part.base[0])](part))
+    shape, body = shape_of(part), where_slow(BODIES[str(part.base[0])](part))
     index = np.repeat(np.arange(rows), points)
     with np.errstate(all="ignore"):
         a, da = Radii(shape).at(x.ravel(), index)

@@ -126,7 +126,7 @@ class Maugis(NamedTuple):
         """The :class:`Ring` at a and ln(γ - 1) (B,); the errors of the basis only `with_errors`."""
         c = a * (1 + np.exp(over))
         octave, place = (np.zeros(len(a), dtype=int),) * 2
-        if hasattr(self.body, "kernel"):
+        if self.body.kernel is not None:
             octave, place = place_of(self.body, c)
             octave = np.maximum(octave, OCTAVES[0])
         usable = np.isfinite(c)
@@ -174,7 +174,7 @@ class Maugis(NamedTuple):
 
     def _layer(self, a, gamma, which, side, with_errors):
         """The :class:`Layer` of contacts whose right-hand side on a half-space is `side` (B, N)."""
-        if not hasattr(self.body, "kernel"):
+        if self.body.kernel is None:
             return Layer(side, 0 * a, 0 * a, np.zeros((3, len(a))), 0 * side)
         N, (d, cosine, by, q) = side.shape[1], self._waves(a, gamma, *which, side.shape[1])
         kappa, J0 = by / gamma[:, None], special.j0(by)

@@ -54,7 +54,7 @@ def highest(law, radii):
     does, all are below the radius at which F²/a = 9π w/(2 E); E is that to which the body yields most."""
     body = law.body
     softest = np.ones(len(law.w))
-    if hasattr(body, "kernel"):
+    if body.kernel is not None:
         L = body.kernel.whole(np.tile(_WAVES, (len(softest), 1)))
         softest = np.maximum((np.maximum(L.max(axis=1), body.kernel.L0) + body.m) / (1 + body.m), 1.0)
 
@@ -79,7 +79,7 @@ def lowest(law, x, index, radii):
     part, w, E = law.shape.take(index), law.w[index], law.body.E[index]
     slope = part.lifted_slope(column(a))[:, 0]
     falls = slope < _BELOW * np.sqrt(2 * np.pi * w / E / a)
-    if hasattr(law.body, "kernel"):
+    if law.body.kernel is not None:
         falls &= a < _THIN * law.body.h[index]
     least = radii.least[index]
     return np.where(least > 0, a - least < _CORNER * least, falls)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from solver.bases import is_bare
 from solver.shapes import PARABOLOID, SHAPES
 from solver.shapes.cone import KIND, PYRAMIDS
 
@@ -53,7 +54,7 @@ def _angle_of(shape: str) -> str:
 
 def _inwards(case: xr.Dataset, shape: str) -> list[str]:
     """What it makes that the surface under a cone is pulled inwards: Hay, Bolshakov and Pharr (1999)."""
-    nu = case.get("nu2" if case["base"] == "half_space" else "nu1")
+    nu = case.get("nu2" if is_bare(case["base"]) else "nu1")
     if shape not in _CONES or nu is None:
         return []
     cot = _CONES[shape] or float(1 / np.tan(np.radians(case["half_angle"])))
@@ -61,7 +62,7 @@ def _inwards(case: xr.Dataset, shape: str) -> list[str]:
     gamma = np.pi * (np.pi / 4 + 0.1548 * c) / (np.pi / 2 - 0.8312 * c) ** 2
     if gamma - 1 < _SMALL:
         return []
-    where = "" if case["base"] == "half_space" else " on a half-space of the layer's material"
+    where = "" if is_bare(case["base"]) else " on a half-space of the layer's material"
     return [
         f"Note: a rigid cone pulls the surface inwards, which is left out here. At one depth the load is then about "
         f"{gamma:.3g} times as large{where} (Hay, Bolshakov and Pharr 1999; docs/shapes.md)."

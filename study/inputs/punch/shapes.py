@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from solver import shapes
+from solver.bases import on_springs
 from solver.shapes import table
 
 from ...specimen.quantities import has_unit, quantity
@@ -16,7 +17,6 @@ from ..vocabulary import VOCABULARY, Entry, add_rows, cases_with, of_package
 #: Inputs besides the shape that are words, of which capitals, blanks and hyphens do not matter.
 WORDS = ("tip", "adhesion", "branch")
 #: Bases that take the paraboloid alone, and nothing that sticks.
-THIN = ("thin_layer", "thin_stack")
 #: Angles of the punch: numbers of degrees.
 ANGLES = ("half_angle",)
 #: The shapes whose profile has the radius R in it. R is the unit of length of all others.
@@ -115,7 +115,7 @@ def mistakes(grid: Grid, sections: Any, physical: bool) -> list[str]:
     if "shape" not in grid.values:
         return messages
     words = values("shape")
-    if ((words != shapes.PARABOLOID) & np.isin(values("base"), THIN)).any():
+    if ((words != shapes.PARABOLOID) & on_springs(values("base"))).any():
         messages.append('base = "thin_layer" is for shape = "paraboloid": take "layered", or "auto"')
     if np.any(in_metres(words)) and not physical:
         example = 'R = "1 um", E2 = "1 MPa"'

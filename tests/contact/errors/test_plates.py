@@ -7,8 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solver import Problem, Status, solve
-from solver.contact.driver import solve_on
 from solver.contact.equation import evaluate
+from solver.contact.newton import solve_on
 from solver.contact.results import quantities
 from solver.contact.start import first_guess
 from solver.numerics.mesh import panel_mesh

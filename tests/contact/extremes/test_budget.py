@@ -10,8 +10,8 @@ from solver_cases import LOAD, MAIN, layer_of
 
 from solver import Problem, Status, solve
 from solver.body.half_space import half_space
-from solver.contact import adaptive, driver, panels, picard
-from solver.contact.driver import newton_steps
+from solver.contact import adaptive, newton, panels, picard
+from solver.contact.newton import newton_steps
 from study.inputs.reading import from_tables
 
 pytestmark = pytest.mark.usefixtures("numpy_path")
@@ -42,7 +42,7 @@ def test_approximations(monkeypatch, control, value):
 def test_newton_steps(monkeypatch):
     """A limit of the user's beyond ours, on a case that takes more."""
     case = MAIN | {"P": [LOAD, 1e3 * LOAD], "base": "thin_layer", "rtol": 1e-9}
-    for module in (adaptive, driver):
+    for module in (adaptive, newton):
         monkeypatch.setattr(module, "newton_steps", lambda nodes: np.minimum(2, nodes))
     s = solve(Problem.of(**case, max_iterations=100_000), X)
     assert s.status.tolist() == [Status.BUDGET_SPENT] * 2 and np.isfinite(s.a).all()
@@ -60,12 +60,12 @@ def test_a_search_for_the_radius_ends(monkeypatch):
         steps.append(int(found.count.sum()))
         return found._replace(closed=found.closed & (start.cases.control == "a"))
 
-    plain = driver.iterate
-    monkeypatch.setattr(driver, "iterate", failing)
+    plain = newton.iterate
+    monkeypatch.setattr(newton, "iterate", failing)
     solve(case, X)
     many = sum(steps)
     steps.clear()
-    monkeypatch.setattr(driver, "newton_steps", lambda nodes: 10)
+    monkeypatch.setattr(newton, "newton_steps", lambda nodes: 10)
     solve(case, X)
     assert 10 <= sum(steps) < many / 2
 
@@ -129,14 +129,14 @@ def test_a_case_without_budget_is_not_said_to_lift_off(monkeypatch):
 @pytest.mark.parametrize("given", [{"a": 0.1}, {"P": 1e-3}])
 def test_a_search_for_the_radius_takes_what_is_left_of_the_budget(monkeypatch, given):
     """Newton fails on purpose wherever there are panels, so that the radius is searched for."""
-    plain, work = driver.iterate, {False: [], True: []}  # on panels, or not
+    plain, work = newton.iterate, {False: [], True: []}  # on panels, or not
 
     def failing(start, *arguments):
         found, panels = plain(start, *arguments), len(start.mesh.breaks) > 2
         work[panels].append(found.count[0] * start.cases.body.work(np.ones(1), start.mesh.n)[1][0])
         return found._replace(closed=found.closed & (not panels))
 
-    monkeypatch.setattr(driver, "iterate", failing)
+    monkeypatch.setattr(newton, "iterate", failing)
     case, totals = {name: value[0] for name, value in CORNER.items() if name != "a"} | given, []
     for budget in (1e6, 6000):
         work |= {False: [], True: []}

@@ -11,10 +11,10 @@ import pytest
 from solver_cases import random_cases
 from threadpoolctl import ThreadpoolController, threadpool_limits
 
-import solver.threads
+import solver.numerics.threads
 from solver import Problem, fit_power_law, solve
 from solver.models.thin_layer_error import edge_shift
-from solver.threads import _OfTheProcess, one_blas_thread
+from solver.numerics.threads import _OfTheProcess, one_blas_thread
 from study.studies.paper.uniform import solve_uniform
 
 OWN = 3  # the user's number of threads: neither the 1 of the solver nor the default of a small machine
@@ -99,7 +99,7 @@ def test_blocks_are_nested_and_a_number_set_inside_stays():
             pass
         assert counts() == {1}
         for library in ThreadpoolController().select(user_api="blas").lib_controllers:
-            solver.threads._set(library, 2)
+            solver.numerics.threads._set(library, 2)
         with one_blas_thread():
             assert counts() == {1}, "set meanwhile, by another thread say: what begins now has one thread all the same"
     assert counts() == {2}
@@ -108,7 +108,7 @@ def test_blocks_are_nested_and_a_number_set_inside_stays():
 def test_a_number_set_inside_the_only_block_stays():
     with one_blas_thread():
         for library in ThreadpoolController().select(user_api="blas").lib_controllers:
-            solver.threads._set(library, 2)
+            solver.numerics.threads._set(library, 2)
     assert counts() == {2}
 
 
@@ -116,7 +116,7 @@ def test_the_number_of_an_earlier_block_is_forgotten():
     """A program that has one thread since then keeps it."""
     for number in (2, 1, 3):
         for library in ThreadpoolController().select(user_api="blas").lib_controllers:
-            solver.threads._set(library, number)
+            solver.numerics.threads._set(library, number)
         with one_blas_thread():
             assert counts() == {1}
         assert counts() == {number}
@@ -194,7 +194,7 @@ def test_libraries_with_a_number_for_each_thread_are_asked_in_each_thread(monkey
             self.library.num_threads = self.before
 
     library, both = Controlled(), threading.Barrier(2)
-    monkeypatch.setattr("solver.threads._blas", lambda: (_OfTheProcess([]), library))
+    monkeypatch.setattr("solver.numerics.threads._blas", lambda: (_OfTheProcess([]), library))
 
     def compute(_):
         with one_blas_thread():

@@ -8,7 +8,7 @@ from solver_cases import BASES, LOAD, MAIN, ROUGH_KINDS, difference, one
 
 from solver.closed_forms import hertz, thin_layer_on_rigid_base
 from solver.numerics.mesh import mesh_of
-from solver.punches.paraboloid import HERTZ
+from solver.shapes.paraboloid import HERTZ
 
 X = np.sin(np.pi / 2 * np.linspace(0, 1, 80))
 rough_kinds = pytest.mark.parametrize(("base", "law"), ROUGH_KINDS, ids=["-".join(kind) for kind in ROUGH_KINDS])

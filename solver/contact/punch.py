@@ -1,21 +1,29 @@
-"""The punch of any :class:`~solver.shapes.shape.Shape`: what the equation of a rough contact needs of a profile f(r).
+"""What the equation of a rough contact asks of the shape f(r) of the indenter: the protocol, and any shape.
 
-The drop is (2/a²) [f(a) - f(ax)], and at fixed x
+The contact asks a punch for nothing else, nor which punch it is. Lengths are in R; a is the contact radius, x = r/a
+and s = sqrt(1 - x²). What the surface must yield at x, less that at the edge, is f(a) - f(ax). The equation of the
+contact is divided by a²/2, and so is this:
+
+    X K[q] + Y q + Z g = drop,              drop = (2/a²) [f(a) - f(ax)],
+    D = (a²/2) (depth + X edge @ q),        depth = 2 f(a)/a²,
+
+and at fixed x
 
     d drop/d ln a = (2/a) [f'(a) - x f'(ax)] - 2 drop.
 
-First guesses of the radius come from closed forms of the shape, whose roots are found by bracketing: the loads P(a)
+A shape with closed forms of all this, as the paraboloid, is a punch itself; :class:`Shaped` makes one of any other. Its
+first guesses of the radius come from closed forms of the shape, whose roots are found by bracketing: the loads P(a)
 that a half-space, springs and asperities would each bear alone increase with a.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from ..numerics.bracket import false_position
 from ..numerics.quadrature import gauss_legendre
+from ..shapes.paraboloid import HERTZ
 from ..shapes.shape import Shape, column
-from .paraboloid import HERTZ
 
 #: A first guess of the radius is right to this part: Newton's method does the rest.
 _ROUGHLY = 1e-3
@@ -25,10 +33,65 @@ _FEW = 24
 _LEFT = 0.1
 
 
-class Shaped(NamedTuple):
-    """The :class:`~solver.punches.punch.Punch` of B cases with the profiles `shape`."""
+class Punch(Protocol):
+    """The punch in B cases. What is the same for all cases may have one row in place of B.
+
+    shape : the :class:`~solver.shapes.shape.Shape` that it has
+    polynomial : whether the drop is a polynomial in s²: then an error on one panel does not spoil those beside it
+    """
 
     shape: Shape
+    polynomial: bool
+
+    def take(self, index):
+        """The punch of the sub-batch at `index`."""
+
+    def drop(self, a, s):
+        """(2/a²) [f(a) - f(ax)] at the points s (m,), for contact radii a (B,): (B or 1, m). It is formed from s, not
+        as a difference: next to the edge no digits are lost."""
+
+    def drop_slope(self, a, s):
+        """Derivative of :meth:`drop` by ln a at fixed x."""
+
+    def depth(self, a):
+        """2 f(a)/a², (B,) or one number."""
+
+    def depth_slope(self, a):
+        """Derivative of :meth:`depth` by ln a."""
+
+    def radius_at_depth(self, D):
+        """First guess (B,) of the contact radius at the depth D (B,), between those on a half-space and on springs."""
+
+    def on_half_space(self, P, E, softness):
+        """Contact radius (B,) under the load P (B,) on a half-space of modulus E/softness."""
+
+    def on_springs(self, P, C):
+        """Contact radius (B,) under the load P (B,) on springs of compliance C (B,) alone."""
+
+    def on_asperities(self, P, p_star, A_star, e):
+        """Contact radius (B,) under the load P (B,) where asperities alone yield, by A = A* (p/p*)^(1/e)."""
+
+    def stiffness(self, a, s, half_space, springs):
+        """First guess of 1/q, (B, m) at s (m,) > 0, where asperities do not yield: it is nearly the sum of the 1/q on a
+        half-space, whose X is `half_space` (B, 1), and on springs, whose Y is `springs` (B, 1)."""
+
+
+def punch_of(shape):
+    """The :class:`Punch` of a shape: the shape itself if it has the closed forms."""
+    return shape if hasattr(shape, "on_asperities") else Shaped(shape)
+
+
+def largest(punch, a):
+    """Largest right-hand side (B or 1,) of the equation: the drop in the centre."""
+    return punch.drop(a, np.ones(1))[..., 0]
+
+
+class Shaped(NamedTuple):
+    """The :class:`Punch` of B cases with the profiles `shape`."""
+
+    shape: Shape
+
+    polynomial = False
 
     def take(self, index):
         return Shaped(self.shape.take(index))
@@ -108,8 +171,10 @@ def _between(v, least, most):
 def kept_within(shape, new, old):
     """ln a (B,) after a step from `old` to `new` (B,): no nearer to a bound of the shape than _LEFT of the distance
     that there was."""
-    before, after = np.exp(old), np.exp(new)
     least, most = shape.least(), shape.most()
+    if not least.any() and np.isinf(most).all():
+        return new
+    before, after = np.exp(old), np.exp(new)
     low = least + _LEFT * (before - least)
     high = np.where(np.isfinite(most), most - _LEFT * (most - before), np.inf)
     return np.where((after < low) & (least > 0), np.log(low), np.where(after > high, np.log(high), new))

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from .contact.start import guess_pressure, guess_radius
-from .laws import BUILT_IN
-from .parameters import STACKED
-from .scaling import as_cases, dimensionless, refused
+from ..bases import is_stack
+from ..contact.start import guess_pressure, guess_radius
+from ..laws import BUILT_IN
+from ..scaling import as_cases, dimensionless, refused
 
 _QUANTITIES = ("a", "D", "p0", "p_max", "lam0", "A0")
 
@@ -21,7 +21,7 @@ def estimate(problem):
     NaN of cases that the solver refuses, of flat punches, and of micro laws that are not of this package. Under given
     loads a of 97 % of 300 random contacts is right to a factor of 2 (tests/physical/words/test_far_outside.py).
     """
-    base = np.where(np.isin(problem.base, STACKED[1]), "stack", "layered")
+    base = np.where(is_stack(problem.base), "stack", "layered")
     scaled = dimensionless(problem.but(base=base, asperities_on="half_space"))
     usable, estimates = ~refused(problem, scaled), {name: np.full(len(problem), np.nan) for name in _QUANTITIES}
     for law in BUILT_IN:

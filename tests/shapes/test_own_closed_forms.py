@@ -1,4 +1,5 @@
-"""A punch of somebody else's in one file: f = c r^4. On a half-space Sneddon's solution is known in closed form."""
+"""A shape of somebody else's with closed forms of all that a rough contact asks: f = c r^4. On a half-space Sneddon's
+solution is known."""
 
 from typing import NamedTuple
 
@@ -9,9 +10,11 @@ from numpy.testing import assert_allclose
 from solver import Problem, Status
 from solver.contact.adaptive import solve_newton
 from solver.contact.equation import control_gradient, evaluate, jacobian
+from solver.contact.punch import Shaped, punch_of
 from solver.contact.start import first_guess
 from solver.numerics.mesh import mesh_of
 from solver.scaling import as_cases, dimensionless
+from solver.shapes.shape import column, no_kinks
 
 X = np.array([0.0, 0.5, 0.9])
 
@@ -22,8 +25,46 @@ class Quartic(NamedTuple):
 
     c: np.ndarray
 
+    polynomial = True
+
+    @property
+    def shape(self):
+        return self
+
+    @property
+    def pointed(self):
+        return self.c < 0
+
+    @property
+    def even(self):
+        return self.c > 0
+
     def take(self, index):
         return Quartic(self.c[index])
+
+    def height(self, r):
+        return column(self.c) * r**4
+
+    def slope(self, r):
+        return 4 * column(self.c) * r**3
+
+    def lifted(self, t):
+        return 8 / 3 * self.height(t)
+
+    def lifted_slope(self, t):
+        return 8 / 3 * self.slope(t)
+
+    def lifted_load(self, a):
+        return 32 / 15 * self.c * a**5
+
+    def kinks(self):
+        return no_kinks(self.c)
+
+    def least(self):
+        return 0 * self.c
+
+    def most(self):
+        return np.inf * self.c
 
     def drop(self, a, s):
         return 2 * (self.c * a**2)[:, None] * s**2 * (2 - s**2)
@@ -67,6 +108,18 @@ def solved(control, value, rtol=1e-10, c=1.0, **case):
     part = cases(c, **{control: value}, **case)
     size = len(part.value)
     return solve_newton(part, np.full(size, rtol), np.zeros(size, int), 0, X)
+
+
+def test_its_closed_forms_are_those_of_any_shape():
+    """Drop, depth and their slopes to rounding; the guesses of the radius to the 1e-3 to which these are searched."""
+    own, a, s = Quartic(np.array([0.7, 2.0])), np.array([0.05, 0.3]), np.array([0.1, 0.5, 1.0])
+    assert punch_of(own) is own
+    other = Shaped(own)
+    for name, arguments in {"drop": (a, s), "drop_slope": (a, s), "depth": (a,), "depth_slope": (a,)}.items():
+        assert_allclose(getattr(own, name)(*arguments), getattr(other, name)(*arguments), rtol=1e-12, atol=0)
+    P = 1e-5 * np.ones(2)
+    for name, arguments in {"on_half_space": (P, 1.0, np.ones(2)), "on_springs": (P, 0.1 * np.ones(2))}.items():
+        assert_allclose(getattr(own, name)(*arguments), getattr(other, name)(*arguments), rtol=2e-3, atol=0)
 
 
 @pytest.mark.parametrize("control", ["a", "P", "D"])

@@ -14,6 +14,7 @@ from .contact.equation import Cases
 from .contact.punch import punch_of
 from .kernels.two_layers import TwoLayers, layer_modulus, thin_layer_coefficients
 from .laws import LAWS, try_out
+from .numerics.batch import alike
 from .parameters import CONTROL, PARAMETERS, allowed
 from .solution import PULLS
 from .status import Status
@@ -147,12 +148,10 @@ def law_of(part, body=None):
 
 
 def of_one_law(problem):
-    """Yield the indices of the cases that :func:`law_of` can bind together."""
+    """The indices (b,) of the cases that :func:`law_of` can bind together, a list."""
     kinds = kinds_of_laws(problem)
     bases = np.where(kinds == _HALF_SPACE, "", problem.base)
-    columns = problem.micro, bases, kinds
-    for one in dict.fromkeys(zip(*(column.tolist() for column in columns), strict=True)):
-        yield np.flatnonzero(np.all([column == word for column, word in zip(columns, one, strict=True)], axis=0))
+    return alike(problem.micro, bases, kinds)
 
 
 def restore(solution, problem):

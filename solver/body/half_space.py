@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..numerics.mesh import Mesh
 from .operator import fitted_nodes
 
@@ -38,11 +39,7 @@ class HalfSpaceOperator(NamedTuple):
     def edge(self):
         return self.mesh.edge[None]
 
-    def take(self, index):
-        return self
-
-    def join(self, operators, places):
-        return self
+    take = batch.take
 
     def at_edge(self, q):
         return (self.edge * q).sum(axis=1)
@@ -67,8 +64,7 @@ class HalfSpace(NamedTuple):
 
     kernel = None
 
-    def take(self, index):
-        return HalfSpace(self.E[index], self.C[index])
+    take = batch.take
 
     def at(self, a, mesh, near=None):
         return HalfSpaceOperator(mesh)

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..kernels.kernel import Kernel
+from ..numerics import batch
 from .half_space import thin_layer
 from .hankel_operator import HankelOperator, rows_of
 from .operator import fitted_nodes
@@ -71,8 +72,7 @@ class Hankel(NamedTuple):
     def C(self):
         return 0 * self.m
 
-    def take(self, index):
-        return Hankel(self.kernel.take(index), self.h[index], self.m[index])
+    take = batch.take
 
     def at(self, a, mesh, near=None):
         """A case whose radius has not changed since `near` keeps the values of L that `near` has."""
@@ -81,7 +81,7 @@ class Hankel(NamedTuple):
             same = np.flatnonzero(a[part.index] == part.radius)
             if len(same):
                 far[part.index[same]] = False
-                parts.append(part.take(same, part.index[same]))
+                parts.append(part.take(same))
         if near is not None and near.mesh == mesh and not far.any():
             return near
         parts += parts_of(self, a, np.flatnonzero(far))

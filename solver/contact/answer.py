@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..numerics.mesh import gauss_rule
 from ..solution import Solution
 from ..status import Codes, Status
@@ -83,9 +84,7 @@ class Answer(NamedTuple):
     verdict: np.ndarray
     finer: State | None
 
-    def take(self, index):
-        finer = None if self.finer is None else self.finer.take(index)
-        return Answer(self.solution.take(index), *(values[index] for values in self[1:-1]), finer)
+    take = batch.take
 
     def lifted(self):
         """(B,) bool: there is tension, in all or in the centre, which is too large to be an error."""

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..body.operator import Body, Operator
 from ..laws import Bound, Curve
+from ..numerics import batch
 from ..numerics.kept import once
 from ..shapes.shape import has_radius
 from .punch import Punch, largest
@@ -61,9 +62,7 @@ class Cases(NamedTuple):
         """Whether the contact radius is that of the punch, whatever the load."""
         return bool(has_radius(self.shape).all())
 
-    def take(self, index):
-        law, body, punch = (part.take(index) for part in (self.law, self.body, self.punch))
-        return Cases(self.control, law, body, self.value[index], punch)
+    take = batch.take
 
 
 class State(NamedTuple):
@@ -72,12 +71,7 @@ class State(NamedTuple):
     y: np.ndarray
     eta: np.ndarray
 
-    def take(self, index):
-        return State(self.y[index], self.eta[index])
-
-    def join(self, states):
-        """The batch of the `states` one after another."""
-        return State(*map(np.concatenate, zip(*states, strict=True)))
+    take = batch.take
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,28 +153,7 @@ class Evaluation:
     def lost(self):
         return ~np.isfinite(self.residual)
 
-    def take(self, index):
-        """The sub-batch at `index`, ascending."""
-        return _of_arrays(self.cases.take(index), self.operator.take(index), (v[index] for v in self._arrays()))
-
-    def join(self, cases, parts, places):
-        """The equation of the batch `cases` from those of its sub-batches `parts`, each at its `places` (b,) in it."""
-        operator = self.operator.join([part.operator for part in parts], places)
-        return _of_arrays(cases, operator, joined([part._arrays() for part in parts], places))
-
-    def _arrays(self):
-        return (*self.state, *self.curve, self.X, self.Y, self.Z, self.Kq, self.edge_q, self.F)
-
-
-def _of_arrays(cases, operator, arrays):
-    y, eta, q, g, dq, dg, *others = arrays
-    return Evaluation(cases, State(y, eta), operator, Curve(q, g, dq, dg), *others)
-
-
-def joined(parts, places):
-    """Arrays of a batch from those of its sub-batches, ``parts``, tuples of arrays; each at its places (b,) in it."""
-    order = np.argsort(np.concatenate(places))
-    return (np.concatenate(arrays)[order] for arrays in zip(*parts, strict=True))
+    take = batch.take
 
 
 def _floor(body, a, nodes):

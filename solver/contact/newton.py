@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..numerics.bracket import false_position
 from ..numerics.linalg import solve_stack
 from .equation import State, control_gradient, evaluate, jacobian
@@ -42,8 +43,7 @@ def iterate(start, step, limit):
     """Repeat `step` on a batch: :class:`Iterated`. A case that has closed or is lost leaves it, the others go on.
 
     start : the batch at its start, an :class:`.equation.Evaluation` or an :class:`.picard.Approximation`:
-        ``start.cases``; ``start.closed`` and ``start.lost`` (B,) bool; ``start.take(index)`` a sub-batch;
-        ``start.join(cases, parts, places)`` the batch of sub-batches at their places
+        ``start.cases``; ``start.closed`` and ``start.lost`` (B,) bool; and what :mod:`..numerics.batch` says of batches
     step : ``step(now) -> next``
     limit : most steps, int or (B,) int
     """
@@ -62,7 +62,7 @@ def iterate(start, step, limit):
                 break
             now = now.take(np.flatnonzero(~leaves))
         now = step(now)
-    return Iterated(parts[0] if len(parts) == 1 else start.join(start.cases, parts, places), closed, count)
+    return Iterated(parts[0] if len(parts) == 1 else batch.join(parts, places, cases=start.cases), closed, count)
 
 
 def tangent(ev):
@@ -133,7 +133,7 @@ def solve_on(start, limit=0, budget=BUDGET):
     ends = [iterated.at.take(rest), again.at], [rest, failed]
     iterated.closed[failed] = again.closed
     iterated.count[failed] += again.count
-    return iterated._replace(at=iterated.at.join(cases, *ends))
+    return iterated._replace(at=batch.join(*ends, cases=cases))
 
 
 def _by_radius(cases, mesh, most):

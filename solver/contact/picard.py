@@ -9,9 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..body.operator import Operator
+from ..numerics import batch
 from ..numerics.bracket import false_position
 from ..status import Status
-from .equation import Cases, State, control_residual, evaluate, groups, joined
+from .equation import Cases, State, control_residual, evaluate, groups
 from .newton import Iterated, iterate
 from .start import guess_radius
 
@@ -60,19 +61,7 @@ class Approximation:
         edge_q = np.einsum("bj,bj->b", self.operator.edge + 0 * self.q, self.q)
         return control_residual(self.cases, self.eta, self.groups[0], self.q, edge_q, self.operator.mesh)
 
-    def _arrays(self):
-        return (self.eta, *self.groups, self.k, self.rtol, self.q, self.change, self.load_change, self.earlier)
-
-    def take(self, index):
-        """The sub-batch at `index`, ascending."""
-        eta, X, Y, Z, *arrays = (v[index] for v in self._arrays())
-        return Approximation(self.cases.take(index), self.operator.take(index), eta, (X, Y, Z), *arrays, self.done)
-
-    def join(self, cases, parts, places):
-        """The batch `cases` from its sub-batches `parts`, each at its `places` (b,)."""
-        eta, X, Y, Z, *arrays = joined([part._arrays() for part in parts], places)
-        operator = self.operator.join([part.operator for part in parts], places)
-        return Approximation(cases, operator, eta, (X, Y, Z), *arrays)
+    take = batch.take
 
 
 def solve(cases, mesh, k, rtol, limit):
@@ -95,7 +84,7 @@ def solve(cases, mesh, k, rtol, limit):
         control_at(np.log(cases.value), np.arange(size))
     else:
         false_position(control_at, np.log(guess_radius(cases)), 0.1 * rtol)
-    at = last[0].join(cases, last, np.arange(size)[:, None])
+    at = batch.join(last, np.arange(size)[:, None], cases=cases)
     status = _status(at, np.abs(at.G), count >= APPROXIMATIONS)
     y = np.maximum(cases.law.from_pressure(at.q), _TINY)
     at = evaluate(cases, State(y, at.eta), mesh)
@@ -120,7 +109,7 @@ def approximate(cases, eta, mesh, k, rtol, limit):
     """
     never, q = np.full(len(eta), np.inf), np.zeros((len(eta), mesh.n))
     alone = [cases.body.take([i]).at(np.exp(eta[i : i + 1]), mesh) for i in range(len(eta))]
-    operator = alone[0].join(alone, np.arange(len(eta))[:, None])
+    operator = batch.join(alone, np.arange(len(eta))[:, None])
     first = Approximation(cases, operator, eta, groups(cases, eta), k, rtol, q, never, never, never)
     return iterate(first, lambda now: _next(now, limit // 2), limit)
 

@@ -16,10 +16,12 @@ first guesses of the radius come from closed forms of the shape, whose roots are
 that a half-space, springs and asperities would each bear alone increase with a.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from ..numerics import batch
 from ..numerics.bracket import false_position
 from ..numerics.quadrature import gauss_legendre
 from ..shapes.paraboloid import HERTZ
@@ -37,14 +39,13 @@ class Punch(Protocol):
     """The punch in B cases. What is the same for all cases may have one row in place of B.
 
     shape : the :class:`~solver.shapes.shape.Shape` that it has
+    take : the punch of a sub-batch, :func:`~solver.numerics.batch.take`
     polynomial : whether the drop is a polynomial in s²: then an error on one panel does not spoil those beside it
     """
 
     shape: Shape
     polynomial: bool
-
-    def take(self, index):
-        """The punch of the sub-batch at `index`."""
+    take: Callable
 
     def drop(self, a, s):
         """(2/a²) [f(a) - f(ax)] at the points s (m,), for contact radii a (B,): (B or 1, m). It is formed from s, not
@@ -93,8 +94,7 @@ class Shaped(NamedTuple):
 
     polynomial = False
 
-    def take(self, index):
-        return Shaped(self.shape.take(index))
+    take = batch.take
 
     def drop(self, a, s):
         return self.shape.drop(a, s)

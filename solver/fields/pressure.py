@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial.legendre import legder, legvander
 
 from ..body.tables import transform
-from ..numerics import special
+from ..numerics import batch, special
 from ..numerics.mesh import Mesh
 from ..numerics.quadrature import gauss_legendre, lagrange, radau_nodes
 
@@ -36,9 +36,7 @@ class Pressure(NamedTuple):
     values: np.ndarray
     A: np.ndarray | None = None
 
-    def take(self, index):
-        """The sub-batch at `index`."""
-        return Pressure(self.mesh, self.values[index], None if self.A is None else self.A[index])
+    take = batch.take
 
     def transform(self, k):
         """p^(k) = ∫ p J0(kr) r dr (B, K) at ascending k (K,)."""

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..contact.equation import State, control_gradient, evaluate, groups
+from ..numerics import batch
 from ..numerics.linalg import solve_stack
 from ..shapes.shape import Shape
 
@@ -32,8 +33,7 @@ class AsFlat(NamedTuple):
 
     polynomial = True
 
-    def take(self, index):
-        return AsFlat(self.tau[index], self.shape.take(index))
+    take = batch.take
 
     def drop(self, a, s):
         return self.tau[:, None] + 0 * s

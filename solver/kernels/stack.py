@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from .kernel import Sampler
 from .minors import Layer, across, at_surface, base, numerator, scaled, through
 from .two_layers import thin_layer_coefficients
@@ -77,8 +78,7 @@ class Stack(NamedTuple):
         under = np.minimum.accumulate(bodies[:, ::-1], axis=1)[:, ::-1][:, 1:]
         return np.maximum(softest, (self.depth * np.maximum(1.0, self.n / under)).sum(axis=1))
 
-    def take(self, index):
-        return Stack(*(field[index] for field in self[:-1]), self.sampler)
+    take = batch.take
 
     def formulas(self):
         return [np.arange(len(self.n))]

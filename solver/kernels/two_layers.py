@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from .closed_form import decaying_part, whole
 from .kernel import Sampler
 
@@ -45,8 +46,7 @@ class TwoLayers(NamedTuple):
     def sampler(self):
         return SAMPLER
 
-    def take(self, index):
-        return TwoLayers(*(field[index] for field in self))
+    take = batch.take
 
     def formulas(self):
         return [np.flatnonzero(self.bonded), np.flatnonzero(~self.bonded)]

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..numerics import batch
 from ..parameters import Parameter
 
 #: Most Newton steps of an inverse, far more than the laws of this package need; and the largest change of ln y in one.
@@ -39,6 +40,8 @@ class Curve(NamedTuple):
     g: np.ndarray
     dq: np.ndarray
     dg: np.ndarray
+
+    take = batch.take
 
 
 class Spots(NamedTuple):
@@ -171,8 +174,7 @@ class Bound(NamedTuple):
     def rough(self):
         return self.law.rough
 
-    def take(self, index):
-        return Bound(self.law, self.p_star[index], self.A_star[index], tuple(v[index] for v in self.own))
+    take = batch.take
 
     def evaluate(self, y):
         """:class:`Curve` at y (B, m)."""

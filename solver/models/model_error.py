@@ -13,6 +13,7 @@ from ..bases import exact_of
 from ..contact.equation import State, evaluate
 from ..contact.newton import solve_on
 from ..contact.results import difference, quantities
+from ..numerics.batch import alike
 from ..numerics.mesh import mesh_of
 from ..scaling import as_cases, dimensionless, kinds_of_laws, restore
 from ..solution import Solution
@@ -30,9 +31,7 @@ def judged(problem, x):
     """
     pieces, scaled = [], dimensionless(problem)
     exact = scaled.but(base=exact_of(scaled.base))
-    kinds = problem.micro, problem.base, kinds_of_laws(exact)
-    for kind in dict.fromkeys(zip(*(words.tolist() for words in kinds), strict=True)):
-        index = np.flatnonzero(np.all([words == word for words, word in zip(kinds, kind, strict=True)], axis=0))
+    for index in alike(problem.micro, problem.base, kinds_of_laws(exact)):
         part = scaled.take(index).but(model_check="closed_form")
         cheap = solve_named(part, np.concatenate([x, mesh_of(NODES).x]))
         solved, error = np.flatnonzero(np.isfinite(cheap.a)), np.full(len(index), np.nan)

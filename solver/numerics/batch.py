@@ -1,26 +1,62 @@
-"""Batches: B cases side by side, in arrays whose first axis is the case."""
+"""Batches: B cases side by side, in arrays whose first axis is the case. Parts of them, their union, cases that are
+alike.
+
+A batch is a named tuple or a dataclass with the method ``take = batch.take``. Its arrays, in tuples too, have B rows;
+parts that have a method `take` are batches themselves; whatever else is there is the same for all cases.
+"""
 
 from dataclasses import fields, is_dataclass
+from functools import lru_cache
 
 import numpy as np
 
 
+@lru_cache(maxsize=256)
+def _names(kind):
+    return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else kind._fields
+
+
 def take(batch, index):
-    """The sub-batch at an `index` (whole numbers, a slice, or bool (B,)); the method `take` of most batches.
-
-    batch : a named tuple or a dataclass. Its arrays, in tuples too, have B rows; parts that have a method `take` are
-        batches themselves; whatever else is there is the same for all cases
-    """
-    names = [field.name for field in fields(batch)] if is_dataclass(batch) else batch._fields
-    return type(batch)(*(_part(getattr(batch, name), index) for name in names))
+    """The sub-batch at an `index`: whole numbers, a slice, or bool (B,)."""
+    kind = type(batch)
+    return kind(*[_rows(getattr(batch, name), index) for name in _names(kind)])
 
 
-def _part(value, index):
+def _rows(value, index):
     if isinstance(value, np.ndarray):
         return value[index]
-    if hasattr(value, "take"):
-        return value.take(index)
-    return tuple(_part(each, index) for each in value) if type(value) is tuple else value
+    if type(value) is tuple:
+        return tuple(_rows(each, index) for each in value)
+    return value.take(index) if is_batch(value) else value
+
+
+def is_batch(value):
+    """Whether a value has rows of cases, and is no array: numbers of numpy have a method `take` too."""
+    return hasattr(value, "take") and not isinstance(value, np.generic)
+
+
+def join(parts, places=None, **same):
+    """The batch of the `parts`, each at its `places` (b,) in it; one after another if there are none.
+
+    same : field -> its value in the whole batch, which then is not put together from those of the parts
+    """
+    order = slice(None) if places is None else np.argsort(np.concatenate(places))
+    return _joined(parts, order, places, same)
+
+
+def _joined(parts, order, places, same=()):
+    kind, first = type(parts[0]), parts[0]
+    if isinstance(first, np.ndarray):
+        return np.concatenate(parts)[order]
+    if kind is tuple:
+        return tuple(_joined(each, order, places) for each in zip(*parts, strict=True))
+    if not is_batch(first):
+        return first
+    if hasattr(kind, "assemble"):  # its rows are in groups
+        return kind.assemble(parts, places)
+    columns = ([getattr(part, name) for part in parts] for name in _names(kind))
+    named = zip(_names(kind), columns, strict=True)
+    return kind(*[same[name] if name in same else _joined(column, order, places) for name, column in named])
 
 
 def alike(*columns):

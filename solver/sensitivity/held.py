@@ -7,6 +7,7 @@ import numpy as np
 from ..bases import is_chosen
 from ..kernels.two_layers import layer_modulus
 from ..laws.disc_cell import SMOOTH
+from ..numerics import batch
 from ..problem import Problem
 from ..scaling import dimensionless, with_a_stiff_base, with_rigid_punch
 from ..solution import Model
@@ -30,8 +31,7 @@ class Held(NamedTuple):
     E2: np.ndarray
     added: np.ndarray
 
-    def take(self, index):
-        return Held(self.named.take(index), self.written.take(index), self.E2[index], self.added[index])
+    take = batch.take
 
 
 def held(scaled, used):

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..parameters import Parameter
 from .cone import HALF_ANGLE, cotangent
 from .shape import Kind, angle, beyond, column, load_by_quadrature, radii_at
@@ -42,8 +43,7 @@ class BluntCone(NamedTuple):
         """Of a ball, sqrt(ρ² - b²) (B,)."""
         return self.rho / np.hypot(1.0, self.cot)
 
-    def take(self, index):
-        return BluntCone(*(values[index] for values in self))
+    take = batch.take
 
     def height(self, r):
         tip = np.minimum(r, column(self.b))

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..parameters import Parameter
 from .shape import Kind, column, no_kinks, radii_at
 
@@ -27,8 +28,7 @@ class Cone(NamedTuple):
     def even(self):
         return self.cot < 0
 
-    def take(self, index):
-        return Cone(self.cot[index])
+    take = batch.take
 
     def height(self, r):
         return column(self.cot) * r

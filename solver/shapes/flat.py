@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from .frustum import FLAT_RADIUS
 from .shape import Kind, column
 
@@ -21,8 +22,7 @@ class Flat(NamedTuple):
     def even(self):
         return self.b > 0
 
-    def take(self, index):
-        return Flat(self.b[index])
+    take = batch.take
 
     def height(self, r):
         return 0 * column(self.b) * r

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..parameters import Parameter
 from .cone import HALF_ANGLE, cotangent
 from .shape import Kind, angle, beyond, column, radii_at
@@ -26,8 +27,7 @@ class Frustum(NamedTuple):
     def even(self):
         return self.b < 0
 
-    def take(self, index):
-        return Frustum(self.b[index], self.cot[index])
+    take = batch.take
 
     def height(self, r):
         return column(self.cot) * np.maximum(r - column(self.b), 0.0)

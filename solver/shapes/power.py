@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..parameters import Parameter
 from .shape import Kind, column, no_kinks
 
@@ -27,8 +28,7 @@ class Power(NamedTuple):
     def even(self):
         return self.k % 2 == 0
 
-    def take(self, index):
-        return Power(*(values[index] for values in self))
+    take = batch.take
 
     def height(self, r):
         return column(self.c) * r ** column(self.k)

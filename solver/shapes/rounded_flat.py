@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..parameters import Parameter
 from .frustum import FLAT_RADIUS
 from .shape import Kind, beyond, column, radii_at
@@ -28,8 +29,7 @@ class RoundedFlat(NamedTuple):
     def even(self):
         return self.b < 0
 
-    def take(self, index):
-        return RoundedFlat(self.b[index], self.rho[index])
+    take = batch.take
 
     def height(self, r):
         return np.maximum(r - column(self.b), 0.0) ** 2 / (2 * column(self.rho))

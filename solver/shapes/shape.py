@@ -28,13 +28,12 @@ class Shape(Protocol):
 
     pointed : (B,) bool, f'(0+) > 0: the pressure on the axis is infinite
     even : (B,) bool, f is a smooth function of r²: then the pressure is smooth in s too
+    take : the shapes of a sub-batch, :func:`~solver.numerics.batch.take`
     """
 
     pointed: np.ndarray
     even: np.ndarray
-
-    def take(self, index):
-        """The shapes of the sub-batch at `index`."""
+    take: Callable
 
     def height(self, r):
         """f at r."""

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..numerics.profiles import is_number
 from ..numerics.userfile import content
 from ..parameters import Parameter
@@ -62,8 +63,7 @@ class Table(NamedTuple):
     def even(self):
         return self.unit < 0
 
-    def take(self, index):
-        return Table(self.rows, self.unit[index])
+    take = batch.take
 
     def height(self, r):
         r = r / column(self.unit)

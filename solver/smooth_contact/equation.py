@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..body.wave_rule import FILM, MILD, place_of
+from ..numerics import batch
 from .products import LAST, Products, coarser, has_few, size_of, wave_nodes
 from .rises import rises
 from .tabulated import Tabulated, excess
@@ -77,9 +78,7 @@ class Response(NamedTuple):
         """Stiffness (B,) of a flat punch of the radius a."""
         return self.flat_P / self.flat_D
 
-    def take(self, index):
-        """The sub-batch at `index`."""
-        return Response(*(values[index] for values in self))
+    take = batch.take
 
     def only(self, mask):
         """NaN in place of all numbers of cases that are not in the `mask` (B,)."""

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..solution import Solution
 from .equation import Response, respond
 from .pressure import flat_pressure, pressure_changes, pressures_of
@@ -38,8 +39,7 @@ class State(NamedTuple):
     zone: np.ndarray
     response: Response
 
-    def take(self, index):
-        return State(*(v[index] for v in self[:-1]), self.response.take(index))
+    take = batch.take
 
     def only(self, mask):
         """NaN in place of all numbers of cases that are not in the `mask` (B,)."""

@@ -8,6 +8,7 @@ from numpy.polynomial.chebyshev import chebvander
 
 from ..body.hankel import Hankel
 from ..body.wave_rule import STIFFEST
+from ..numerics import batch
 from .products import in_blocks
 
 #: Points of a panel. A panel ends at twice the u at which it begins; L - 1 is analytic but near the imaginary axis, and
@@ -64,8 +65,7 @@ class Tabulated(NamedTuple):
     def softness(self, a):
         return self.body.softness(a)
 
-    def take(self, index):
-        return Tabulated(self.body.take(index), self.first[index], self.series[index])
+    take = batch.take
 
     def excess(self, u):
         """(L - 1)/(1 + m) (B, M) at u (B, M)."""

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...numerics import batch
 from ...shapes.shape import has_radius
 from ...status import Status
 from ..radius import guess
@@ -66,8 +67,7 @@ class Pulled(NamedTuple):
     control: Held
     of_control: Turn
 
-    def take(self, index):
-        return Pulled(*(part.take(index) for part in self))
+    take = batch.take
 
 
 def pulled(part, law):

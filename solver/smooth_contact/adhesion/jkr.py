@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...numerics import batch
 from ..equation import respond
 from ..state import State
 
@@ -31,8 +32,7 @@ class Jkr(NamedTuple):
     w: np.ndarray
     reaches_axis = False  # at small radii the edge pulls more than the shape presses
 
-    def take(self, index):
-        return Jkr(self.shape.take(index), self.body.take(index), self.w[index])
+    take = batch.take
 
     def taken(self, state):
         """What adhesion takes from load, depth and p(0) of states, as of a half-space, (3, B)."""

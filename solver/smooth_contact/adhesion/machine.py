@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...numerics import batch
+
 
 class Held(NamedTuple):
     """What holds the punches: of B cases whether the load counts alone, k = 0, and the compliance 1/k else."""
@@ -17,8 +19,7 @@ class Held(NamedTuple):
         with np.errstate(divide="ignore"):
             return cls(k == 0, np.where(k == 0, 0.0, 1 / k))
 
-    def take(self, index):
-        return Held(self.load[index], self.compliance[index])
+    take = batch.take
 
     def of(self, P, D):
         """Q, or its slope, of P and D, or their slopes."""

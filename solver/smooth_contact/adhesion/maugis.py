@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...body.wave_rule import OCTAVES, place_of, quadrature
-from ...numerics import special
+from ...numerics import batch, special
 from ...numerics.bracket import false_position, secant
 from ...numerics.quadrature import gauss_legendre
 from ...shapes.shape import column
@@ -70,8 +70,7 @@ class Maugis(NamedTuple):
     sigma: np.ndarray
     reaches_axis = True  # where the ring is wide, P and D rise with a from a = 0
 
-    def take(self, index):
-        return Maugis(self.shape.take(index), self.body.take(index), self.w[index], self.sigma[index])
+    take = batch.take
 
     def taken(self, state):
         """About what adhesion takes from load, depth and p(0) of states, (3, B)."""

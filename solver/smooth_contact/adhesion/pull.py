@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...numerics import batch
 from ...numerics.bracket import between, turns_between
 from ...shapes.shape import column
 from ..radius import LAST, MOST, Radii, rising_root
@@ -95,8 +96,7 @@ class Turn(NamedTuple):
     corner: np.ndarray
     at_axis: np.ndarray
 
-    def take(self, index):
-        return Turn(*(part.take(index) if isinstance(part, State) else part[index] for part in self))
+    take = batch.take
 
 
 def last_minimum(curve, holder, start):

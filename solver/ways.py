@@ -8,7 +8,7 @@ import numpy as np
 
 from .bases import is_bare, is_thin_layer, on_springs
 from .contact import smooth
-from .flat import solve_flat
+from .contact.flat import solve_flat
 from .numerics.batch import alike
 from .scaling import as_cases, kinds_of_laws
 from .schemes import SCHEMES
@@ -24,8 +24,8 @@ class Way(NamedTuple):
     has : function of a problem, (B,) bool: its cases, as far as no row before has them
     alike : function of a problem, arrays (B,): cases that differ in none of these are solved together
     solve : ``function(part, x) -> Solution`` of such cases, in units R = E2* = 1, at the radii x (m,)
-    equation : by which a solved case can be found again: "nodes", :mod:`.contact`; "flat", :mod:`.flat`; "basis",
-        :mod:`.smooth_contact`
+    equation : by which a solved case can be found again: "nodes", :mod:`.contact.equation`; "flat",
+        :mod:`.contact.flat`; "basis", :mod:`.smooth_contact.equation`
     """
 
     name: str

@@ -14,7 +14,17 @@ from ..numerics.ladder import LADDER, climb, finer_mesh, first_rung
 from ..numerics.mesh import mesh_of
 from ..solution import Solution
 from ..status import Status
-from .answer import Answer, Goal, Verdict, answer, at_floor, may_be_error, tensile_centre
+from .answer import (
+    Answer,
+    Goal,
+    Verdict,
+    answer,
+    before_panels,
+    may_be_error,
+    on_panels,
+    tensile_centre,
+    unfinished,
+)
 from .equation import evaluate
 from .newton import BUDGET, budget_of, newton_steps, solve_on
 from .panels import solve_on_panels
@@ -120,41 +130,27 @@ def _on_panels(case, before, rtol, x, left, nearer=1.0):
     """:class:`~solver.solution.Solution` of one case on panels of its own, with `left` of its budget; or that of
     `before`, the :class:`.answer.Answer` on the finest mesh, if its error is smaller.
 
-    Tension and gaps count only if finer panels show them too: panels that are too coarse show some that are not there.
+    Each round has finer panels, and a verdict (:func:`.answer.on_panels`).
     """
-    best, lifted, count, at = before.solution, before.lifted(), before.solution.iterations, None
-    resolved, missed, spent = False, best.status == Status.CONVERGED, False
+    best, count, at = before.solution, before.solution.iterations, None
+    verdict = before_panels(before)
     for goal in (rtol, _FINER * rtol):
         if left <= 0:
-            spent = True
+            verdict = unfinished(verdict, True)
             break
         iterated, work = solve_on_panels(case, goal, left, at, nearer)
-        left, count, spent = left - work, count + iterated.count, work > left
-        if not iterated.closed[0]:
+        spent, left, count = work > left, left - work, count + iterated.count
+        same = at is not None and iterated.at.mesh == at.mesh
+        if same or not iterated.closed[0]:
+            verdict = unfinished(verdict, spent)
+            if same and iterated.closed[0]:
+                break  # no finer panels than those before
             continue
-        if at is not None and iterated.at.mesh == at.mesh:
-            break  # no finer panels than those before
-        at = iterated.at
+        seen, at = at is not None and verdict != Verdict.LIFTED, iterated.at
         answered = answer(iterated, x)
         left -= case.body.work(answered.solution.a, finer_mesh(at.mesh).n)[0][0]
-        lifted = (answered.gap | answered.lifted()) & (not resolved)
-        if lifted[0]:
-            continue
-        resolved, error = True, answered.solution.error
-        if not answered.gap[0] and error[0] < np.nan_to_num(best.error[0], nan=np.inf):
-            best = answered.solution
-        missed = (best.status == Status.CONVERGED) & (best.error > rtol)
-        # True: finer panels hardly lower an error
-        floor = at_floor(error, True, at.floor, rtol) & ~may_be_error(answered.tension, error)
-        if best.status[0] == Status.CONVERGED and (not missed[0] or floor[0]):
-            spent = False
+        best, verdict = on_panels(best, answered, at.floor, rtol, seen, spent)
+        if verdict in (Verdict.SOLVED, Verdict.FLOOR):
             break
-    best = replace(best, iterations=count.astype(np.int32))
-    lifted |= tensile_centre(best)
-    ends = {
-        Verdict.LIFTED: lifted,
-        Verdict.SOLVED: (best.status == Status.CONVERGED) & ~missed,
-        Verdict.SPENT: np.array([spent]),
-        Verdict.COARSE: missed,
-    }
-    return _ended(best, np.select(list(ends.values()), list(ends), Verdict.OPEN))
+    verdict = Verdict.LIFTED if tensile_centre(best)[0] else verdict
+    return _ended(replace(best, iterations=count.astype(np.int32)), np.array([verdict]))

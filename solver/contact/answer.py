@@ -45,7 +45,9 @@ class Verdict(Codes):
               no more than the error                                      else it ends, tolerance_not_met
     ========  ==========================================================  ==============================================
 
-    There are no panels for cases whose `nodes` or `max_iterations` are given. Panels end by the same statuses.
+    There are no panels for cases whose `nodes` or `max_iterations` are given. Each round of panels has a verdict too,
+    of the same conditions in another order (:func:`on_panels`): LIFTED, SOLVED, FLOOR, SPENT, COARSE, OPEN. The first
+    verdict that solves the case, or FLOOR, ends it; else the last one does, by the same statuses.
     """
 
     SOLVED = 0
@@ -140,6 +142,44 @@ def _verdicts(ev, closed, solution, tension, goal):
         Verdict.STUCK: slow & (ev.mesh.n >= _LATE) & (error > _FAR * rtol),
     }
     return np.select(list(table.values()), list(table), Verdict.COARSE).astype(np.int8)
+
+
+def before_panels(answered):
+    """The :class:`Verdict` with which one case begins on panels, after its :class:`Answer` on meshes."""
+    if answered.lifted()[0]:
+        return Verdict.LIFTED
+    return Verdict.COARSE if answered.solution.status[0] == Status.CONVERGED else Verdict.OPEN
+
+
+def unfinished(verdict, spent):
+    """The :class:`Verdict` of one case after a round of panels that has found nothing new; `spent` : whether the budget
+    is. Tension that was there is there still."""
+    return Verdict.SPENT if spent and verdict != Verdict.LIFTED else verdict
+
+
+def on_panels(best, answered, floor, rtol, seen, spent):
+    """The better one of the solution `best` and that of a round of panels, whose :class:`Answer` is `answered`; and the
+    :class:`Verdict` after that round.
+
+    Tension and gaps count only until panels have shown none, which they have if they were `seen` without: panels that
+    are too coarse show some that are not there. floor : (1,), the error of the operator; spent : whether the budget is
+    """
+    error = answered.solution.error
+    if not seen and (answered.gap | answered.lifted())[0]:
+        return best, Verdict.LIFTED
+    if not answered.gap[0] and error[0] < np.nan_to_num(best.error[0], nan=np.inf):
+        best = answered.solution
+    converged = best.status[0] == Status.CONVERGED
+    missed = converged and best.error[0] > rtol
+    # True: finer panels hardly lower an error
+    at_end = at_floor(error, True, floor, rtol)[0] and not may_be_error(answered.tension, error)[0]
+    table = {
+        Verdict.SOLVED: converged and not missed,
+        Verdict.FLOOR: missed and at_end,
+        Verdict.SPENT: spent,
+        Verdict.COARSE: missed,
+    }
+    return best, next((verdict for verdict, holds in table.items() if holds), Verdict.OPEN)
 
 
 def answer(iterated, x, goal=None):

@@ -48,20 +48,25 @@ def iterate(start, step, limit):
     limit : most steps, int or (B,) int
     """
     size = len(start.cases.value)
-    limit = np.broadcast_to(limit, size)
-    closed, count, active = np.zeros(size, bool), np.zeros(size, int), np.arange(size)
-    now, parts, places = start, [], []
-    for done in range(limit.max(initial=0) + 1):
-        count[active], closed[active] = done, now.closed
-        leaves = closed[active] | now.lost | (done >= limit[active])
+    limit, every = np.broadcast_to(limit, size), np.arange(size)
+    closed, count, parts, places = np.zeros(size, bool), np.zeros(size, int), [], []
+
+    def ended(active, now):
+        closed[active] = now.closed
+        leaves = closed[active] | now.lost | (count[active] >= limit[active])
         if leaves.any():
             parts.append(now if leaves.all() else now.take(np.flatnonzero(leaves)))
             places.append(active[leaves])
-            active = active[~leaves]
-            if not len(active):
-                break
-            now = now.take(np.flatnonzero(~leaves))
+        return leaves
+
+    def after(active, now):
+        count[active] += 1
         now = step(now)
+        return ended(active, now), now
+
+    left = np.flatnonzero(~ended(every, start))
+    if len(left):
+        batch.march(after, left, start if len(left) == size else start.take(left))
     return Iterated(parts[0] if len(parts) == 1 else batch.join(parts, places, cases=start.cases), closed, count)
 
 

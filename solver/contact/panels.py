@@ -28,11 +28,11 @@ _LAST = np.linalg.inv(np.polynomial.legendre.legvander(2 * radau_nodes(ORDER) - 
 #: Most panels: the operator is not accurate enough to resolve more.
 _MOST = 32
 #: Of punches with kinks or a point: how often a panel is halved in a round, for an error spoils panels beside it too,
-#: rounds for each of _GOALS, panels that each kink may have besides, and rounds in which panels follow kinks at last.
+#: rounds for each of GOALS, panels that each kink may have besides, and rounds in which panels follow kinks at last.
 _AT_ONCE, _ROUNDS, _MORE, _FOLLOWING = 1, 3, 8, 8
 #: Tolerances of the rounds: each solves and then halves panels. A coarse solution cannot tell where a fine one will not
 #: be resolved, so rtol is approached in steps.
-_GOALS = (1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
+GOALS = (1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
 #: A panel is resolved when its last two coefficients add less than _SHARE times rtol of the load and of the real area,
 #: or less than _FLOOR of them: for the smallest rtol the error of the operator is larger.
 _SHARE = 0.3
@@ -70,7 +70,7 @@ def solve_on_panels(case, rtol, budget, at=None, nearer=1.0):
     else:
         iterated, work, place = Iterated(at, at.closed, np.zeros(1, dtype=int)), 0.0, _radius(at)
     least = max(rtol, case.body.error(radius, ORDER)[0])  # panels do not take the operator's own error away
-    goals = np.maximum(least, _GOALS).tolist()
+    goals = np.maximum(least, GOALS).tolist()
     if not case.punch.polynomial:
         goals = [*np.repeat(goals, _ROUNDS), *goals[-1:] * _FOLLOWING]
     for goal in goals:

@@ -5,6 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..numerics.batch import march
 from ..numerics.mesh import gauss_rule
 from ..numerics.quadrature import gauss_legendre, lagrange
 from ..solution import JUDGED
@@ -105,17 +106,18 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
     missed = np.nan_to_num(ev.state.y[rows] / guess(node_linear, node_linear * q + Z * g), nan=1.0)
     missed = np.clip(missed, 0.5, 2.0) @ L.T
     y = guess(linear, right) * np.clip(missed, 0.7, 1.4)
-    active, tolerance = np.arange(len(y)), np.broadcast_to(tolerance, (len(y), 1))
-    for _ in range(_STEPS):
+    tolerance = np.broadcast_to(tolerance, (len(y), 1))
+
+    def step(active):
         old, slope, weight = y[active], linear[active], Z[active]
         curve = law.take(active).evaluate(old)
         f = slope * curve.q + weight * curve.g - right[active]
         new = law.limit(old - f / (slope * curve.dq + weight * curve.dg), old)
         y[active] = new
         # what a step leaves is about the square of its relative size
-        active = active[np.any((new - old) ** 2 > tolerance[active] * new**2, axis=1)]
-        if not len(active):
-            break
+        return ~np.any((new - old) ** 2 > tolerance[active] * new**2, axis=1)
+
+    march(step, np.arange(len(y)), most=_STEPS)
     return y
 
 

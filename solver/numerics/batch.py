@@ -1,5 +1,5 @@
 """Batches: B cases side by side, in arrays whose first axis is the case. Parts of them, their union, cases that are
-alike.
+alike, and the loop over cases that have not ended.
 
 A batch is a named tuple or a dataclass with the method ``take = batch.take``. Its arrays, in tuples too, have B rows;
 parts that have a method `take` are batches themselves; whatever else is there is the same for all cases.
@@ -57,6 +57,25 @@ def _joined(parts, order, places, same=()):
     columns = ([getattr(part, name) for part in parts] for name in _names(kind))
     named = zip(_names(kind), columns, strict=True)
     return kind(*[same[name] if name in same else _joined(column, order, places) for name, column in named])
+
+
+def march(step, active, *carried, most=None):
+    """Repeat a step on the cases `active` (b,), indices: those that have ended leave, the others go on. The indices of
+    those that still go on after `most` steps.
+
+    step : ``step(active, *carried) -> ended, *carried``: which of the cases (b,) have ended, bool, and what the next
+        step carries, arrays and batches of these cases. Without anything carried, ``step(active) -> ended``
+    most : number of steps; None: until all have ended
+    """
+    while len(active) and most != 0:
+        ended, *carried = step(active, *carried) if carried else (step(active),)
+        most = None if most is None else most - 1
+        if ended.all():
+            return active[:0]
+        if ended.any():
+            left = np.flatnonzero(~ended)
+            active, carried = active[left], [_rows(values, left) for values in carried]
+    return active
 
 
 def alike(*columns):

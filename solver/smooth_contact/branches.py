@@ -7,6 +7,7 @@ radii are looked at from small ones up, and each branch on which the control ris
 
 import numpy as np
 
+from ..numerics.batch import march
 from ..numerics.bracket import between, turns_between
 from .equation import Response, respond
 from .radius import LAST, Radii, bracketed, guess
@@ -27,10 +28,11 @@ def smallest(control, value, shape, body):
     `value` (B,), rises with the radius, and the pressure is nowhere tensile; NaN where there is none. And how often the
     equation was solved (B,)."""
     search = _Search(control, value, shape, body)
-    active, pieces = np.arange(len(value)), []
-    looked = search.looked_at(search.first()[:, None], active)
+    every, pieces = np.arange(len(value)), []
+    first = search.looked_at(search.first()[:, None], every)
     end = np.minimum(guess(control, value, shape, body, search.radii) + _BEYOND, np.where(search.radii.ends, LAST, 700))
-    while len(active):
+
+    def step(active, *looked):
         above = looked[0][:, -1:] + _STEP * np.arange(1, _TOGETHER + 1)
         more = search.looked_at(above, active)
         looked = tuple(np.hstack(pair) for pair in zip(looked, more, strict=True))
@@ -42,7 +44,9 @@ def smallest(control, value, shape, body):
                 solved[rows] = search.note(pieces, active[rows], *part)
         x, g = looked[0][:, -1], looked[1][:, -1]
         goes_on = ~solved & np.isfinite(x + g) & (x < end[active] + np.where(g < 0, _BEYOND, 0.0))
-        active, looked = active[goes_on], tuple(values[goes_on, -1:] for values in looked)
+        return ~goes_on, *(values[:, -1:] for values in looked)
+
+    march(step, every, *first)
     return Response.join(len(value), pieces), search.counts
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..numerics.batch import march
 from ..shapes.shape import column
 from .equation import Response, respond
 
@@ -55,23 +56,23 @@ def rising_root(evaluate, start, low=-np.inf, high=np.inf):
     """
     x, counts = start.copy(), np.zeros(len(start), dtype=np.int32)
     low, high = np.full(len(x), low), np.full(len(x), high)
-    active = np.arange(len(x))
-    for _ in range(MOST):
+
+    def step(active):
         g, slope = evaluate(x[active], active)
         counts[active] += 1
         here = x[active]
         low[active] = np.where(g < 0, np.maximum(low[active], here), low[active])
         high[active] = np.where(g > 0, np.minimum(high[active], here), high[active])
-        step = np.clip(np.where(slope > 0, -g / slope, -np.sign(g) * _LONGEST), -_LONGEST, _LONGEST)
-        following = here + step
+        by = np.clip(np.where(slope > 0, -g / slope, -np.sign(g) * _LONGEST), -_LONGEST, _LONGEST)
+        following = here + by
         lo, hi = low[active], high[active]
         outside = (following <= lo) | (following >= hi)
         following = np.where(outside & np.isfinite(lo + hi), (lo + hi) / 2, following)
         ended = (np.abs(g) <= NEAR) | np.isnan(g) | (hi - lo <= _NARROW * np.maximum(1.0, np.abs(here)))
         x[active] = np.where(ended, np.where(np.isnan(g), np.nan, here), following)
-        active = active[~ended]
-        if not len(active):
-            break
+        return ended
+
+    march(step, np.arange(len(x)), most=MOST)
     return x, counts
 
 

@@ -77,3 +77,19 @@ def test_cases_are_alike_if_no_column_differs():
     assert sorted(rows.tolist() for rows in groups) == [[0, 3], [1, 4], [2]]
     assert [rows.tolist() for rows in batch.alike(np.array([3, 3]))] == [[0, 1]]
     assert batch.alike(words[:0], numbers[:0]) == []
+
+
+def test_a_march_goes_on_with_those_that_have_not_ended():
+    """Halving numbers until they are below 1: each case makes its own steps, and what is carried is of its cases."""
+    values, steps = np.array([0.5, 3.0, 20.0, np.nan]), np.zeros(4, dtype=int)
+
+    def step(active, now):
+        assert len(active) == len(now)
+        steps[active] += 1
+        return ~(now / 2 >= 1), now / 2
+
+    assert batch.march(step, np.arange(4), values).tolist() == []
+    assert steps.tolist() == [1, 2, 5, 1]
+    assert batch.march(step, np.arange(4), values, most=1).tolist() == [1, 2]
+    assert batch.march(lambda active: active > 0, np.arange(3), most=4).tolist() == [0]
+    assert batch.march(step, np.arange(0), np.zeros(0)).tolist() == []

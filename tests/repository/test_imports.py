@@ -27,7 +27,7 @@ ROOMS = {
     "solver": (
         *("closed_forms", "numerics", "status", "bases", "parameters", "layers", "shapes", "kernels"),
         *("laws", "body", "problem", "solution", "contact", "compiled", "scaling"),
-        *("flat", "schemes", "smooth_contact", "ways", "models", "solve", "sensitivity", "fields", "yields"),
+        *("schemes", "smooth_contact", "ways", "models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (
         *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives"),

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...numerics import batch
+from ...numerics.batch import march
 from ...numerics.bracket import between, turns_between
 from ...shapes.shape import column
 from ..radius import LAST, MOST, Radii, rising_root
@@ -144,8 +145,8 @@ def descend(curve, holder, start, wanted, until=-np.inf):
     """
     size, until = len(start), np.broadcast_to(until, len(start))
     out = Interval(*np.full((6, size), np.nan), np.ones(size, dtype=bool))
-    active, looked = np.arange(size), _looked_at(curve, holder, start[:, None], np.arange(size))
-    while len(active):
+
+    def step(active, *looked):
         below = looked[0] - _STEP * np.arange(1, _TOGETHER + 1)
         more = _looked_at(curve, holder, below, active)
         looked = tuple(np.hstack(pair) for pair in zip(looked, more, strict=True))
@@ -160,8 +161,9 @@ def descend(curve, holder, start, wanted, until=-np.inf):
         last = looked[0][:, -1]
         out.low[active] = np.where(goes_on, last, out.low[active])
         ends = lowest(curve.law, last, active, curve.radii) & ~(looked[1][:, -1] < until[active])
-        goes_on &= ~ends & ~np.isnan(last)
-        active, looked = active[goes_on], tuple(values[goes_on, -1:] for values in looked)
+        return ~goes_on | ends | np.isnan(last), *(values[:, -1:] for values in looked)
+
+    march(step, np.arange(size), *_looked_at(curve, holder, start[:, None], np.arange(size)))
     return out
 
 

@@ -4,8 +4,6 @@ Each function takes the word of a base, or an array of words of any kind (of num
 an array of bool of the same kind and shape.
 """
 
-from functools import reduce
-from operator import or_
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -46,10 +44,15 @@ _BARE = tuple(name for name in BASES if name not in WITH_LAYERS)
 _ONE_ON_SPRINGS = tuple(name for name in SPRINGS if name not in STACKS)
 _CHOSEN = tuple(name for name, row in TABLE.items() if row.chosen)
 _EXACT = tuple(name for name in FELT if name not in _CHOSEN)
+_EXACT_STACKS = tuple(name for name in _EXACT if name in STACKS)
+_MAY_BE_LAYERED = tuple(name for name in FELT if name not in STACKS)
 
 
 def _among(base: Any, words: tuple[str, ...]) -> Any:
-    return reduce(or_, [base == word for word in words])
+    met = base == words[0]
+    for word in words[1:]:
+        met = met | (base == word)
+    return met
 
 
 def is_bare(base: Any) -> Any:
@@ -74,7 +77,7 @@ def is_stack(base: Any) -> Any:
 
 def is_exact_stack(base: Any) -> Any:
     """Whether there is a stack of layers whose equation is the exact one."""
-    return _among(base, tuple(name for name in STACKS if name in _EXACT))
+    return _among(base, _EXACT_STACKS)
 
 
 def is_exact(base: Any) -> Any:
@@ -84,7 +87,7 @@ def is_exact(base: Any) -> Any:
 
 def may_be_layered(base: Any) -> Any:
     """Whether the equation is that of one exact layer, or may come to be."""
-    return _among(base, tuple(name for name in FELT if name not in STACKS))
+    return _among(base, _MAY_BE_LAYERED)
 
 
 def is_chosen(base: Any) -> Any:

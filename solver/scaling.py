@@ -98,7 +98,9 @@ def refused(problem, scaled):
 
 def without_springs(scaled):
     """(B,) bool: thin layers to which Eq. (3) does not apply, because C <= 0."""
-    without = is_thin_layer(scaled.base) & ~(local_compliance(scaled.h, TwoLayers.of(scaled)) > 0)
+    without = is_thin_layer(scaled.base)
+    if without.any():
+        without = without & ~(local_compliance(scaled.h, TwoLayers.of(scaled)) > 0)
     stacks = np.flatnonzero(is_stack(scaled.base) & on_springs(scaled.base))
     if len(stacks):
         without[stacks] = ~(thin_stack(scaled.take(stacks)).C > 0)

@@ -7,13 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from .bases import is_bare, is_thin_layer, on_springs
-from .contact import smooth
 from .contact.flat import solve_flat
 from .numerics.batch import alike
 from .scaling import as_cases, kinds_of_laws
 from .schemes import SCHEMES
 from .shapes import PARABOLOID, is_flat, shape_of, shaped
 from .shapes.shape import column
+from .smooth_contact import paraboloids
 from .smooth_contact.contact import not_sticking, sticking
 
 
@@ -21,7 +21,8 @@ class Way(NamedTuple):
     """One way to solve cases.
 
     name : of the way
-    has : function of a problem, (B,) bool: its cases, as far as no row before has them
+    has : function of a problem and of which of its cases (B,) are smooth, (B,) bool: those of this way, as far as no
+        row before has them
     alike : function of a problem, arrays (B,): cases that differ in none of these are solved together
     solve : ``function(part, x) -> Solution`` of such cases, in units R = E2* = 1, at the radii x (m,)
     equation : by which a solved case can be found again: "nodes", :mod:`.contact.equation`; "flat",
@@ -36,11 +37,11 @@ class Way(NamedTuple):
 
 
 def _hertz(part, x):
-    return smooth.half_space(part.control, part.value, x)
+    return paraboloids.on_half_space(part.control, part.value, x)
 
 
 def _on_springs(part, x):
-    return smooth.thin_layer(part.control, part.value, as_cases(part).body.C, part.rtol, part.nodes, x)
+    return paraboloids.on_thin_layer(part.control, part.value, as_cases(part).body.C, part.rtol, part.nodes, x)
 
 
 def _flat(part, x):
@@ -58,21 +59,21 @@ def _of_equation(part):
 #: base, rough, shape, sticks -> function. Of rough cases none sticks (:func:`unfit`), and graded layers are many
 #: uniform ones here (:mod:`.models.graded`).
 WAYS = (
-    Way("sticking", lambda p: p.w_adhesion > 0, lambda p: (p.base, p.shape, p.adhesion), sticking, "basis"),
-    Way("shaped", lambda p: ~p.rough() & shaped(p), lambda p: (p.base, p.shape), not_sticking, "basis"),
-    Way("hertz", lambda p: ~p.rough() & is_bare(p.base), lambda p: (), _hertz, "nodes"),
-    Way("springs", lambda p: ~p.rough() & is_thin_layer(p.base), lambda p: (), _on_springs, "nodes"),
-    Way("flat", lambda p: is_flat(p) & (p.scheme == "newton"), _of_equation, _flat, "flat"),
-    Way("by_scheme", lambda p: np.ones(len(p), dtype=bool), _of_equation, _by_scheme, "nodes"),
+    Way("sticking", lambda p, smooth: p.w_adhesion > 0, lambda p: (p.base, p.shape, p.adhesion), sticking, "basis"),
+    Way("shaped", lambda p, smooth: smooth & shaped(p), lambda p: (p.base, p.shape), not_sticking, "basis"),
+    Way("hertz", lambda p, smooth: smooth & is_bare(p.base), lambda p: (), _hertz, "nodes"),
+    Way("springs", lambda p, smooth: smooth & is_thin_layer(p.base), lambda p: (), _on_springs, "nodes"),
+    Way("flat", lambda p, smooth: is_flat(p) & (p.scheme == "newton"), _of_equation, _flat, "flat"),
+    Way("by_scheme", lambda p, smooth: np.ones(len(p), dtype=bool), _of_equation, _by_scheme, "nodes"),
 )
 
 
 def way_of(problem):
     """(B,) int8: the place in WAYS of the way of each case."""
     place = np.full(len(problem), len(WAYS) - 1, dtype=np.int8)
-    left = np.ones(len(problem), dtype=bool)
+    left, smooth = np.ones(len(problem), dtype=bool), ~problem.rough()
     for number, way in enumerate(WAYS[:-1]):
-        cases = left & way.has(problem)
+        cases = left & way.has(problem, smooth)
         place[cases], left[cases] = number, False
         if not left.any():
             break

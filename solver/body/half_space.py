@@ -80,7 +80,7 @@ class HalfSpace(NamedTuple):
 
     def unseen(self, a, s1):
         """A half-space has no length, and so no short waves. Smooth contacts on springs have a bound of
-        :mod:`..contact.smooth`."""
+        :mod:`..smooth_contact.paraboloids`."""
         return np.zeros_like(a)
 
     def work(self, a, nodes):

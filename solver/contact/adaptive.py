@@ -146,10 +146,10 @@ def _on_panels(case, before, rtol, x, left, nearer=1.0):
             if same and iterated.closed[0]:
                 break  # no finer panels than those before
             continue
-        seen, at = at is not None and verdict != Verdict.LIFTED, iterated.at
+        clear, at = at is not None and verdict != Verdict.LIFTED, iterated.at
         answered = answer(iterated, x)
         left -= case.body.work(answered.solution.a, finer_mesh(at.mesh).n)[0][0]
-        best, verdict = on_panels(best, answered, at.floor, rtol, seen, spent)
+        best, verdict = on_panels(best, answered, at.floor, rtol, clear, spent)
         if verdict in (Verdict.SOLVED, Verdict.FLOOR):
             break
     verdict = Verdict.LIFTED if tensile_centre(best)[0] else verdict

@@ -157,15 +157,15 @@ def unfinished(verdict, spent):
     return Verdict.SPENT if spent and verdict != Verdict.LIFTED else verdict
 
 
-def on_panels(best, answered, floor, rtol, seen, spent):
+def on_panels(best, answered, floor, rtol, clear, spent):
     """The better one of the solution `best` and that of a round of panels, whose :class:`Answer` is `answered`; and the
     :class:`Verdict` after that round.
 
-    Tension and gaps count only until panels have shown none, which they have if they were `seen` without: panels that
+    Tension and gaps count only until panels have shown none, which they have if they are `clear`: panels that
     are too coarse show some that are not there. floor : (1,), the error of the operator; spent : whether the budget is
     """
     error = answered.solution.error
-    if not seen and (answered.gap | answered.lifted())[0]:
+    if not clear and (answered.gap | answered.lifted())[0]:
         return best, Verdict.LIFTED
     if not answered.gap[0] and error[0] < np.nan_to_num(best.error[0], nan=np.inf):
         best = answered.solution

@@ -7,6 +7,7 @@ parts that have a method `take` are batches themselves; whatever else is there i
 
 from dataclasses import fields, is_dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -16,17 +17,29 @@ def _names(kind):
     return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else kind._fields
 
 
-def take(batch, index):
-    """The sub-batch at an `index`: whole numbers, a slice, or bool (B,)."""
-    kind = type(batch)
-    return kind(*[_rows(getattr(batch, name), index) for name in _names(kind)])
+def take(batch: Any, index: Any) -> Any:
+    """Some of the cases.
+
+    Parameters
+    ----------
+    batch : as above
+    index : whole numbers, a slice, or bool (B,)
+
+    Returns
+    -------
+    Any : a batch of the same kind
+    """
+    values = batch if isinstance(batch, tuple) else [getattr(batch, name) for name in _names(type(batch))]
+    # most are arrays: a call for each would take as long as the rest
+    rows = [value[index] if isinstance(value, np.ndarray) else _rows(value, index) for value in values]
+    return type(batch)(*rows)
 
 
 def _rows(value, index):
     if isinstance(value, np.ndarray):
         return value[index]
     if type(value) is tuple:
-        return tuple(_rows(each, index) for each in value)
+        return tuple([_rows(each, index) for each in value])
     return value.take(index) if is_batch(value) else value
 
 
@@ -35,16 +48,16 @@ def is_batch(value):
     return hasattr(value, "take") and not isinstance(value, np.generic)
 
 
-def join(parts, places=None, **same):
+def join(parts, places=None, **fixed):
     """The batch of the `parts`, each at its `places` (b,) in it; one after another if there are none.
 
-    same : field -> its value in the whole batch, which then is not put together from those of the parts
+    fixed : field -> its value in the whole batch, which then is not put together from those of the parts
     """
     order = slice(None) if places is None else np.argsort(np.concatenate(places))
-    return _joined(parts, order, places, same)
+    return _joined(parts, order, places, fixed)
 
 
-def _joined(parts, order, places, same=()):
+def _joined(parts, order, places, fixed=()):
     kind, first = type(parts[0]), parts[0]
     if isinstance(first, np.ndarray):
         return np.concatenate(parts)[order]
@@ -56,7 +69,7 @@ def _joined(parts, order, places, same=()):
         return kind.assemble(parts, places)
     columns = ([getattr(part, name) for part in parts] for name in _names(kind))
     named = zip(_names(kind), columns, strict=True)
-    return kind(*[same[name] if name in same else _joined(column, order, places) for name, column in named])
+    return kind(*[fixed[name] if name in fixed else _joined(column, order, places) for name, column in named])
 
 
 def march(step, active, *carried, most=None):

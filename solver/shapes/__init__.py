@@ -11,7 +11,7 @@ from ..parameters import PARAMETERS, Register
 from . import blunt_cone, cone, flat, frustum, paraboloid, power, rounded_flat, sphere, table
 from .shape import Kind, Shape, has_radius
 
-__all__ = ["PARABOLOID", "SHAPES", "Kind", "Shape", "is_flat", "named", "register", "shape_of", "shaped"]
+__all__ = ["PARABOLOID", "ROUND", "SHAPES", "Kind", "Shape", "is_flat", "named", "register", "shape_of", "shaped"]
 
 #: The shape of the paper: the default.
 PARABOLOID = paraboloid.KIND.name
@@ -91,5 +91,7 @@ BUILT_IN = (
     *(paraboloid.KIND, sphere.KIND, cone.KIND, *cone.PYRAMIDS, power.KIND, frustum.KIND, blunt_cone.KIND, flat.KIND),
     rounded_flat.KIND,
 )
+#: The names of those whose profile has the radius R in it.
+ROUND = tuple(kind.name for kind in BUILT_IN if kind.round)
 #: Name -> :class:`~.shape.Kind` of all shapes.
 SHAPES = Register(_declare({kind.name: kind for kind in BUILT_IN}))

@@ -90,4 +90,4 @@ class Paraboloid(NamedTuple):
         return (half_space * HERTZ * s + springs) / s**2
 
 
-KIND = Kind("paraboloid", {}, lambda size: Paraboloid(np.full(size, 2.0)), "a paraboloid r²/(2R)")
+KIND = Kind("paraboloid", {}, lambda size: Paraboloid(np.full(size, 2.0)), "a paraboloid r²/(2R)", round=True)

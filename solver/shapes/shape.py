@@ -70,12 +70,15 @@ class Kind(NamedTuple):
     parameters : name -> :class:`~solver.parameters.Parameter` of its numbers
     of : function of these numbers, arrays (B,) by their names, that makes the :class:`Shape`
     words : what it is, for messages and tables
+    round : whether its profile is that of a ball of radius R, or of one near its axis; R is the mere unit of length of
+        all others
     """
 
     name: str
     parameters: Mapping[str, Parameter]
     of: Callable[..., Shape]
     words: str
+    round: bool = False
 
 
 def has_radius(shape):

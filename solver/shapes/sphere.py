@@ -70,4 +70,4 @@ def _series(a):
     return a * total
 
 
-KIND = Kind("sphere", {}, lambda size: Sphere(np.ones(size)), "a ball of radius R")
+KIND = Kind("sphere", {}, lambda size: Sphere(np.ones(size)), "a ball of radius R", round=True)

@@ -12,6 +12,7 @@ from solver.bases import is_bare
 from solver.closed_forms import yield_pressure
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS
+from solver.shapes import ROUND
 from solver.yields import spots
 from solver.yields.below import central_spot
 from solver.yields.below.central_spot import SPOT_EXTREMES
@@ -22,7 +23,6 @@ from ..again import Again, known_strengths, no_stresses, of_all_cases, strengths
 from ..arrays import xarray_later as xr
 from ..data.dataset import flag_words
 from ..inputs.definition import StudyError
-from ..inputs.punch.shapes import ROUND
 from ..inputs.vocabulary import bodies_of
 from ..rules.assumptions import FEW_SPOTS
 from ..rules.yield_bounds import stress_below_one

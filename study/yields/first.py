@@ -6,9 +6,10 @@ import numpy as np
 import xarray as xr
 
 from solver.bases import is_bare
+from solver.shapes import ROUND
 from solver.yields.crossing import NUMBERS, Crossing
 from solver.yields.first import first_yield as crossing_of
-from solver.yields.way import ROUND, STEEPEST
+from solver.yields.reach import STEEPEST
 
 from ..again import Again, of_all_cases, strengths
 from ..fields import carried, friction, refuse_both, residual_stress, units_of

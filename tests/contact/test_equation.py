@@ -12,6 +12,7 @@ from solver.contact.start import first_guess
 from solver.laws import LAWS, Curve
 from solver.numerics.mesh import mesh_of
 from solver.scaling import as_cases
+from solver.shapes.paraboloid import Paraboloid
 
 ONE = np.ones(1)
 
@@ -21,7 +22,7 @@ def evaluation(q, F, G):
     q, F, one = np.array([q]), np.array([F]), np.ones((1, 1))
     curve = Curve(q=q, g=np.full_like(q, 1e-3), dq=np.ones_like(q), dg=np.ones_like(q))
     body = half_space(0 * ONE)
-    cases = Cases("a", LAWS["smooth"].bind(ONE), body, ONE)
+    cases = Cases("a", LAWS["smooth"].bind(ONE), body, ONE, Paraboloid(2 * ONE))
     return Evaluation(cases, State(q, np.array([G])), body.at(ONE, mesh_of(2)), curve, one, one, one, q, q[:, 0], F)
 
 

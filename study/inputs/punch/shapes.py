@@ -19,8 +19,6 @@ WORDS = ("tip", "adhesion", "branch")
 #: Bases that take the paraboloid alone, and nothing that sticks.
 #: Angles of the punch: numbers of degrees.
 ANGLES = ("half_angle",)
-#: The shapes whose profile has the radius R in it. R is the unit of length of all others.
-ROUND = (shapes.PARABOLOID, "sphere")
 #: The shapes with a flat end, beyond which a contact reaches.
 WITH_A_FLAT = ("frustum", "rounded_flat")
 #: Inputs with a length of which the first that is given is the unit of length of a shape without a radius.
@@ -100,7 +98,7 @@ def left_out(name: str, sections: Any) -> bool:
 
 def radius_needed(words: Any) -> bool:
     """Whether some case has a shape with a radius."""
-    return bool(np.isin(words, ROUND).any())
+    return bool(np.isin(words, shapes.ROUND).any())
 
 
 def in_metres(words: Any) -> Any:

@@ -7,7 +7,7 @@ import pytest
 from solver_cases import LOAD, MAIN
 
 from solver import Problem, Status, solve
-from solver.contact import smooth
+from solver.smooth_contact import paraboloids
 from study.studies.paper.uniform import solve_uniform
 
 X = np.linspace(0.0, 1.0, 5)
@@ -53,13 +53,13 @@ def test_a_number_out_of_bounds_on_a_uniform_mesh():
 
 
 def test_a_negative_number_of_a_way_to_solve(monkeypatch):
-    hertz = smooth.half_space
+    hertz = paraboloids.on_half_space
 
     def wrong(control, value, x):
         found = hertz(control, value, x)
         return replace(found, D=np.where(value == 0.04, -found.D, found.D))
 
-    monkeypatch.setattr(smooth, "half_space", wrong)
+    monkeypatch.setattr(paraboloids, "on_half_space", wrong)
     s = solve(Problem.of(a=[0.02, 0.04], micro="smooth", base="half_space"), X)
     assert s.status.tolist() == [Status.CONVERGED, Status.DIVERGED]
     assert_numbers_or_none(s)

@@ -21,7 +21,7 @@ OWN = 3  # the user's number of threads: neither the 1 of the solver nor the def
 #: Where the solver multiplies or solves, a function for each way.
 WATCHED = (
     "solver.contact.newton.solve_stack",
-    "solver.contact.smooth._sums",
+    "solver.smooth_contact.paraboloids._sums",
     "solver.contact.picard.approximate",
     "scipy.optimize.brentq",
     "solver.models.thin_layer_error._integrated",

@@ -1,10 +1,10 @@
-"""Smooth punches on a thin layer: the numbers that solver/contact/smooth.py rests on."""
+"""Smooth punches on a thin layer: the numbers that solver/smooth_contact/paraboloids.py rests on."""
 
 import numpy as np
 import pytest
 
-from solver.contact import smooth
 from solver.numerics.mesh import mesh_of
+from solver.smooth_contact import paraboloids
 
 #: Compliances of springs under contacts of radius 1: from a half-space alone to springs alone.
 C, A = np.geomspace(1e-6, 1e6, 400), np.ones(400)
@@ -18,21 +18,21 @@ def test_the_modes_are_real_and_well_conditioned():
 
 def test_the_first_guess_of_the_radius():
     """Under a load it is right to 0.3 %, and the second step is the last."""
-    P = smooth._OF_SUMS["P"](A, smooth._sums(A, C, smooth.modes(100))[1])
-    blend = smooth._BLEND
+    P = paraboloids._OF_SUMS["P"](A, paraboloids._sums(A, C, paraboloids.modes(100))[1])
+    blend = paraboloids._BLEND
     guess = (np.cbrt(0.75 * P) ** blend + (4 / np.pi * C * P) ** (blend / 4)) ** (1 / blend)
     assert 0.002 < np.abs(guess - 1).max() < 0.003
-    found, steps = smooth._radius("P", P, C, smooth.modes(100))
+    found, steps = paraboloids._radius("P", P, C, paraboloids.modes(100))
     np.testing.assert_allclose(found, A, rtol=1e-13, atol=0)
     assert steps.max() == 2
 
 
 @pytest.mark.parametrize("control", ["P", "D"])
 def test_a_step_leaves_a_small_part_of_its_square(control):
-    value, of_control = (smooth._OF_SUMS[control], smooth._ROWS[control])
-    given = value(A, smooth._sums(A, C, smooth.modes(12))[1])
+    value, of_control = (paraboloids._OF_SUMS[control], paraboloids._ROWS[control])
+    given = value(A, paraboloids._sums(A, C, paraboloids.modes(12))[1])
     for away in (-0.1, -0.01, 0.01, 0.1):
         a = A * np.exp(away)
-        _, S, slopes, _ = smooth._sums(a, C, smooth.modes(12))
+        _, S, slopes, _ = paraboloids._sums(a, C, paraboloids.modes(12))
         step = np.log(value(a, S) / given) / slopes[of_control]
         assert np.abs((away - step) / step**2).max() < 0.04

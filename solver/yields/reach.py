@@ -7,13 +7,12 @@ import numpy as np
 from ..bases import is_bare
 from ..fields.shaped import corners
 from ..scaling import dimensionless
-from ..shapes import PARABOLOID, shape_of
+from ..shapes import ROUND, shape_of
 from ..smooth_contact.contact import kinds_of
 from ..smooth_contact.rises import on_half_space
 
 #: Radii in R that are looked at: of paraboloids and spheres.
 NARROWEST, WIDEST = 1e-8, 0.2
-ROUND = (PARABOLOID, "sphere")
 #: Other shapes are looked at up to this slope at the edge of the contact, beyond which elasticity says little; or, if
 #: they are less steep, up to so many times the radius of their last kink.
 STEEPEST, _KINKS = 0.4, 100.0
@@ -26,7 +25,7 @@ _STEPS, _FINE, _LEAST, _MOST = 120, 1200, 1e-8, 1e2
 _LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
 
 
-class Way(NamedTuple):
+class Reach(NamedTuple):
     """What the search marches over, `at` = a - flat, (B,) each, in R.
 
     flat : radius of the flat end, 0 of shapes without one
@@ -41,13 +40,13 @@ class Way(NamedTuple):
 
 
 @np.errstate(all="ignore")  # pressures are infinite at tips and corners
-def way_of(problem, strength, mu, touched):
-    """The :class:`Way` of cases with shapes, some of which may be :data:`ROUND` and are left out: NaN.
+def reach_of(problem, strength, mu, touched):
+    """The :class:`Reach` of cases with shapes, some of which may be :data:`ROUND` and are left out: NaN.
 
     strength : (B,), in units of E2
     touched : (B,) bool, it is about what the punch touches and is not incompressible
     """
-    made = Way(*np.full((3, len(problem)), np.nan), np.zeros(len(problem), dtype=bool))
+    made = Reach(*np.full((3, len(problem)), np.nan), np.zeros(len(problem), dtype=bool))
     made.flat[:] = 0.0
     others = np.flatnonzero(~np.isin(problem.shape, ROUND))
     if not len(others):

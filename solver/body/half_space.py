@@ -25,6 +25,7 @@ _STEP = 150
 STIFF = 1e-50
 
 
+@batch.of_cases
 class HalfSpaceOperator(NamedTuple):
     """The :class:`~solver.body.operator.Operator` of a half-space on a mesh. It is one for all cases and radii: each
     sub-batch is the operator itself, and its slopes are 0."""
@@ -38,8 +39,6 @@ class HalfSpaceOperator(NamedTuple):
     @property
     def edge(self):
         return self.mesh.edge[None]
-
-    take = batch.take
 
     def at_edge(self, q):
         return (self.edge * q).sum(axis=1)
@@ -55,6 +54,7 @@ class HalfSpaceOperator(NamedTuple):
         return half_space
 
 
+@batch.of_cases
 class HalfSpace(NamedTuple):
     """The :class:`~solver.body.operator.Body` of modulus E (B,), in E2*, with springs of compliance C (B,), or 0. Its
     operator is exact to rounding."""
@@ -63,8 +63,6 @@ class HalfSpace(NamedTuple):
     C: np.ndarray
 
     kernel = None
-
-    take = batch.take
 
     def at(self, a, mesh, near=None):
         return HalfSpaceOperator(mesh)

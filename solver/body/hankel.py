@@ -43,6 +43,7 @@ _PLATE = 3 * np.finfo(float).eps
 _SHORT, _POINTS = 45.0, 64
 
 
+@batch.of_cases
 class Hankel(NamedTuple):
     """The :class:`~solver.body.operator.Body` of B cases with a kernel; arrays (B,): thickness h of the layer at the
     surface in R, and m = E1*/E3*.
@@ -71,8 +72,6 @@ class Hankel(NamedTuple):
     @property
     def C(self):
         return 0 * self.m
-
-    take = batch.take
 
     def at(self, a, mesh, near=None):
         """A case whose radius has not changed since `near` keeps the values of L that `near` has."""

@@ -18,6 +18,7 @@ from .wave_rule import CUT, FILM, STIFFEST, few, place_of, quadrature
 _BLOCK = 16384
 
 
+@batch.of_cases
 class Part(NamedTuple):
     """The kernel of b cases of one family and one class of stiffness, which are all films or all thicker. If the family
     has no `sampler`, they are of one octave too.
@@ -53,8 +54,6 @@ class Part(NamedTuple):
     def share(self):
         """How much of the half-space's K is added to Λ: 1, or n' (b, 1) of films."""
         return 1.0 if self.level is None else self.level
-
-    take = batch.take
 
 
 def runs(kinds):

@@ -71,6 +71,7 @@ class Goal(NamedTuple):
     spent: np.ndarray
 
 
+@batch.of_cases
 class Answer(NamedTuple):
     """The solution of B cases, and what tells whether the punch lifts off and whether a finer mesh is of use.
 
@@ -85,8 +86,6 @@ class Answer(NamedTuple):
     gap: np.ndarray
     verdict: np.ndarray
     finer: State | None
-
-    take = batch.take
 
     def lifted(self):
         """(B,) bool: there is tension, in all or in the centre, which is too large to be an error."""

@@ -42,6 +42,7 @@ _OF_RADIUS = 16 * np.finfo(float).eps
 _TINY = np.finfo(float).tiny
 
 
+@batch.of_cases
 class Cases(NamedTuple):
     """A batch of B cases of one body, micro law and punch in units R = 1, E2* = 1: the `control` "P", "a" or "D" of the
     whole batch, the law, body and punch with their numbers, and the controlled `value` (B,)."""
@@ -62,18 +63,16 @@ class Cases(NamedTuple):
         """Whether the contact radius is that of the punch, whatever the load."""
         return bool(has_radius(self.shape).all())
 
-    take = batch.take
 
-
+@batch.of_cases
 class State(NamedTuple):
     """Unknowns: y (B, n) of the micro law at the nodes, and η = ln a (B,)."""
 
     y: np.ndarray
     eta: np.ndarray
 
-    take = batch.take
 
-
+@batch.of_cases
 @dataclass(frozen=True, eq=False)
 class Evaluation:
     """The equation of `cases` at a state: the operator of the body and the curve of the law there, the groups X, Y, Z
@@ -152,8 +151,6 @@ class Evaluation:
     @property
     def lost(self):
         return ~np.isfinite(self.residual)
-
-    take = batch.take
 
 
 def _floor(body, a, nodes):

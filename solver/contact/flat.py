@@ -40,6 +40,7 @@ _GAP = 1e-9
 _ROUNDING, _TINY = 4 * np.finfo(float).eps, np.finfo(float).tiny
 
 
+@batch.of_cases
 class AsFlat(NamedTuple):
     """The :class:`~solver.contact.punch.Punch` of a flat `shape` whose drop is `tau` (B,) at any radius. It needs no
     first guess."""
@@ -48,8 +49,6 @@ class AsFlat(NamedTuple):
     shape: Shape
 
     polynomial = True
-
-    take = batch.take
 
     def drop(self, a, s):
         return self.tau[:, None] + 0 * s
@@ -106,14 +105,13 @@ def misses(ev):
     return np.maximum(np.where(ev.gap > 0, 0.0, np.abs(ev.F)).max(axis=1) / scale, np.abs(ev.G))
 
 
+@batch.of_cases
 @dataclass(frozen=True, eq=False)
 class Now:
     """The equation `ev` at one step of the iteration, and by how much it missed at the step before."""
 
     ev: Evaluation
     before: np.ndarray
-
-    take = batch.take
 
     @property
     def cases(self):

@@ -25,6 +25,7 @@ _SETTLED = 1e-2
 _TINY = np.finfo(float).tiny
 
 
+@batch.of_cases
 @dataclass(frozen=True, eq=False)
 class Approximation:
     """B cases at the radii exp(eta), after `done` approximations: the pressure q (B, n), and how much it still changes.
@@ -60,8 +61,6 @@ class Approximation:
         """Logarithm of (load or depth/given value) (B,)."""
         edge_q = np.einsum("bj,bj->b", self.operator.edge + 0 * self.q, self.q)
         return control_residual(self.cases, self.eta, self.groups[0], self.q, edge_q, self.operator.mesh)
-
-    take = batch.take
 
 
 def solve(cases, mesh, k, rtol, limit):

@@ -87,14 +87,13 @@ def largest(punch, a):
     return punch.drop(a, np.ones(1))[..., 0]
 
 
+@batch.of_cases
 class Shaped(NamedTuple):
     """The :class:`Punch` of B cases with the profiles `shape`."""
 
     shape: Shape
 
     polynomial = False
-
-    take = batch.take
 
     def drop(self, a, s):
         return self.shape.drop(a, s)

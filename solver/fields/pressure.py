@@ -29,14 +29,13 @@ _KEPT = 250_000
 _ROUNDING = 1e-12
 
 
+@batch.of_cases
 class Pressure(NamedTuple):
     """`values` (B, n), the pressures of B cases at the nodes of a mesh; and A (B,) of 1/s, 0 for all if it is None."""
 
     mesh: Mesh
     values: np.ndarray
     A: np.ndarray | None = None
-
-    take = batch.take
 
     def transform(self, k):
         """p^(k) = ∫ p J0(kr) r dr (B, K) at ascending k (K,)."""

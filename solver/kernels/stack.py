@@ -20,6 +20,7 @@ _NEAR = 0.7
 _BLOCK = 2048
 
 
+@batch.of_cases
 class Stack(NamedTuple):
     """The :class:`~solver.kernels.kernel.Kernel` of B stacks of N layers, the top first.
 
@@ -77,8 +78,6 @@ class Stack(NamedTuple):
         bodies = np.hstack([self.n, np.where(self.rigid, np.inf, 1.0)[:, None]])
         under = np.minimum.accumulate(bodies[:, ::-1], axis=1)[:, ::-1][:, 1:]
         return np.maximum(softest, (self.depth * np.maximum(1.0, self.n / under)).sum(axis=1))
-
-    take = batch.take
 
     def formulas(self):
         return [np.arange(len(self.n))]

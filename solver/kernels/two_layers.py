@@ -10,6 +10,7 @@ from .closed_form import decaying_part, whole
 from .kernel import Sampler
 
 
+@batch.of_cases
 class TwoLayers(NamedTuple):
     """The :class:`~solver.kernels.kernel.Kernel` of B layers on half-spaces, arrays (B,): n = E1*/E2*, the Poisson
     ratios nu1, nu2 of layer and half-space, and whether they are bonded."""
@@ -45,8 +46,6 @@ class TwoLayers(NamedTuple):
     @property
     def sampler(self):
         return SAMPLER
-
-    take = batch.take
 
     def formulas(self):
         return [np.flatnonzero(self.bonded), np.flatnonzero(~self.bonded)]

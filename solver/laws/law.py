@@ -27,6 +27,7 @@ _STEPS, _LONGEST = 100, 5.0
 _LAST, _ROUNDING = 1e-9, 1e-3
 
 
+@batch.of_cases
 class Curve(NamedTuple):
     """A law at some y.
 
@@ -40,8 +41,6 @@ class Curve(NamedTuple):
     g: np.ndarray
     dq: np.ndarray
     dg: np.ndarray
-
-    take = batch.take
 
 
 class Spots(NamedTuple):
@@ -162,6 +161,7 @@ class Law:
         return Spots(*(v.reshape(p.shape) for v in spots))
 
 
+@batch.of_cases
 class Bound(NamedTuple):
     """A law with the numbers of B cases: p* and A* (B,), and in `own`, (B, 1) each, what else its functions need."""
 
@@ -173,8 +173,6 @@ class Bound(NamedTuple):
     @property
     def rough(self):
         return self.law.rough
-
-    take = batch.take
 
     def evaluate(self, y):
         """:class:`Curve` at y (B, m)."""

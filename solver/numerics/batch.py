@@ -1,7 +1,7 @@
 """Batches: B cases side by side, in arrays whose first axis is the case. Parts of them, their union, cases that are
 alike, and the loop over cases that have not ended.
 
-A batch is a named tuple or a dataclass with the method ``take = batch.take``. Its arrays, in tuples too, have B rows;
+A batch is a named tuple or a dataclass that is decorated by :func:`of_cases`. Its arrays, in tuples too, have B rows;
 parts that have a method `take` are batches themselves; whatever else is there is the same for all cases.
 """
 
@@ -33,6 +33,12 @@ def take(batch: Any, index: Any) -> Any:
     # most are arrays: a call for each would take as long as the rest
     rows = [value[index] if isinstance(value, np.ndarray) else _rows(value, index) for value in values]
     return type(batch)(*rows)
+
+
+def of_cases(kind):
+    """Class decorator: a named tuple or a dataclass is a batch, and has :func:`take` for a method."""
+    kind.take = take
+    return kind
 
 
 def _rows(value, index):

@@ -17,6 +17,7 @@ _EXACT = (Model.LAYERED, Model.SMOOTH_LAYERED)
 _SMOOTH = (Model.SMOOTH_LAYER_ALONE, Model.SMOOTH_THIN_LAYER)
 
 
+@batch.of_cases
 class Held(NamedTuple):
     """Cases whose base is the one that was used.
 
@@ -30,8 +31,6 @@ class Held(NamedTuple):
     written: Problem
     E2: np.ndarray
     added: np.ndarray
-
-    take = batch.take
 
 
 def held(scaled, used):

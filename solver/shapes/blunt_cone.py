@@ -18,6 +18,7 @@ TIP_RADIUS = Parameter(interval="[1e-12, 1e6]", powers=(0, 1))
 TIP = Parameter("paraboloid", ("paraboloid", "sphere"))
 
 
+@batch.of_cases
 class BluntCone(NamedTuple):
     """The :class:`~.shape.Shape` of tips of radius `rho` and slopes `cot`; `ball` (B,) bool, the tip is a ball."""
 
@@ -42,8 +43,6 @@ class BluntCone(NamedTuple):
     def side(self):
         """Of a ball, sqrt(ρ² - b²) (B,)."""
         return self.rho / np.hypot(1.0, self.cot)
-
-    take = batch.take
 
     def height(self, r):
         tip = np.minimum(r, column(self.b))

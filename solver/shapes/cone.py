@@ -15,6 +15,7 @@ HALF_ANGLE = Parameter(interval="(0, 90)")
 _AREA, _CUBE_CORNER = 24.5, 42.2784
 
 
+@batch.of_cases
 class Cone(NamedTuple):
     """The :class:`~.shape.Shape` of cones of slope `cot` (B,)."""
 
@@ -27,8 +28,6 @@ class Cone(NamedTuple):
     @property
     def even(self):
         return self.cot < 0
-
-    take = batch.take
 
     def height(self, r):
         return column(self.cot) * r

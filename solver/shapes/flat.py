@@ -9,6 +9,7 @@ from .frustum import FLAT_RADIUS
 from .shape import Kind, column
 
 
+@batch.of_cases
 class Flat(NamedTuple):
     """The :class:`~.shape.Shape` of radii `b` (B,): f = 0."""
 
@@ -21,8 +22,6 @@ class Flat(NamedTuple):
     @property
     def even(self):
         return self.b > 0
-
-    take = batch.take
 
     def height(self, r):
         return 0 * column(self.b) * r

@@ -13,6 +13,7 @@ from .shape import Kind, angle, beyond, column, radii_at
 FLAT_RADIUS = Parameter(interval="[1e-9, 1e3]", powers=(0, 1))
 
 
+@batch.of_cases
 class Frustum(NamedTuple):
     """The :class:`~.shape.Shape` of radii `b` and slopes `cot` (B,)."""
 
@@ -26,8 +27,6 @@ class Frustum(NamedTuple):
     @property
     def even(self):
         return self.b < 0
-
-    take = batch.take
 
     def height(self, r):
         return column(self.cot) * np.maximum(r - column(self.b), 0.0)

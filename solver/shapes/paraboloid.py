@@ -14,6 +14,7 @@ from .shape import Kind, column, no_kinks
 HERTZ = np.pi**2 / 16
 
 
+@batch.of_cases
 class Paraboloid(NamedTuple):
     """The :class:`~.shape.Shape` of B paraboloids, and their :class:`~solver.contact.punch.Punch`. `power` (B,) is 2 of
     all: an array, by which numpy rounds r² as it does the other powers of :mod:`.power`."""
@@ -33,8 +34,6 @@ class Paraboloid(NamedTuple):
     @property
     def even(self):
         return self.power > 0
-
-    take = batch.take
 
     def height(self, r):
         return 0.5 * r ** column(self.power)

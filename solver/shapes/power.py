@@ -13,6 +13,7 @@ from .shape import Kind, column, no_kinks
 SHAPE_POWER, SHAPE_COEFFICIENT = Parameter(interval="[1, 100]"), Parameter(interval="[1e-12, 1e12]")
 
 
+@batch.of_cases
 class Power(NamedTuple):
     """The :class:`~.shape.Shape` of coefficients c and exponents k (B,); `B` (B,) is F over f."""
 
@@ -27,8 +28,6 @@ class Power(NamedTuple):
     @property
     def even(self):
         return self.k % 2 == 0
-
-    take = batch.take
 
     def height(self, r):
         return column(self.c) * r ** column(self.k)

@@ -11,6 +11,7 @@ from .shape import Kind, column, no_kinks
 _SERIES, _TERMS = 0.3, 16
 
 
+@batch.of_cases
 class Sphere(NamedTuple):
     """The :class:`~.shape.Shape` of balls, one for each entry of `ones` (B,)."""
 
@@ -23,8 +24,6 @@ class Sphere(NamedTuple):
     @property
     def even(self):
         return self.ones > 0
-
-    take = batch.take
 
     def height(self, r):
         return r**2 / (1 + _side(r))

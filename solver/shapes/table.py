@@ -49,6 +49,7 @@ class Rows(NamedTuple):
 TABLES: dict[str, Rows] = {}
 
 
+@batch.of_cases
 class Table(NamedTuple):
     """The :class:`~.shape.Shape` of one table, whose lengths are in `unit` (B,)."""
 
@@ -62,8 +63,6 @@ class Table(NamedTuple):
     @property
     def even(self):
         return self.unit < 0
-
-    take = batch.take
 
     def height(self, r):
         r = r / column(self.unit)

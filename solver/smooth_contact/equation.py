@@ -43,6 +43,7 @@ _THIN, _SOFT = -3, 0.1
 _BASIS, _RATIOS = 4.0, (1e-3, 0.9)
 
 
+@batch.of_cases
 class Response(NamedTuple):
     """Shapes at B radii `a`, in units R = E2* = 1. Without adhesion the load and depth are `P` and `D`; those of a flat
     punch of radius a with A = 1 are `flat_P` and `flat_D`. All are (B,) but the last two.
@@ -77,8 +78,6 @@ class Response(NamedTuple):
     def S(self):
         """Stiffness (B,) of a flat punch of the radius a."""
         return self.flat_P / self.flat_D
-
-    take = batch.take
 
     def only(self, mask):
         """NaN in place of all numbers of cases that are not in the `mask` (B,)."""

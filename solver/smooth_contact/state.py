@@ -24,6 +24,7 @@ _CORNER, _AT_CORNER = 1e-9, 64 * np.finfo(float).eps
 _INNER, _SLOW = 8, 4.0
 
 
+@batch.of_cases
 class State(NamedTuple):
     """Contacts, (B,) each: load and depth at the radius `a`, their derivatives dP, dD by a, and their errors. `A`, the
     edge value, and `response` say what the pressure is. `zone` is c/a, 1 unless attraction acts in a ring."""
@@ -38,8 +39,6 @@ class State(NamedTuple):
     D_error: np.ndarray
     zone: np.ndarray
     response: Response
-
-    take = batch.take
 
     def only(self, mask):
         """NaN in place of all numbers of cases that are not in the `mask` (B,)."""

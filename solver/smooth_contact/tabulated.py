@@ -19,6 +19,7 @@ _FIRST = tuple(2.0 ** np.floor(np.log2(0.15 / np.array(STIFFEST))))
 _END = 32.0
 
 
+@batch.of_cases
 class Tabulated(NamedTuple):
     """A :class:`~..body.hankel.Hankel` body with the series of (L - 1)/(1 + m), `series` (B, p, _POINTS), on p panels
     in u = kh, of which the first ends at `first` (B,); beyond the last it is 0."""
@@ -64,8 +65,6 @@ class Tabulated(NamedTuple):
 
     def softness(self, a):
         return self.body.softness(a)
-
-    take = batch.take
 
     def excess(self, u):
         """(L - 1)/(1 + m) (B, M) at u (B, M)."""

@@ -11,15 +11,15 @@ from solver.laws import LAWS
 from solver.numerics import batch
 
 
+@batch.of_cases
 class Inner(NamedTuple):
     """Numbers of cases, and one for all of them."""
 
     values: np.ndarray
     unit: float
 
-    take = batch.take
 
-
+@batch.of_cases
 @dataclass(frozen=True, eq=False)
 class Outer:
     """What a batch may have: arrays, tuples of arrays, batches, and what is the same for all cases."""
@@ -30,8 +30,6 @@ class Outer:
     inner: Inner
     number: np.float64
     nothing: None = None
-
-    take = batch.take
 
 
 def outer():

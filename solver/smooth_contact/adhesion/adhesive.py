@@ -56,6 +56,7 @@ def solve(part, shape, body, x):
     return solution.refused(outside, Status.OUTSIDE_LAW)
 
 
+@batch.of_cases
 class Pulled(NamedTuple):
     """Of B cases, what does not depend on their load or depth: what holds the punch, `holder`; its
     :class:`~.pull.Turn`, and the state to which the contact jumps where the punch only touches; and the Turn of a
@@ -66,8 +67,6 @@ class Pulled(NamedTuple):
     jumped: State
     control: Held
     of_control: Turn
-
-    take = batch.take
 
 
 def pulled(part, law):

@@ -24,6 +24,7 @@ from ..state import State
 _SMALL = 1e-290
 
 
+@batch.of_cases
 class Jkr(NamedTuple):
     """The law of adhesion of B cases: shapes, the body, and the work of adhesion w (B,)."""
 
@@ -31,8 +32,6 @@ class Jkr(NamedTuple):
     body: object
     w: np.ndarray
     reaches_axis = False  # at small radii the edge pulls more than the shape presses
-
-    take = batch.take
 
     def taken(self, state):
         """What adhesion takes from load, depth and p(0) of states, as of a half-space, (3, B)."""

@@ -7,6 +7,7 @@ import numpy as np
 from ...numerics import batch
 
 
+@batch.of_cases
 class Held(NamedTuple):
     """What holds the punches: of B cases whether the load counts alone, k = 0, and the compliance 1/k else."""
 
@@ -18,8 +19,6 @@ class Held(NamedTuple):
         """The stiffnesses k (B,), from 0 to infinite."""
         with np.errstate(divide="ignore"):
             return cls(k == 0, np.where(k == 0, 0.0, 1 / k))
-
-    take = batch.take
 
     def of(self, P, D):
         """Q, or its slope, of P and D, or their slopes."""

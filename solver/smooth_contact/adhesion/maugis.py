@@ -61,6 +61,7 @@ class Layer(NamedTuple):
     changes: np.ndarray
 
 
+@batch.of_cases
 class Maugis(NamedTuple):
     """The law of adhesion of B cases: shapes, the body, w and σ₀ (B,)."""
 
@@ -69,8 +70,6 @@ class Maugis(NamedTuple):
     w: np.ndarray
     sigma: np.ndarray
     reaches_axis = True  # where the ring is wide, P and D rise with a from a = 0
-
-    take = batch.take
 
     def taken(self, state):
         """About what adhesion takes from load, depth and p(0) of states, (3, B)."""

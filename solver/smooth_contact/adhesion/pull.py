@@ -87,6 +87,7 @@ def lowest(law, x, index, radii):
     return np.where(least > 0, a - least < _CORNER * least, falls)
 
 
+@batch.of_cases
 class Turn(NamedTuple):
     """The last minimum of Q in B cases: x, the state there, and whether it is the corner of what is flat, where x is
     -inf. `above` is an x beyond every minimum. `at_axis`: it is at a = 0, and `x` the least that was looked at."""
@@ -96,8 +97,6 @@ class Turn(NamedTuple):
     state: State
     corner: np.ndarray
     at_axis: np.ndarray
-
-    take = batch.take
 
 
 def last_minimum(curve, holder, start):

@@ -1,4 +1,4 @@
-"""From a :class:`.problem.Problem` to the dimensionless :class:`.contact.equation.Cases`, and back to its units."""
+"""From a :class:`.problem.Problem` to the dimensionless :class:`.rough.equation.Cases`, and back to its units."""
 
 from dataclasses import replace
 
@@ -10,12 +10,12 @@ from .body import BODIES
 from .body.graded import graded_first
 from .body.half_space import STIFF, local_compliance
 from .body.stacked import stack, thin_stack
-from .contact.equation import Cases
-from .contact.punch import punch_of
 from .kernels.two_layers import TwoLayers, layer_modulus, thin_layer_coefficients
 from .laws import LAWS, try_out
 from .numerics.batch import alike
 from .parameters import CONTROL, PARAMETERS, allowed
+from .rough.equation import Cases
+from .rough.punch import punch_of
 from .solution import PULLS
 from .status import Status
 
@@ -108,7 +108,7 @@ def without_springs(scaled):
 
 
 def as_cases(part):
-    """:class:`~solver.contact.equation.Cases` of a problem whose cases have one law, one base and one shape."""
+    """:class:`~solver.rough.equation.Cases` of a problem whose cases have one law, one base and one shape."""
     body = BODIES[str(part.base[0])](part)
     return Cases(part.control, law_of(part, body), body, part.value, punch_of(shapes.shape_of(part)))
 
@@ -173,7 +173,7 @@ def restore(solution, problem):
 
 def without_centre(problem):
     """(B,) bool: cases of which the pressure on the axis is not known: rough ones under a point
-    (:func:`~solver.contact.results.pointed`)."""
+    (:func:`~solver.rough.results.pointed`)."""
     without, shaped = np.zeros(len(problem), dtype=bool), shapes.shaped(problem) & problem.rough()
     for word in np.unique(problem.shape[shaped]).tolist():
         index = np.flatnonzero(shaped & (problem.shape == word))

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from .compiled import newton as compiled
-from .contact import picard as approximations
-from .contact.answer import answer
 from .numerics.ladder import start_nodes
 from .numerics.mesh import mesh_of
 from .parameters import PARAMETERS
+from .rough import picard as approximations
+from .rough.answer import answer
 from .scaling import as_cases
 from .solution import Solution
 

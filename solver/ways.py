@@ -7,14 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from .bases import is_bare, is_thin_layer, on_springs
-from .contact.flat import solve_flat
 from .numerics.batch import alike
+from .rough.flat import solve_flat
 from .scaling import as_cases, kinds_of_laws
 from .schemes import SCHEMES
 from .shapes import PARABOLOID, is_flat, shape_of, shaped
 from .shapes.shape import column
-from .smooth_contact import paraboloids
-from .smooth_contact.contact import not_sticking, sticking
+from .smooth import paraboloids
+from .smooth.contact import not_sticking, sticking
 
 
 class Way(NamedTuple):
@@ -25,8 +25,8 @@ class Way(NamedTuple):
         row before has them
     alike : function of a problem, arrays (B,): cases that differ in none of these are solved together
     solve : ``function(part, x) -> Solution`` of such cases, in units R = E2* = 1, at the radii x (m,)
-    equation : by which a solved case can be found again: "nodes", :mod:`.contact.equation`; "flat",
-        :mod:`.contact.flat`; "basis", :mod:`.smooth_contact.equation`
+    equation : by which a solved case can be found again: "nodes", :mod:`.rough.equation`; "flat",
+        :mod:`.rough.flat`; "basis", :mod:`.smooth.equation`
     """
 
     name: str

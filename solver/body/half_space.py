@@ -78,7 +78,7 @@ class HalfSpace(NamedTuple):
 
     def unseen(self, a, s1):
         """A half-space has no length, and so no short waves. Smooth contacts on springs have a bound of
-        :mod:`..smooth_contact.paraboloids`."""
+        :mod:`..smooth.paraboloids`."""
         return np.zeros_like(a)
 
     def work(self, a, nodes):

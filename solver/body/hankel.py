@@ -36,10 +36,10 @@ _MESH, _STEP, _ENTRY = (1000.0, 2.0), (4000.0, 600.0), (0.3, 0.1)
 _ROUNDED = (2.5, 4.0)
 #: The kernel is rounded to _PLATE parts of its largest value, n. Short waves yield n times less, and so the pressure is
 #: rounded to n times that. A plate that nearly lifts off has a p(0) a hundred times below the largest pressure: without
-#: this p(0) is up to a hundred times as far off as its error bar (tests/contact/errors/test_plates.py).
+#: this p(0) is up to a hundred times as far off as its error bar (tests/rough/errors/test_plates.py).
 _PLATE = 3 * np.finfo(float).eps
 #: Waves u = kh above _SHORT feel the layer alone. The integral of :meth:`Hankel.unseen` up to there has _POINTS points,
-#: evenly in ln u (test_the_estimate_encloses_films_that_no_mesh_sees of tests/contact/errors/test_accuracy.py).
+#: evenly in ln u (test_the_estimate_encloses_films_that_no_mesh_sees of tests/rough/errors/test_accuracy.py).
 _SHORT, _POINTS = 45.0, 64
 
 

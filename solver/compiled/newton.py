@@ -7,16 +7,16 @@ import numpy as np
 from ..body.half_space import HalfSpace
 from ..body.hankel import Hankel
 from ..body.wave_rule import OCTAVES, STIFFEST
-from ..contact import adaptive
-from ..contact.error import STEEP
-from ..contact.newton import LIMIT
-from ..contact.results import apart
 from ..kernels.closed_form import bond_constants
 from ..kernels.two_layers import TwoLayers
 from ..laws import LAWS
 from ..laws.cell.law import number, spot_curve
 from ..numerics.ladder import LADDER
 from ..parameters import one_of
+from ..rough import adaptive
+from ..rough.error import STEEP
+from ..rough.newton import LIMIT
+from ..rough.results import apart
 from ..shapes.paraboloid import Paraboloid
 from ..solution import Solution
 from ..status import Status
@@ -40,7 +40,7 @@ _MESHES, _FINER = LADDER[:-1], LADDER[-1]
 
 
 def solve_newton(cases, rtol, nodes, limit, x):
-    """As :func:`~solver.contact.adaptive.solve_newton`, which solves the cases that the core hands back."""
+    """As :func:`~solver.rough.adaptive.solve_newton`, which solves the cases that the core hands back."""
     function = core()
     index = np.flatnonzero(_taken(cases, nodes)) if function and not limit else ()
     if not len(index):

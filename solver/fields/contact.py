@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..bases import is_bare, is_stack
-from ..contact.answer import answer
 from ..kernels.two_layers import TwoLayers, layer_modulus
 from ..numerics.ladder import STACK
 from ..numerics.threads import one_blas_thread
+from ..rough.answer import answer
 from ..scaling import as_cases, dimensionless
 from ..sensitivity.again import found_again, meshes, stacks
 from ..sensitivity.held import held

@@ -8,9 +8,9 @@ from ..numerics.mesh import Mesh, mesh_of, on_panels
 from ..numerics.quadrature import radau_nodes
 from ..shapes import shape_of, shaped
 from ..shapes.shape import has_radius
-from ..smooth_contact.contact import kinds_of
-from ..smooth_contact.equation import respond
-from ..smooth_contact.pressure import pressure_changes, without_edge
+from ..smooth.contact import kinds_of
+from ..smooth.equation import respond
+from ..smooth.pressure import pressure_changes, without_edge
 from .pressure import Pressure
 
 #: Nodes of one panel under shapes that are smooth in r², and of each of several panels. With half of them the stresses

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ..bases import is_stack
-from ..contact.start import guess_pressure, guess_radius
 from ..laws import BUILT_IN
+from ..rough.start import guess_pressure, guess_radius
 from ..scaling import as_cases, dimensionless, refused
 
 _QUANTITIES = ("a", "D", "p0", "p_max", "lam0", "A0")

@@ -10,11 +10,11 @@ from dataclasses import replace
 import numpy as np
 
 from ..bases import exact_of
-from ..contact.equation import State, evaluate
-from ..contact.newton import solve_on
-from ..contact.results import difference, quantities
 from ..numerics.batch import alike
 from ..numerics.mesh import mesh_of
+from ..rough.equation import State, evaluate
+from ..rough.newton import solve_on
+from ..rough.results import difference, quantities
 from ..scaling import as_cases, dimensionless, kinds_of_laws, restore
 from ..solution import Solution
 from .named import error_of_law, solve_named, with_model_error

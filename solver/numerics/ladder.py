@@ -10,7 +10,7 @@ LADDER = (6, 8, 12, 16, 22, 32, 48, 64, 96)
 #: (rtol, nodes): the mesh to begin on for this rtol and larger ones, where nothing else is known. Below the last: 32.
 _START = ((1e-3, 6), (1e-5, 8), (3e-7, 12), (3e-8, 16), (1e-9, 22))
 #: The estimated error is this times the distance to the next finer mesh, since the finer mesh has an error too
-#: ("margin" of tests/contact/errors/test_error_bars.py).
+#: ("margin" of tests/rough/errors/test_error_bars.py).
 MARGIN = 2.0
 #: Unknowns that are solved together. With more of them they would leave the processor's cache, with fewer the time of
 #: the calls would count.

@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..contact.equation import Cases, groups
-from ..contact.punch import punch_of
 from ..layers import numbers_of, table
 from ..parameters import CONTROL, is_ratio
+from ..rough.equation import Cases, groups
+from ..rough.punch import punch_of
 from ..scaling import as_cases
 from ..shapes import PARABOLOID, SHAPES, shape_of
 

@@ -16,7 +16,7 @@ HERTZ = np.pi**2 / 16
 
 @batch.of_cases
 class Paraboloid(NamedTuple):
-    """The :class:`~.shape.Shape` of B paraboloids, and their :class:`~solver.contact.punch.Punch`. `power` (B,) is 2 of
+    """The :class:`~.shape.Shape` of B paraboloids, and their :class:`~solver.rough.punch.Punch`. `power` (B,) is 2 of
     all: an array, by which numpy rounds r² as it does the other powers of :mod:`.power`."""
 
     power: np.ndarray

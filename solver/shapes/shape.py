@@ -8,7 +8,7 @@ the depth at which a half-space is touched up to the radius t (docs/shapes.md). 
 
     P = 2 E ∫₀ᵃ (F(a) - F(t)) dt = 2 E lifted_load(a)
 
-it is touched up to a. A rough contact needs the drop (2/a²) [f(a) - f(ax)] of :mod:`..contact.punch`.
+it is touched up to a. A rough contact needs the drop (2/a²) [f(a) - f(ax)] of :mod:`..rough.punch`.
 """
 
 from collections.abc import Callable, Mapping

@@ -8,8 +8,8 @@ from ..bases import is_bare
 from ..fields.shaped import corners
 from ..scaling import dimensionless
 from ..shapes import ROUND, shape_of
-from ..smooth_contact.contact import kinds_of
-from ..smooth_contact.rises import on_half_space
+from ..smooth.contact import kinds_of
+from ..smooth.rises import on_half_space
 
 #: Radii in R that are looked at: of paraboloids and spheres.
 NARROWEST, WIDEST = 1e-8, 0.2

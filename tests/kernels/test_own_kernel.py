@@ -13,11 +13,11 @@ from solver import Problem, Status, solve
 from solver.body import tables
 from solver.body.hankel import Hankel
 from solver.body.wave_rule import STIFFEST, few, quadrature
-from solver.contact.adaptive import solve_newton
-from solver.contact.equation import Cases
 from solver.kernels.closed_form import layered_kernel
 from solver.laws import LAWS
 from solver.numerics.mesh import mesh_of
+from solver.rough.adaptive import solve_newton
+from solver.rough.equation import Cases
 from solver.shapes.paraboloid import Paraboloid
 
 REFERENCES = Path(__file__).parents[1] / "references"

@@ -8,8 +8,8 @@ import pytest
 from conftest import ROOT
 
 from solver import Model, Status
-from solver.contact.answer import Verdict
 from solver.kernels.transfer import Kind
+from solver.rough.answer import Verdict
 from study.inverse.fits.block import FitStatus
 
 

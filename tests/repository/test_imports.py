@@ -26,8 +26,8 @@ OURS = {"roughcoat", "solver", "study", "studies"}
 ROOMS = {
     "solver": (
         *("closed_forms", "numerics", "status", "bases", "parameters", "layers", "shapes", "kernels"),
-        *("laws", "body", "problem", "solution", "contact", "compiled", "scaling"),
-        *("schemes", "smooth_contact", "ways", "models", "solve", "sensitivity", "fields", "yields"),
+        *("laws", "body", "problem", "solution", "rough", "compiled", "scaling"),
+        *("schemes", "smooth", "ways", "models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (
         *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives"),

@@ -8,11 +8,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solver import Problem, Status
-from solver.contact.adaptive import solve_newton
-from solver.contact.equation import control_gradient, evaluate, jacobian
-from solver.contact.punch import Shaped, punch_of
-from solver.contact.start import first_guess
 from solver.numerics.mesh import mesh_of
+from solver.rough.adaptive import solve_newton
+from solver.rough.equation import control_gradient, evaluate, jacobian
+from solver.rough.punch import Shaped, punch_of
+from solver.rough.start import first_guess
 from solver.scaling import as_cases, dimensionless
 from solver.shapes.shape import column, no_kinks
 

@@ -7,7 +7,7 @@ import pytest
 from solver_cases import LOAD, MAIN
 
 from solver import Problem, Status, solve
-from solver.smooth_contact import paraboloids
+from solver.smooth import paraboloids
 from study.studies.paper.uniform import solve_uniform
 
 X = np.linspace(0.0, 1.0, 5)

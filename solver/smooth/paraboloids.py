@@ -1,7 +1,7 @@
 """Smooth cases: Hertz's closed form, and one linear solve on a thin layer.
 
 On a thin layer (X K + Y) q = s² with X = 8/(pi a), Y = 2 C/a² (p in E2*). K is diagonalised once for each mesh,
-K = V diag(κ) V⁻¹; κ is real and positive, and V well conditioned (tests/smooth_contact/test_paraboloids.py). With
+K = V diag(κ) V⁻¹; κ is real and positive, and V well conditioned (tests/smooth/test_paraboloids.py). With
 c = V⁻¹ s² and t = Y/X = pi C/(4 a), X q = V (c/(κ + t)): load, depth and central pressure are sums of n fractions
 1/(κ + t). Arrays are (n, B) here, with a column for each case: sums over the nodes then run along whole rows.
 
@@ -16,10 +16,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..closed_forms import hertz, hertz_pressure
-from ..contact.error import ENCLOSING, RING, added_in_ring
 from ..numerics.ladder import MARGIN, climb, next_rung
 from ..numerics.mesh import mesh_of
 from ..numerics.quadrature import lagrange
+from ..rough.error import ENCLOSING, RING, added_in_ring
 from ..solution import Solution
 from ..status import Status
 
@@ -33,10 +33,10 @@ _ROWS = {name: row for row, name in enumerate(_OF_SUMS)}
 #: The power of a in each quantity; and the part of each sum that no pressure makes: 1 in D = a²/2 (1 + ...).
 _POWERS, _BARE = np.array([[3.0], [2.0], [1.0]]), np.array([[0.0], [1.0], [0.0]])
 #: First guess of the radius under a load: (a_H^m + a_L^m)^(1/m), of Hertz's radius a_H and the radius a_L on springs
-#: alone. With this m it is right to 0.3 % (tests/smooth_contact/test_paraboloids.py).
+#: alone. With this m it is right to 0.3 % (tests/smooth/test_paraboloids.py).
 _BLEND = 3.21
 #: Most Newton steps for ln a; a step below _LAST is the last one. A step leaves an error below 0.04 times its square
-#: (tests/smooth_contact/test_paraboloids.py), so that after one below _LAST the error is below rounding.
+#: (tests/smooth/test_paraboloids.py), so that after one below _LAST the error is below rounding.
 _STEPS, _LAST = 30, 2e-7
 
 

@@ -17,7 +17,7 @@ from .start import guess_radius, smooth_start
 LIMIT = 60
 #: Most Newton steps of a case on a mesh: _STEPS on up to _NODES nodes; fewer on finer ones, where a step takes longer,
 #: but at least _FEWEST. A search for the radius takes the most, a hundred and more
-#: (tests/contact/errors/test_counts.py).
+#: (tests/rough/errors/test_counts.py).
 _STEPS, _NODES, _FEWEST = 1000, 96, 60
 #: Most work of one case (:meth:`~solver.body.operator.Body.work`): its steps on all meshes, and the meshes of panels
 #: that are made for it alone. Unlike seconds, it is the same on every machine. Of the 3,000 cases of the study

@@ -117,7 +117,7 @@ def _first(case, rtol, budget, radius):
     If a far cheaper body yields nearly alike, the first panels are those that resolve the contact with that body. This
     saves a seventh of the time of the study extremes_layered. Without it (:meth:`~solver.body.operator.Body.alike`
     returned None) 2 of 600 cases of that study spent their budget, though they have a solution. One of them is
-    test_a_film_that_begins_as_a_thin_layer of tests/contact/extremes/test_budget.py.
+    test_a_film_that_begins_as_a_thin_layer of tests/rough/extremes/test_budget.py.
     """
     place = float(radius[0])
     mesh = panel_mesh(ORDER, panels_between(ends_of(case.shape, place), case.shape))

@@ -6,9 +6,9 @@ from numpy.testing import assert_allclose
 from solver_cases import LOAD, MAIN, one
 
 from solver import Problem, Status
-from solver.contact import picard as scheme
 from solver.numerics.bracket import false_position
 from solver.numerics.mesh import mesh_of
+from solver.rough import picard as scheme
 from solver.scaling import as_cases, dimensionless
 
 

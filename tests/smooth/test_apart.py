@@ -6,8 +6,8 @@ from numpy.testing import assert_allclose
 
 from solver import Problem, solve
 from solver.shapes import shape_of
-from solver.smooth_contact.adhesion.apart import apart
-from solver.smooth_contact.radius import Radii
+from solver.smooth.adhesion.apart import apart
+from solver.smooth.radius import Radii
 
 LAYER = {"h": 0.3, "nu1": 0.45, "bonding": "bonded"}
 GRADED = {"h": 0.3, "n": [0.5, 2.0], "nu": 0.3, "profile": "exponential", "bonding": "bonded"}

@@ -13,7 +13,7 @@ from ...status import Status
 from .maugis import ring_stress
 
 #: The numbers of contacts with a ring, d wide, are farther from those of an edge by at most this times d/a of pull-off:
-#: 0.2 to 0.3 (tests/smooth_contact/test_zero.py). From this part on nothing is gained.
+#: 0.2 to 0.3 (tests/smooth/test_zero.py). From this part on nothing is gained.
 _OF_RING, _WIDE = 2.0, 0.1
 #: A work of adhesion above this always counts, in units R = E2* = 1; one that changes load and depth by less than this
 #: part changes no digit; and two contacts are the same up to this part.

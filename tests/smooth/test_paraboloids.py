@@ -1,10 +1,10 @@
-"""Smooth punches on a thin layer: the numbers that solver/smooth_contact/paraboloids.py rests on."""
+"""Smooth punches on a thin layer: the numbers that solver/smooth/paraboloids.py rests on."""
 
 import numpy as np
 import pytest
 
 from solver.numerics.mesh import mesh_of
-from solver.smooth_contact import paraboloids
+from solver.smooth import paraboloids
 
 #: Compliances of springs under contacts of radius 1: from a half-space alone to springs alone.
 C, A = np.geomspace(1e-6, 1e6, 400), np.ones(400)

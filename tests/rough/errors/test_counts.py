@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from solver_cases import LOAD, one
 
 from solver import Problem, Status, solve
-from solver.contact import newton as loop
+from solver.rough import newton as loop
 
 
 @pytest.fixture

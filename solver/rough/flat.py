@@ -42,7 +42,7 @@ _ROUNDING, _TINY = 4 * np.finfo(float).eps, np.finfo(float).tiny
 
 @batch.of_cases
 class AsFlat(NamedTuple):
-    """The :class:`~solver.contact.punch.Punch` of a flat `shape` whose drop is `tau` (B,) at any radius. It needs no
+    """The :class:`~solver.rough.punch.Punch` of a flat `shape` whose drop is `tau` (B,) at any radius. It needs no
     first guess."""
 
     tau: np.ndarray
@@ -64,7 +64,7 @@ class AsFlat(NamedTuple):
 
 
 def first_guess(case, a, mesh):
-    """:class:`~solver.contact.equation.Evaluation` of one `case` to begin with, at the radius a (1,): 1/q is the sum of
+    """:class:`~solver.rough.equation.Evaluation` of one `case` to begin with, at the radius a (1,): 1/q is the sum of
     the 1/q of a smooth punch and of asperities alone."""
     eta, softness, s = np.log(a), case.body.softness(a), mesh.s
     X, _, Z = groups(case, eta)
@@ -158,7 +158,7 @@ def on_mesh(ev, mesh, y):
 
 def solve_flat(cases, rtol, nodes, limit, x):
     """:class:`~solver.solution.Solution` of rough flat punches; arguments as of
-    :func:`~solver.contact.adaptive.solve_newton`. The control is P or D."""
+    :func:`~solver.rough.adaptive.solve_newton`. The control is P or D."""
     size = len(rtol)
     pieces = [([i], _solved(cases.take([i]), float(rtol[i]), int(nodes[i]), limit, x)) for i in range(size)]
     return Solution.join(size, len(x), pieces)

@@ -25,7 +25,7 @@ Quantities = namedtuple("Quantities", (*JUDGED, "A0"))
 
 
 def quantities(ev):
-    """:class:`Quantities` of an :class:`~solver.contact.equation.Evaluation`. D is that of Eq. (3) at r = a; it equals
+    """:class:`Quantities` of an :class:`~solver.rough.equation.Evaluation`. D is that of Eq. (3) at r = a; it equals
     Eq. (14) and needs p at no point."""
     law, y, q, a, w = ev.cases.law, ev.state.y, ev.curve.q, np.exp(ev.state.eta), ev.mesh.w
     centre = q[:, -1:]

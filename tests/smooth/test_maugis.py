@@ -8,8 +8,8 @@ from rows import SMOOTH, material, rows
 from solver import Problem, Status, solve
 from solver.body import BODIES
 from solver.shapes import shape_of
-from solver.smooth_contact.adhesion.jkr import Jkr
-from solver.smooth_contact.adhesion.maugis import Maugis
+from solver.smooth.adhesion.jkr import Jkr
+from solver.smooth.adhesion.maugis import Maugis
 
 ROWS = rows("given_maugis.csv")
 HALF_SPACE = {"base": "half_space", "w_adhesion": 1e-4, "adhesion": "maugis"} | SMOOTH
@@ -58,7 +58,7 @@ def test_limits():
 
 
 def states(**case):
-    """The :class:`~solver.smooth_contact.state.State` of the rings at the radii `a` of a case, and of the edge that
+    """The :class:`~solver.smooth.state.State` of the rings at the radii `a` of a case, and of the edge that
     tears, without a search for pull-off."""
     part = Problem.of(**case, adhesion="maugis", **SMOOTH)
     numbers = shape_of(part), BODIES[str(part.base[0])](part), part.w_adhesion

@@ -5,12 +5,12 @@ import pytest
 
 from solver import Problem
 from solver.body.half_space import half_space
-from solver.contact import newton
-from solver.contact.equation import _ROUNDING, Cases, Evaluation, State, evaluate
-from solver.contact.newton import solve_on
-from solver.contact.start import first_guess
 from solver.laws import LAWS, Curve
 from solver.numerics.mesh import mesh_of
+from solver.rough import newton
+from solver.rough.equation import _ROUNDING, Cases, Evaluation, State, evaluate
+from solver.rough.newton import solve_on
+from solver.rough.start import first_guess
 from solver.scaling import as_cases
 from solver.shapes.paraboloid import Paraboloid
 

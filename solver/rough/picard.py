@@ -64,7 +64,7 @@ class Approximation:
 
 
 def solve(cases, mesh, k, rtol, limit):
-    """:class:`~solver.contact.newton.Iterated` by the paper's scheme, `at` being the equation at the end; and the
+    """:class:`~solver.rough.newton.Iterated` by the paper's scheme, `at` being the equation at the end; and the
     status (B,).
 
     k, rtol : (B,) float, k >= 0; limit : int, approximations at one radius (0: LIMIT).
@@ -101,7 +101,7 @@ def _status(at, missed, spent):
 
 
 def approximate(cases, eta, mesh, k, rtol, limit):
-    """:class:`~solver.contact.newton.Iterated` of successive approximations at the radii exp(eta) (B,) from p = 0.
+    """:class:`~solver.rough.newton.Iterated` of successive approximations at the radii exp(eta) (B,) from p = 0.
 
     Where they do not settle quickly they amplify rounding. So the operator of each case is made as if it were alone:
     its numbers do not depend on the batch.

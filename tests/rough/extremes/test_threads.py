@@ -20,9 +20,9 @@ from study.studies.paper.uniform import solve_uniform
 OWN = 3  # the user's number of threads: neither the 1 of the solver nor the default of a small machine
 #: Where the solver multiplies or solves, a function for each way.
 WATCHED = (
-    "solver.contact.newton.solve_stack",
-    "solver.smooth_contact.paraboloids._sums",
-    "solver.contact.picard.approximate",
+    "solver.rough.newton.solve_stack",
+    "solver.smooth.paraboloids._sums",
+    "solver.rough.picard.approximate",
     "scipy.optimize.brentq",
     "solver.models.thin_layer_error._integrated",
     "study.studies.paper.uniform.as_cases",

@@ -14,8 +14,8 @@ from layered_independent import answers, rough
 from solver_cases import ALL_KINDS, KINDS, ROUGH_KINDS, difference
 
 from solver import Problem, Status, solve
-from solver.contact import equation
-from solver.contact.start import guess_radius
+from solver.rough import equation
+from solver.rough.start import guess_radius
 from solver.scaling import as_cases
 from study.inputs.sample import draw
 from study.inputs.vocabulary import VOCABULARY

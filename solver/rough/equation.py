@@ -29,11 +29,11 @@ _NOTHING = 1e-16
 _CLOSED, _OF_OPERATOR = 1e-13, 1e-2
 #: A residual above this is too large for any operator: whether the iteration has closed is then known without the error
 #: of the operator. It is far above what closes an iteration with the worst operator
-#: (tests/contact/extremes/test_extremes.py).
+#: (tests/rough/extremes/test_extremes.py).
 _OPEN = 1e-5
 #: Rounding of the residual of a soft layer, times its softness. In its operator the terms of the half-space and L - 1
 #: nearly cancel: rounding moves the pressure, and so the load, the more the softer the layer. The residual scatters
-#: from step to step: half are below 0.5 eps, few above 20 eps (tests/contact/test_equation.py).
+#: from step to step: half are below 0.5 eps, few above 20 eps (tests/rough/test_equation.py).
 _ROUNDING = 20 * np.finfo(float).eps
 #: Rounding of the radius, over its distance from a flat end of the punch: what counts is a - b, and η = ln a. The
 #: residual of a frustum of b = 0.012 scatters by 2.5e-13 where a/(a - b) is 1100, by 1 eps of that.

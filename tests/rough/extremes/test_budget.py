@@ -10,8 +10,8 @@ from solver_cases import LOAD, MAIN, layer_of
 
 from solver import Problem, Status, solve
 from solver.body.half_space import half_space
-from solver.contact import adaptive, newton, panels, picard
-from solver.contact.newton import newton_steps
+from solver.rough import adaptive, newton, panels, picard
+from solver.rough.newton import newton_steps
 from study.inputs.reading import from_tables
 
 pytestmark = pytest.mark.usefixtures("numpy_path")

@@ -7,7 +7,7 @@ from solver_cases import LOAD, difference, one, random_cases
 
 import study
 from solver import Model, Problem, Status, solve
-from solver.contact.picard import LIMIT
+from solver.rough.picard import LIMIT
 
 
 def picard(**case):

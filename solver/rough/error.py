@@ -16,7 +16,7 @@ from .results import cornered, interpolate, judged_difference, pointed, quantiti
 
 #: No mesh sees how λ rises between the edge and the node next to it. With λ and s at that node, this ring adds about λ
 #: s² to Ar/An. Where that matters, the error of Ar/An is at most 5.3 times λ s²/2
-#: (`python tools/errors/error_bars.py`; one such case is "ring" of tests/contact/errors/test_error_bars.py).
+#: (`python tools/errors/error_bars.py`; one such case is "ring" of tests/rough/errors/test_error_bars.py).
 #: The estimate is at least _UNSEEN times λ s²/2.
 _UNSEEN = 8.0
 #: This error is counted if λ at the node next to the edge is above this.
@@ -24,14 +24,14 @@ _RISEN = 0.05
 #: Near the edge asperities yield more than the body, in a ring that both meshes may miss. Where they may, the estimate
 #: is multiplied by this. Without the factor 10 % of such extreme cases on 6 nodes have an error above the estimate,
 #: with it 3 % (`python tools/errors/error_bars.py`); one that needs it is "blind" of
-#: tests/contact/errors/test_error_bars.py.
+#: tests/rough/errors/test_error_bars.py.
 _BLIND = 3.0
 #: There both meshes may also place the edge alike by chance, but not the pressures near it: :func:`_moved_edge`. Where
 #: this and the estimate are of one size, both may be too small: where the edge moves by δ a, Ar/An and P change by 2 δ
 #: and 3 δ. So the smaller of the two counts _BOTH times: "edge" and "edge, a given" of the same tests.
 _BOTH = 2.0
 #: In the centre the pressures of two meshes may agree by chance: in the case "centre" of
-#: tests/contact/errors/test_error_bars.py to a twentieth of their error. So on meshes of one panel any change of the
+#: tests/rough/errors/test_error_bars.py to a twentieth of their error. So on meshes of one panel any change of the
 #: pressure where s is above this counts. Several panels may enclose a corner there.
 _MIDDLE = 0.9
 #: Tolerance of the solution between its nodes, where the step on the finer mesh begins. Changes below it are no errors.
@@ -39,22 +39,22 @@ _NEAR = 1e-8
 #: The quadratures of two meshes may agree by chance, if λ rises sharply inside the contact. It may, if λ in the centre
 #: is above _SATURATED or the exponent of the displacement below _SHARP. Then Ar/An is compared with another rule, which
 #: has _TIMES as many points on each panel as the mesh has nodes, and _MORE: "saturated" and "quadratures" of
-#: tests/contact/errors/test_error_bars.py. With _SATURATED = 0.3 `python tools/errors/error_bars.py` prints
+#: tests/rough/errors/test_error_bars.py. With _SATURATED = 0.3 `python tools/errors/error_bars.py` prints
 #: the same.
 _SATURATED, _SHARP = 0.7, 0.45
 _TIMES, _MORE = 2, 4
 #: If the exponent of the displacement is below this, λ rises sharply where pressure begins. Then Ar/An is compared with
-#: the quadrature for corners: "steep" of tests/contact/errors/test_error_bars.py. Panels enclose that place.
+#: the quadrature for corners: "steep" of tests/rough/errors/test_error_bars.py. Panels enclose that place.
 STEEP = 0.1
 #: Under a law with corners two meshes may agree by chance. So the error also counts the load that the mesh misses
 #: between its nodes: the sum over the contact, in which opposite signs cancel, and _CHANCE times the largest sum from
-#: the edge to any radius (test_random_heights of tests/contact/errors/test_error_bars.py).
+#: the edge to any radius (test_random_heights of tests/rough/errors/test_error_bars.py).
 _CHANCE = 1 / 2
 #: For each control: the largest relative change of the judged quantities of a smooth contact, over that of its radius.
 _OF_RADIUS = {"a": 3.0, "P": 1.0, "D": 1.0}
 #: Both meshes miss a ring at the edge where asperities or springs yield more than the body, if their compliance over
 #: the body's is below RING s² at the first node s. The error is then at most this times :func:`added_in_ring`, for each
-#: control (tests/contact/errors/test_rings.py; test_accuracy.py for smooth punches on springs).
+#: control (tests/rough/errors/test_rings.py; test_accuracy.py for smooth punches on springs).
 RING, ENCLOSING = 16.0, {"a": 0.5, "P": 0.2, "D": 0.25}
 
 
@@ -93,8 +93,8 @@ def refine(ev, coarse):
 
 
 def nearby(ev, state):
-    """:class:`~solver.contact.equation.Evaluation` at a state near that of `ev`: good for
-    :func:`~solver.contact.results.quantities`, but not for F. The operator and the law are taken to first order."""
+    """:class:`~solver.rough.equation.Evaluation` at a state near that of `ev`: good for
+    :func:`~solver.rough.results.quantities`, but not for F. The operator and the law are taken to first order."""
     dy, old = state.y - ev.state.y, ev.curve
     curve = old._replace(q=old.q + old.dq * dy, g=old.g + old.dg * dy)
     edge_q = ev.operator.at_edge(curve.q) + ev.slopes[1] * (state.eta - ev.state.eta)

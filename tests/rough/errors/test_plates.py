@@ -7,11 +7,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solver import Problem, Status, solve
-from solver.contact.equation import evaluate
-from solver.contact.newton import solve_on
-from solver.contact.results import quantities
-from solver.contact.start import first_guess
 from solver.numerics.mesh import panel_mesh
+from solver.rough.equation import evaluate
+from solver.rough.newton import solve_on
+from solver.rough.results import quantities
+from solver.rough.start import first_guess
 from solver.scaling import as_cases, dimensionless
 
 pytestmark = pytest.mark.usefixtures("each_path")

@@ -13,9 +13,9 @@ from ..radius import guess
 from ..state import Scales, State, answer, beyond_profile, pinned
 from . import dmt
 from .jkr import Jkr
-from .machine import Held, machine
+from .machine import Holder, machine
 from .maugis import Maugis, ring_pressure, ring_stress
-from .pull import Curve, Turn, below, beyond, highest, last_minimum
+from .pull import States, Turn, below, beyond, highest, last_minimum
 
 #: A load or depth as near as this to that of pull-off is it, relative: rounding, by the units of what was returned.
 _SAME = 64 * np.finfo(float).eps
@@ -35,7 +35,7 @@ def solve(part, shape, body, x):
         law = Maugis(shape, body, part.w_adhesion, ring_stress(part))
     if has_radius(shape).all():
         return _flat(part, law, x)
-    curve, at_turn = Curve(law), np.zeros(len(part), dtype=bool)
+    curve, at_turn = States(law), np.zeros(len(part), dtype=bool)
     search, counts = pulled(part, law)
     turn, jumped = search.turn, search.jumped
     if part.control == "a":
@@ -62,10 +62,10 @@ class Pulled(NamedTuple):
     :class:`~.pull.Turn`, and the state to which the contact jumps where the punch only touches; and the Turn of a
     machine that holds the `control`."""
 
-    holder: Held
+    holder: Holder
     turn: Turn
     jumped: State
-    control: Held
+    control: Holder
     of_control: Turn
 
 
@@ -74,10 +74,10 @@ def pulled(part, law):
     of their control alone have one search."""
     first, same = _alike(part)
     few, law = part.take(first), law.take(first)
-    curve, holder = Curve(law), Held.by(machine(few))
+    curve, holder = States(law), Holder.by(machine(few))
     start = highest(law, curve.radii)
     turn = of_control = last_minimum(curve, holder, start)
-    control = Held.by(np.full(len(few), np.inf if part.control == "D" else 0.0))
+    control = Holder.by(np.full(len(few), np.inf if part.control == "D" else 0.0))
     differ = any((held != alone).any() for held, alone in zip(holder, control, strict=True))
     if differ and part.control != "a":
         of_control = last_minimum(curve, control, start)

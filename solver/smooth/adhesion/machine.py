@@ -8,7 +8,7 @@ from ...numerics import batch
 
 
 @batch.of_cases
-class Held(NamedTuple):
+class Holder(NamedTuple):
     """What holds the punches: of B cases whether the load counts alone, k = 0, and the compliance 1/k else."""
 
     load: np.ndarray

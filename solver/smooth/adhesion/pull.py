@@ -37,7 +37,7 @@ _SMALL = 1e-150
 _NARROW = 1e-14
 
 
-class Curve:
+class States:
     """The states of B cases by the variable x of their radii; every state that was computed is kept."""
 
     def __init__(self, law):

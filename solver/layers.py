@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .bases import is_exact, is_stack
 from .numerics import profiles
 from .parameters import FIRST, LAYER, MOST, PARAMETERS, Parameter, full_name, numbers_of, row
 from .parameters import NAME_OF_LAYER as _NAME
@@ -147,7 +148,7 @@ def _with_base(others):
     base = others.get("base", "stack")
     if isinstance(base, str):
         others = others | {"base": words.get(base, base)}
-        if base == "layered":
+        if is_exact(base) and not is_stack(base):
             raise ValueError('base = "layered" has one layer: layers are for base = "stack"')
     return others
 

@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .bases import BASES, STACKS, WITH_LAYERS
 from .numerics import profiles
 from .numerics.kept import shared_lock
 
 BONDINGS = ("frictionless", "bonded")
-BASES = ("half_space", "thin_layer", "layered", "auto", "stack", "thin_stack")
 #: How the model error of a thin layer asked for by name is estimated: free of cost, or by solving the exact layer.
 MODEL_CHECKS = ("closed_form", "first_order")
 #: How attraction acts, and which of two states is meant that have the same load or depth.
@@ -104,10 +104,10 @@ class Register(dict):
 
 
 #: The conditions that a case has a layer, and that it is bonded.
-LAYERED = ("base", tuple(base for base in BASES if base != "half_space"))
+LAYERED = ("base", WITH_LAYERS)
 BONDED = ("bonding", ("bonded",))
 #: The condition that what lies under the punch is a stack of layers; and that Poisson ratios change something.
-STACKED = ("base", ("stack", "thin_stack"))
+STACKED = ("base", STACKS)
 COUPLED = (*BONDED, *STACKED)
 
 #: A condition that no case meets.

@@ -7,10 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import laws, layers, shapes
-from .parameters import CONTROL, PARAMETERS, STACKED, Parameter, allowed, among, one_of
+from .bases import FELT, is_bare, is_stack
+from .parameters import CONTROL, PARAMETERS, Parameter, allowed, among, one_of
 
-#: Bases on which asperities can feel what lies below the surface; of "auto" these cases take the exact layer.
-FELT = ("layered", "stack", "auto")
 #: A pitch that differs from h by less than rounding is not above it, whatever the units.
 _ABOVE = 1 - 1e-9
 #: Largest |P| or |D| under adhesion, in units R = E2* = 1: that of the bounds in solver/parameters.py.
@@ -189,7 +188,7 @@ class Problem:
     @property
     def nu(self) -> np.ndarray:
         """Poisson's ratio of what the asperities press on, the layer or the body without one; (B,)."""
-        return np.where(self.base == "half_space", self.nu2, self.nu1)
+        return np.where(is_bare(self.base), self.nu2, self.nu1)
 
     def rough(self) -> np.ndarray:
         """Which cases are rough.
@@ -321,7 +320,7 @@ def _array(name, value):
 
 def _missing(given, arrays, table):
     """Yield a message for each parameter that is not `given` and has no default, though some case needs it."""
-    if one_of(arrays["base"], STACKED[1]).any() and not layers.numbers_of(given):
+    if is_stack(arrays["base"]).any() and not layers.numbers_of(given):
         yield 'layers are missing: base = "stack" needs them'
     for name, own in table.items():
         if own.default is None and not {name, own.instead} & {*given} and own.instead != "":

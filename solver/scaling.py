@@ -1,20 +1,21 @@
-"""From a :class:`.problem.Problem` to the dimensionless :class:`.contact.equation.Cases`, and back to its units."""
+"""From a :class:`.problem.Problem` to the dimensionless :class:`.rough.equation.Cases`, and back to its units."""
 
 from dataclasses import replace
 
 import numpy as np
 
 from . import shapes
+from .bases import is_bare, is_stack, is_thin_layer, on_springs
 from .body import BODIES
 from .body.graded import graded_first
 from .body.half_space import STIFF, local_compliance
-from .body.stacked import stack
-from .contact.equation import Cases
+from .body.stacked import stack, thin_stack
 from .kernels.two_layers import TwoLayers, layer_modulus, thin_layer_coefficients
 from .laws import LAWS, try_out
+from .numerics.batch import alike
 from .parameters import CONTROL, PARAMETERS, allowed
-from .punches import PARABOLOID
-from .punches.shaped import Shaped
+from .rough.equation import Cases
+from .rough.punch import punch_of
 from .solution import PULLS
 from .status import Status
 
@@ -40,7 +41,7 @@ def dimensionless(problem):
                 values = values / unit if power > 0 else values * unit
         return values
 
-    n = np.where(problem.base != "half_space", problem.n, 1.0)
+    n = np.where(is_bare(problem.base), 1.0, problem.n)
     if without_units(problem):
         return replace(problem, parameters=problem.parameters | {"n": n})
     with_unit = {name: values for name, values in problem.parameters.items() if any(PARAMETERS[name].powers)}
@@ -67,10 +68,10 @@ def with_rigid_punch(problem):
     m, base = problem.m, problem.base
     if not (m > 0).any():
         return problem
-    n = np.where(base == "half_space", 1.0, problem.n)
+    n = np.where(is_bare(base), 1.0, problem.n)
     _, A2 = thin_layer_coefficients(n, problem.nu1, problem.nu2, problem.bonding == "bonded")
-    thin = (base == "thin_layer") & (A2 > 0) & (problem.model_check != "first_order")
-    moved = (m > 0) & ((base == "half_space") | thin)
+    thin = is_thin_layer(base) & (A2 > 0) & (problem.model_check != "first_order")
+    moved = (m > 0) & (is_bare(base) | thin)
     return problem.but(
         E2=np.where(moved, problem.E2 * layer_modulus(n) / (n + m), problem.E2),
         n=np.where(moved, (n + m) / (1 + m), problem.n),
@@ -83,7 +84,7 @@ def with_rigid_punch(problem):
 def with_a_stiff_base(problem):
     """The problem with rigid bases, n = 0, under thin layers replaced by half-spaces that yield less than rounding; not
     where the model error comes from the exact layer."""
-    stiff = (problem.base == "thin_layer") & (problem.n == 0) & (problem.model_check != "first_order")
+    stiff = is_thin_layer(problem.base) & (problem.n == 0) & (problem.model_check != "first_order")
     if not stiff.any():
         return problem
     return problem.but(n=np.where(stiff, STIFF, problem.n), E2=np.where(stiff, problem.E2 / STIFF, problem.E2))
@@ -97,18 +98,19 @@ def refused(problem, scaled):
 
 def without_springs(scaled):
     """(B,) bool: thin layers to which Eq. (3) does not apply, because C <= 0."""
-    without = (scaled.base == "thin_layer") & ~(local_compliance(scaled.h, TwoLayers.of(scaled)) > 0)
-    stacks = np.flatnonzero(scaled.base == "thin_stack")
+    without = is_thin_layer(scaled.base)
+    if without.any():
+        without = without & ~(local_compliance(scaled.h, TwoLayers.of(scaled)) > 0)
+    stacks = np.flatnonzero(is_stack(scaled.base) & on_springs(scaled.base))
     if len(stacks):
-        without[stacks] = ~(BODIES["thin_stack"](scaled.take(stacks)).C > 0)
+        without[stacks] = ~(thin_stack(scaled.take(stacks)).C > 0)
     return without
 
 
 def as_cases(part):
-    """:class:`~solver.contact.equation.Cases` of a problem whose cases have one law, one base and one shape."""
-    punch = PARABOLOID if part.shape[0] == shapes.PARABOLOID else Shaped(shapes.shape_of(part))
+    """:class:`~solver.rough.equation.Cases` of a problem whose cases have one law, one base and one shape."""
     body = BODIES[str(part.base[0])](part)
-    return Cases(part.control, law_of(part, body), body, part.value, punch)
+    return Cases(part.control, law_of(part, body), body, part.value, punch_of(shapes.shape_of(part)))
 
 
 def kinds_of_laws(problem):
@@ -148,12 +150,10 @@ def law_of(part, body=None):
 
 
 def of_one_law(problem):
-    """Yield the indices of the cases that :func:`law_of` can bind together."""
+    """The indices (b,) of the cases that :func:`law_of` can bind together, a list."""
     kinds = kinds_of_laws(problem)
     bases = np.where(kinds == _HALF_SPACE, "", problem.base)
-    columns = problem.micro, bases, kinds
-    for one in dict.fromkeys(zip(*(column.tolist() for column in columns), strict=True)):
-        yield np.flatnonzero(np.all([column == word for column, word in zip(columns, one, strict=True)], axis=0))
+    return alike(problem.micro, bases, kinds)
 
 
 def restore(solution, problem):
@@ -173,7 +173,7 @@ def restore(solution, problem):
 
 def without_centre(problem):
     """(B,) bool: cases of which the pressure on the axis is not known: rough ones under a point
-    (:func:`~solver.contact.results.pointed`)."""
+    (:func:`~solver.rough.results.pointed`)."""
     without, shaped = np.zeros(len(problem), dtype=bool), shapes.shaped(problem) & problem.rough()
     for word in np.unique(problem.shape[shaped]).tolist():
         index = np.flatnonzero(shaped & (problem.shape == word))

@@ -5,12 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from .compiled import newton as compiled
-from .contact import picard as approximations
-from .contact.answer import answer
-from .flat import solve_flat
 from .numerics.ladder import start_nodes
 from .numerics.mesh import mesh_of
 from .parameters import PARAMETERS
+from .rough import picard as approximations
+from .rough.answer import answer
 from .scaling import as_cases
 from .solution import Solution
 
@@ -39,9 +38,7 @@ def scheme(function):
 @scheme
 def newton(part, x):
     """Newton's method, on the mesh that meets rtol."""
-    cases = as_cases(part)
-    solved = solve_flat if cases.is_flat else compiled.solve_newton
-    return solved(cases, part.rtol, part.nodes, int(part.max_iterations[0]), x)
+    return compiled.solve_newton(as_cases(part), part.rtol, part.nodes, int(part.max_iterations[0]), x)
 
 
 @scheme

@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from .numerics.codes import Codes
 from .parameters import one_of
-from .status import Status
+from .status import Codes, Status
 
 #: The largest relative error of these is the error of a case.
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .bases import is_chosen, is_stack, named, on_springs
 from .body.graded import is_graded
 from .models.auto import cheapest
 from .models.cells import left_out
@@ -15,13 +16,13 @@ from .models.plastic_share import has_yield, plastic_share
 from .models.range_of_law import beyond_end, radii_of, without_family
 from .models.spot_pressure import pressure_in_spots
 from .models.table_ends import beyond_table
+from .numerics.threads import one_blas_thread
 from .problem import Problem
 from .scaling import dimensionless, refused
 from .shapes import shaped
-from .smooth_contact.fitness import unfit
 from .solution import Solution
 from .status import Status
-from .threads import one_blas_thread
+from .ways import unfit
 
 
 @one_blas_thread()
@@ -75,16 +76,15 @@ def _solved(problem, x, extrapolate):
     scaled, special = dimensionless(problem), shaped(problem) | (problem.w_adhesion > 0) | felt
     invalid = refused(problem, scaled) | problem.without_scheme() | unfit(scaled)
     hopeless = ~invalid & felt & without_family(problem)
-    if np.any(exact := special & (problem.base == "auto")):
-        problem = problem.but(base=np.where(exact, "layered", problem.base))
-    is_auto = problem.base == "auto"
-    is_judged = (problem.base == "thin_layer") & (problem.model_check == "first_order")
-    is_judged |= problem.base == "thin_stack"
+    if np.any(exact := special & is_chosen(problem.base)):
+        problem = problem.but(base=np.where(exact, named(problem.base), problem.base))
+    is_auto = is_chosen(problem.base)
+    is_judged = on_springs(problem.base) & (is_stack(problem.base) | (problem.model_check == "first_order"))
     graded = is_graded(problem)
     size = len(problem), len(radii)
     pieces = []
-    named = ~(is_judged | is_auto | graded)
-    for mask, way in (is_judged, judged), (is_auto, cheapest), (graded, solve_graded), (named, solve_named):
+    rest = ~(is_judged | is_auto | graded)
+    for mask, way in (is_judged, judged), (is_auto, cheapest), (graded, solve_graded), (rest, solve_named):
         index = np.flatnonzero(mask & ~invalid & ~hopeless)
         if len(index):
             part = problem if len(index) == len(problem) else problem.take(index)

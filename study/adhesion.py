@@ -62,7 +62,7 @@ def effective_work(scan: Scan, *, form: Any = "plane", periodic: bool = False, *
     q, power = _spectrum(scan, form, periodic)
     body = BODIES[str(problem.base[0])](problem)
     yields = np.ones(len(q))
-    for low in range(0, len(q) if hasattr(body, "kernel") else 0, _BLOCK):
+    for low in range(0, 0 if body.kernel is None else len(q), _BLOCK):
         u = q[None, low : low + _BLOCK] * (body.h[0] * scene.R)
         yields[low : low + _BLOCK] = ((body.kernel.whole(u) + body.m[0]) / (1 + body.m[0]))[0]
     energy = float((q * power / yields).sum()) * float(body.E[0] * problem.E2[0] * scene.unit) / 4

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver import Problem
+from solver.bases import is_bare
 from solver.laws import LAWS
 from solver.laws.elastic_plastic import TABOR
 from solver.shapes import PARABOLOID, SHAPES
@@ -97,7 +98,7 @@ def _checked(contact: xr.Dataset, who: str) -> dict[str, Any]:
     if unknown:
         raise StudyError([f"micro = {shown(min(unknown))}: no law of this name is registered here"])
     words = contact["shape"].values.astype(str) if "shape" in contact.coords else PARABOLOID
-    unknown = {*np.unique(words).tolist()} - {PARABOLOID, *SHAPES}
+    unknown = {*np.unique(words).tolist()} - {*SHAPES}
     if unknown:  # whoever sends a results file must not choose which files are opened
         raise StudyError([f"shape = {shown(min(unknown))}: no shape of this name is registered here"])
     return settings | {name: _without_coordinates(contact[name]) for name in coordinates}
@@ -148,7 +149,7 @@ def known_strengths(contact: xr.Dataset, again: Again, materials: Mapping[str, M
     no = np.zeros(len(again.problem), dtype=bool)
     inputs = {name: [again.problem.parameters[name], _spread(contact, again, name), no] for name in _INPUTS}
     yields = {body: first(inputs[name], named[body]) for body, name in STRENGTHS.items()}
-    bare, elastic = again.problem.base == "half_space", again.problem.m > 0
+    bare, elastic = is_bare(again.problem.base), again.problem.m > 0
     hard = [inputs["hardness"][0] / TABOR, inputs["hardness"][1] / TABOR, ~no]
     of_spots = softer(named["layer"], named["body"], named["punch"], bare, elastic)
     return yields | {"asperities": first(first(inputs["yield_strength"], hard), of_spots)}

@@ -9,6 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from solver import Status, solve
+from solver.bases import is_bare
 from solver.fields.contact import of_contacts as fields_of
 from solver.fields.invariants import invariants
 from solver.fields.sliding import in_plane
@@ -95,7 +96,7 @@ def stresses(
     solution = _solved(again, contact)
     _refuse_far_away(r, again, solution)
     fields = fields_of(again.problem, solution, np.abs(r), z, mu)
-    residual, bare = residual_stress(sigma_res, again) / unit, again.problem.base == "half_space"
+    residual, bare = residual_stress(sigma_res, again) / unit, is_bare(again.problem.base)
     within = (z <= (again.problem.h / solution.a)[:, None]) & ~bare[:, None]
     compressible, variables = np.where(bare, again.problem.nu2, again.problem.nu1) < 0.5, {}
     places = ("", "r", "z"), ("_above", "r"), ("_below", "r")
@@ -127,7 +128,7 @@ def stresses(
 
 def _refuse_far_away(r: np.ndarray, again: Again, solution: Any) -> None:
     """Raise StudyError for radii whose fields would take minutes."""
-    bare = again.problem.base == "half_space"
+    bare = is_bare(again.problem.base)
     largest = np.nanmin(farthest(np.where(bare, np.inf, again.problem.h / solution.a)), initial=np.inf)
     if (far := np.abs(r).max()) > largest:
         why = "" if bare.all() else ": farther away the field of the layer takes minutes"

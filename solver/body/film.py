@@ -20,8 +20,7 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebval, chebvander
 
 from ..numerics import special
-from ..numerics.pieces import against, pieces
-from ..numerics.quadrature import gauss_legendre, radau_nodes
+from ..numerics.quadrature import against, gauss_legendre, pieces, radau_nodes
 
 #: Number of octaves of κ above 1, and of τ below 1.
 _OCTAVES = 24

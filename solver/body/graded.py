@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from ..bases import is_exact_stack
 from ..layers import full_name, numbers_of
 from ..numerics.profiles import TABLES
-from ..parameters import STACKED
 
 #: The sublayers are thinner and thinner over this many octaves of the depth: in a graded layer at the surface, which
 #: waves of all lengths feel, and in a deeper one.
@@ -21,14 +21,14 @@ def is_graded(problem):
         return np.zeros(len(problem), dtype=bool)
     numbers = range(1, numbers_of(problem.parameters) + 1)
     graded = np.any([getattr(problem, full_name(i, "profile")) != "uniform" for i in numbers], axis=0)
-    return graded & (problem.base == STACKED[1][0]) & (problem.sublayers == 0)
+    return graded & is_exact_stack(problem.base) & (problem.sublayers == 0)
 
 
 def graded_first(problem):
     """(B,) bool: the stacks whose first layer is graded."""
     if not numbers_of(problem.parameters):
         return np.zeros(len(problem), dtype=bool)
-    return (getattr(problem, full_name(1, "profile")) != "uniform") & (problem.base == STACKED[1][0])
+    return (getattr(problem, full_name(1, "profile")) != "uniform") & is_exact_stack(problem.base)
 
 
 def contrast(problem):

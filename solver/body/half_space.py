@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..numerics.mesh import Mesh
 from .operator import fitted_nodes
 
@@ -24,6 +25,7 @@ _STEP = 150
 STIFF = 1e-50
 
 
+@batch.of_cases
 class HalfSpaceOperator(NamedTuple):
     """The :class:`~solver.body.operator.Operator` of a half-space on a mesh. It is one for all cases and radii: each
     sub-batch is the operator itself, and its slopes are 0."""
@@ -37,12 +39,6 @@ class HalfSpaceOperator(NamedTuple):
     @property
     def edge(self):
         return self.mesh.edge[None]
-
-    def take(self, index):
-        return self
-
-    def join(self, operators, places):
-        return self
 
     def at_edge(self, q):
         return (self.edge * q).sum(axis=1)
@@ -58,6 +54,7 @@ class HalfSpaceOperator(NamedTuple):
         return half_space
 
 
+@batch.of_cases
 class HalfSpace(NamedTuple):
     """The :class:`~solver.body.operator.Body` of modulus E (B,), in E2*, with springs of compliance C (B,), or 0. Its
     operator is exact to rounding."""
@@ -65,8 +62,7 @@ class HalfSpace(NamedTuple):
     E: np.ndarray
     C: np.ndarray
 
-    def take(self, index):
-        return HalfSpace(self.E[index], self.C[index])
+    kernel = None
 
     def at(self, a, mesh, near=None):
         return HalfSpaceOperator(mesh)
@@ -82,7 +78,7 @@ class HalfSpace(NamedTuple):
 
     def unseen(self, a, s1):
         """A half-space has no length, and so no short waves. Smooth contacts on springs have a bound of
-        :mod:`..contact.smooth`."""
+        :mod:`..smooth.paraboloids`."""
         return np.zeros_like(a)
 
     def work(self, a, nodes):

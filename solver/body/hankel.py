@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..kernels.kernel import Kernel
+from ..numerics import batch
 from .half_space import thin_layer
 from .hankel_operator import HankelOperator, rows_of
 from .operator import fitted_nodes
@@ -35,13 +36,14 @@ _MESH, _STEP, _ENTRY = (1000.0, 2.0), (4000.0, 600.0), (0.3, 0.1)
 _ROUNDED = (2.5, 4.0)
 #: The kernel is rounded to _PLATE parts of its largest value, n. Short waves yield n times less, and so the pressure is
 #: rounded to n times that. A plate that nearly lifts off has a p(0) a hundred times below the largest pressure: without
-#: this p(0) is up to a hundred times as far off as its error bar (tests/contact/errors/test_plates.py).
+#: this p(0) is up to a hundred times as far off as its error bar (tests/rough/errors/test_plates.py).
 _PLATE = 3 * np.finfo(float).eps
 #: Waves u = kh above _SHORT feel the layer alone. The integral of :meth:`Hankel.unseen` up to there has _POINTS points,
-#: evenly in ln u (test_the_estimate_encloses_films_that_no_mesh_sees of tests/contact/errors/test_accuracy.py).
+#: evenly in ln u (test_the_estimate_encloses_films_that_no_mesh_sees of tests/rough/errors/test_accuracy.py).
 _SHORT, _POINTS = 45.0, 64
 
 
+@batch.of_cases
 class Hankel(NamedTuple):
     """The :class:`~solver.body.operator.Body` of B cases with a kernel; arrays (B,): thickness h of the layer at the
     surface in R, and m = E1*/E3*.
@@ -71,9 +73,6 @@ class Hankel(NamedTuple):
     def C(self):
         return 0 * self.m
 
-    def take(self, index):
-        return Hankel(self.kernel.take(index), self.h[index], self.m[index])
-
     def at(self, a, mesh, near=None):
         """A case whose radius has not changed since `near` keeps the values of L that `near` has."""
         parts, far = [], np.ones(len(a), dtype=bool)
@@ -81,7 +80,7 @@ class Hankel(NamedTuple):
             same = np.flatnonzero(a[part.index] == part.radius)
             if len(same):
                 far[part.index[same]] = False
-                parts.append(part.take(same, part.index[same]))
+                parts.append(part.take(same))
         if near is not None and near.mesh == mesh and not far.any():
             return near
         parts += parts_of(self, a, np.flatnonzero(far))

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..numerics.mesh import Mesh
 from .film import MANY
-from .part import join
+from .part import united
 from .tables import between, felt, film_rows
 
 
@@ -31,19 +31,23 @@ class HankelOperator(NamedTuple):
         place = np.full(len(self.rows), -1)
         place[index] = np.arange(len(index))
         at = [np.flatnonzero(place[part.index] >= 0) for part in self.parts]
-        parts = [part.take(r, place[part.index[r]]) for part, r in zip(self.parts, at, strict=True) if len(r)]
+        parts = [part.take(r) for part, r in zip(self.parts, at, strict=True) if len(r)]
+        parts = [part._replace(index=place[part.index]) for part in parts]
         rows = np.take(self.rows.transpose(1, 2, 0), index, axis=2).transpose(2, 0, 1)
         return HankelOperator(self.mesh, parts, rows)
 
-    def join(self, operators, places):
-        size, n = sum(len(place) for place in places), self.mesh.n
+    @classmethod
+    def assemble(cls, operators, places):
+        """The operator of a batch from the `operators` of its sub-batches, each at its `places` (b,) in it."""
+        mesh, size = operators[0].mesh, sum(len(place) for place in places)
+        n = mesh.n
         rows, groups = np.empty((n + 1, n, size)).transpose(2, 0, 1), {}
         for operator, place in zip(operators, places, strict=True):
             rows[place] = operator.rows
             for part in operator.parts:
                 part = part._replace(index=place[part.index])
                 groups.setdefault(part.kind, []).append(part)
-        return HankelOperator(self.mesh, [join(parts) for parts in groups.values()], rows)
+        return cls(mesh, [united(parts) for parts in groups.values()], rows)
 
     def at_edge(self, q):
         return (self.edge * q).sum(axis=1)

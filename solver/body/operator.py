@@ -6,10 +6,12 @@ radius, and x = r/a. The displacement of the surface under the pressure p = p* q
     u(x) - u(1) = 4 a/(π E) p* (K q)(x) + C p* q(x).
 """
 
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
 
+from ..kernels.kernel import Kernel
 from ..numerics.mesh import Mesh
 
 
@@ -18,17 +20,14 @@ class Operator(Protocol):
 
     K : (B, n, n), or (1, n, n) where all cases share it: the displacement at the nodes less that of the edge
     edge : (B or 1, n), the row that gives the displacement of the edge itself, edge @ q
+    take : the operator of a sub-batch, :func:`~solver.numerics.batch.take` unless its rows are in groups: then it has
+        a classmethod ``assemble(operators, places)`` too, in place of :func:`~solver.numerics.batch.join`
     """
 
     mesh: Mesh
     K: np.ndarray
     edge: np.ndarray
-
-    def take(self, index):
-        """The operator of the sub-batch at `index`."""
-
-    def join(self, operators, places):
-        """The operator of a batch from the `operators` of its sub-batches, each at its `places` (b,) in the batch."""
+    take: Callable
 
     def at_edge(self, q):
         """edge @ q (B,)."""
@@ -49,13 +48,15 @@ class Body(Protocol):
 
     E : (B,), modulus of the half-space to which K is relative
     C : (B,), compliance of springs on the surface, in R/E2*; 0: none
+    take : the body of a sub-batch, :func:`~solver.numerics.batch.take`
+    kernel : the :class:`~solver.kernels.kernel.Kernel` L of the Hankel integral over L - 1; None: there is no such
+        integral
     """
 
     E: np.ndarray
     C: np.ndarray
-
-    def take(self, index):
-        """The body of the sub-batch at `index`."""
+    kernel: Kernel | None
+    take: Callable
 
     def at(self, a, mesh, near=None):
         """The :class:`Operator` at the radii a (B,). `near`: an operator of the same cases, perhaps at other radii or

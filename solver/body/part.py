@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..kernels.kernel import Sampler
+from ..numerics import batch
 from . import film
 from .tables import table
 from .wave_rule import CUT, FILM, STIFFEST, few, place_of, quadrature
@@ -17,6 +18,7 @@ from .wave_rule import CUT, FILM, STIFFEST, few, place_of, quadrature
 _BLOCK = 16384
 
 
+@batch.of_cases
 class Part(NamedTuple):
     """The kernel of b cases of one family and one class of stiffness, which are all films or all thicker. If the family
     has no `sampler`, they are of one octave too.
@@ -45,17 +47,13 @@ class Part(NamedTuple):
 
     @property
     def kind(self):
-        """What parts have in common that :func:`join` makes one."""
+        """What parts have in common that :func:`united` makes one."""
         return self.stiffness, self.film is None, self.sampler or int(self.octave[0])
 
     @property
     def share(self):
         """How much of the half-space's K is added to Λ: 1, or n' (b, 1) of films."""
         return 1.0 if self.level is None else self.level
-
-    def take(self, rows, index):
-        """The sub-batch at `rows`, at the places `index` in another batch."""
-        return Part(self.sampler, self.stiffness, index, *(None if v is None else v[rows] for v in self[3:]))
 
 
 def runs(kinds):
@@ -65,12 +63,12 @@ def runs(kinds):
         yield int(kinds[low]), slice(low, high)
 
 
-def join(parts):
+def united(parts):
     """One part from several of one kind."""
     _, _, *arrays = zip(*parts, strict=True)
     whole = Part(*parts[0][:2], *(None if v[0] is None else np.concatenate(v) for v in arrays))
     order = np.argsort(whole.octave, kind="stable")
-    return whole.take(order, whole.index[order])
+    return whole.take(order)
 
 
 def parts_of(body, a, index):

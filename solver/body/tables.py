@@ -31,7 +31,7 @@ _ROWS = 250
 _COUNTS = (16, 48, 144)
 #: Where s is below _NEAR, J0(kx) - J0(k) is a Taylor series of _TERMS terms: k (1 - x) is at most 0.03 there. The
 #: difference itself is rounded by 2e-16/s², and then the load of films of n = 300 to 3e6 on narrow panels is off by
-#: 1e-10 to 6e-8 (tests/contact/errors/test_plates.py).
+#: 1e-10 to 6e-8 (tests/rough/errors/test_plates.py).
 _NEAR, _TERMS = 3e-3, 5
 
 

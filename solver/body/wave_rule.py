@@ -35,7 +35,7 @@ _LEFT_OUT = 3e-16
 _MORE, _ROOT, _LEAST, _LESS = 9, 3.0, (11, 15), 0.8
 #: The integral over u ends at _END_MIDDLE in octave 0, in each further octave 0.7 later, at most at _END. Beyond,
 #: L - 1 ~ u² e^(-2u) and J0 φ ~ 1/k² (k > 1) are too small to count, under stiff layers too, where the pressure feels
-#: them more (tests/contact/errors/test_error_bars.py). That of films ends at _END_FILM: :mod:`.film` adds what lies
+#: them more (tests/rough/errors/test_error_bars.py). That of films ends at _END_FILM: :mod:`.film` adds what lies
 #: beyond.
 _END, _END_MIDDLE, _END_FILM = 20.0, 18.0, 8.7
 

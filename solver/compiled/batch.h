@@ -14,7 +14,7 @@ enum { kappa_, end_, top_, kappa_r_, end_r_, top_r_, slope_P_, bend_P_ = 9, sett
 enum { a_, P_, D_, p0_, p_max_, Ar_An_, A0_, dP_dD_, residual_, error_, profile_error_, SCALARS };
 #define JUDGED 6                            /* the first of these are judged by their relative error */
 /* Points between the nodes of a mesh: s, weights of 2 s ds, kappa, and tables (n columns, m rows) of the polynomials
-   and of the displacement of the half-space (solver/contact/results.py). */
+   and of the displacement of the half-space (solver/rough/results.py). */
 typedef struct { int64_t m; const double *s, *w, *kappa, *basis, *half_space; } Points;
 /* A mesh of n nodes and the next finer one, `fine`. K (n + 1, n) has the row of the edge last. */
 typedef struct {

@@ -1,4 +1,4 @@
-/* What becomes of the cases: where they begin, their errors, and their numbers. solver/contact: start.py, error.py,
+/* What becomes of the cases: where they begin, their errors, and their numbers. solver/rough: start.py, error.py,
    results.py, answer.py, adaptive.py. A case for which anything but convergence may come out is handed back. */
 typedef struct { V value[7]; } Quantities;                                     /* a, P, D, p0, p_max, Ar_An, A0 */
 static Quantities quantities(const Group *c, const Equation *e) {              /* (5), (11)-(14) */

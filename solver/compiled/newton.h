@@ -1,4 +1,4 @@
-/* Newton's method on the meshes of the ladder: solver/contact of numpy, a case in each lane. */
+/* Newton's method on the meshes of the ladder: solver/rough of numpy, a case in each lane. */
 #define EPS 2.220446049250313e-16
 #define MOST_NODES 96
 #define ROOM 128                                /* for the nodes, or the few k, and what `combine` writes behind them */
@@ -225,7 +225,7 @@ static ALONE I closed(const Group *c, const Equation *e, V *residual, I *apart) 
     if (any(near)) done |= near & (*residual < most(1e-2 * of_operator(c, e->a, e->n), 20 * EPS / softness(c, e->a)));
     return done;
 }
-/* The unknown y at points between the nodes: interpolate of solver/contact/results.py. */
+/* The unknown y at points between the nodes: interpolate of solver/rough/results.py. */
 static ALONE void interpolate(Group *c, const Points *p, const double *J, double tolerance, V *y) {
     const Equation *e = &c->on;
     const Law *law = &c->law;

@@ -7,17 +7,17 @@ import numpy as np
 from ..body.half_space import HalfSpace
 from ..body.hankel import Hankel
 from ..body.wave_rule import OCTAVES, STIFFEST
-from ..contact import adaptive
-from ..contact.error import STEEP
-from ..contact.newton import LIMIT
-from ..contact.results import apart
 from ..kernels.closed_form import bond_constants
 from ..kernels.two_layers import TwoLayers
 from ..laws import LAWS
 from ..laws.cell.law import number, spot_curve
 from ..numerics.ladder import LADDER
 from ..parameters import one_of
-from ..punches import PARABOLOID
+from ..rough import adaptive
+from ..rough.error import STEEP
+from ..rough.newton import LIMIT
+from ..rough.results import apart
+from ..shapes.paraboloid import Paraboloid
 from ..solution import Solution
 from ..status import Status
 from .cells import cells_of
@@ -40,7 +40,7 @@ _MESHES, _FINER = LADDER[:-1], LADDER[-1]
 
 
 def solve_newton(cases, rtol, nodes, limit, x):
-    """As :func:`~solver.contact.adaptive.solve_newton`, which solves the cases that the core hands back."""
+    """As :func:`~solver.rough.adaptive.solve_newton`, which solves the cases that the core hands back."""
     function = core()
     index = np.flatnonzero(_taken(cases, nodes)) if function and not limit else ()
     if not len(index):
@@ -60,7 +60,7 @@ def _taken(cases, nodes):
     """(B,) bool: the cases of which the core knows law, body and punch, and whose mesh is free."""
     law, body = cases.law.law, cases.body
     taken = (nodes == 0) | one_of(nodes, _MESHES)
-    if _law_of(law) is None or cases.punch is not PARABOLOID:
+    if _law_of(law) is None or not isinstance(cases.punch, Paraboloid):
         return np.zeros_like(taken)
     if law.name == "power_law":
         taken = taken & (cases.law.own[0][:, 0] >= STEEP)

@@ -6,13 +6,13 @@ import numpy as np
 
 from ..body.tables import between, table
 from ..body.wave_rule import few
-from ..contact.answer import denser_rule
-from ..contact.error import another_rule
-from ..contact.results import stiffness_between
 from ..kernels.two_layers import SAMPLER
 from ..numerics.kept import Kept
 from ..numerics.ladder import finer_mesh
 from ..numerics.mesh import mesh_of
+from ..rough.answer import denser_rule
+from ..rough.error import another_rule
+from ..rough.results import stiffness_between
 from .library import Mesh, Points, Rows, Table, pointer
 
 #: Most numbers k of a quadrature for which there is room in the core. The thinnest layer that is no film has 2,180.

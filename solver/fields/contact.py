@@ -5,17 +5,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..contact.answer import answer
+from ..bases import is_bare, is_stack
 from ..kernels.two_layers import TwoLayers, layer_modulus
 from ..numerics.ladder import STACK
-from ..parameters import STACKED
+from ..numerics.threads import one_blas_thread
+from ..rough.answer import answer
 from ..scaling import as_cases, dimensionless
 from ..sensitivity.again import found_again, meshes, stacks
 from ..sensitivity.held import held
 from ..shapes import shaped
 from ..solve import solve
 from ..status import Status
-from ..threads import one_blas_thread
+from ..ways import by_equation
 from . import normal, sliding
 from .field import integrals
 from .pressure import Pressure
@@ -65,7 +66,7 @@ def of_contacts(problem, solution, r, z, mu=0.0):
     if len(index):
         part, ended = problem.take(index), solution.take(index)
         scaled, a = dimensionless(part), ended.a / part.R
-        film = (scaled.base != "half_space") & (scaled.h / a < THINNEST)
+        film = ~is_bare(scaled.base) & (scaled.h / a < THINNEST)
         for rows, pressure, missed in pressures_of(scaled, ended, a):
             here = index[rows]
             in_film = np.where(are_infinite(scaled.take(rows)), 1.0, MISSED)  # next to an infinite edge, unknown
@@ -87,7 +88,7 @@ def of_contacts(problem, solution, r, z, mu=0.0):
 def have_fields(problem, solution):
     """(B,) bool: solved contacts of which there are stresses. There are none yet of stacks, of what attracts outside
     of the contact, and of rough punches of other shapes than the paraboloid."""
-    without = np.isin(problem.base, STACKED[1]) | ((problem.w_adhesion > 0) & (problem.adhesion != "jkr"))
+    without = is_stack(problem.base) | ((problem.w_adhesion > 0) & (problem.adhesion != "jkr"))
     return (solution.status == Status.CONVERGED) & ~without & ~(shaped(problem) & problem.rough())
 
 
@@ -98,7 +99,7 @@ def are_infinite(problem):
 
 def pressures_of(scaled, solution, a):
     """Yield indices of cases, their :class:`~.pressure.Pressure` in units of E2*, and its error (b,)."""
-    of_basis = shaped(scaled) | (scaled.w_adhesion > 0)
+    of_basis = by_equation(scaled, "basis")
     with_shape = np.flatnonzero(of_basis)
     depths = solution.D[with_shape] / scaled.R[with_shape]
     for rows, pressure, missed in shaped_pressures(scaled.take(with_shape), a[with_shape], depths):
@@ -138,7 +139,7 @@ def bodies_of(scaled, bare):
 def _of_pressures(scaled, a, pressure, r, z, mu):
     """Yield indices of cases of one kind, and their fields, name -> (b, Z + 2, R): at z, and on both sides of the
     interface."""
-    bare = scaled.base == "half_space"
+    bare = is_bare(scaled.base)
     h = np.where(bare, 1.0, scaled.h / a)
     depths = np.concatenate([np.tile(z, (len(h), 1)), h[:, None], h[:, None]], axis=1)
     body = (depths > h[:, None]) & ~bare[:, None]

@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike
 
 from ..kernels.two_layers import TwoLayers, layer_modulus
 from ..numerics.mesh import mesh_of
+from ..numerics.threads import one_blas_thread
 from ..parameters import BONDINGS, PARAMETERS, allowed
-from ..threads import one_blas_thread
 from . import normal, sliding
 from .field import integrals
 from .pressure import Pressure

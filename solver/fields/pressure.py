@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial.legendre import legder, legvander
 
 from ..body.tables import transform
-from ..numerics import special
+from ..numerics import batch, special
 from ..numerics.mesh import Mesh
 from ..numerics.quadrature import gauss_legendre, lagrange, radau_nodes
 
@@ -29,16 +29,13 @@ _KEPT = 250_000
 _ROUNDING = 1e-12
 
 
+@batch.of_cases
 class Pressure(NamedTuple):
     """`values` (B, n), the pressures of B cases at the nodes of a mesh; and A (B,) of 1/s, 0 for all if it is None."""
 
     mesh: Mesh
     values: np.ndarray
     A: np.ndarray | None = None
-
-    def take(self, index):
-        """The sub-batch at `index`."""
-        return Pressure(self.mesh, self.values[index], None if self.A is None else self.A[index])
 
     def transform(self, k):
         """p^(k) = ∫ p J0(kr) r dr (B, K) at ascending k (K,)."""

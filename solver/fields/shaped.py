@@ -6,10 +6,11 @@ import numpy as np
 from ..body import BODIES
 from ..numerics.mesh import Mesh, mesh_of, on_panels
 from ..numerics.quadrature import radau_nodes
-from ..shapes import shaped
-from ..smooth_contact.contact import kinds_of, shape_in
-from ..smooth_contact.equation import respond
-from ..smooth_contact.pressure import pressure_changes, without_edge
+from ..shapes import shape_of, shaped
+from ..shapes.shape import has_radius
+from ..smooth.contact import kinds_of
+from ..smooth.equation import respond
+from ..smooth.pressure import pressure_changes, without_edge
 from .pressure import Pressure
 
 #: Nodes of one panel under shapes that are smooth in r², and of each of several panels. With half of them the stresses
@@ -29,13 +30,12 @@ _LOOKED_AT = np.sin(np.pi / 2 * (np.arange(40) + 0.37) / 40)
 def shaped_pressures(scaled, a, D):
     """Yield indices of smooth cases with a shape or with adhesion at the edge, their :class:`~.pressure.Pressure` in
     units of E2*, and its error (b,), over the largest pressure that is looked at."""
-    for mask, _ in kinds_of(scaled) if len(scaled) else ():
-        index = np.flatnonzero(mask)
+    for index in kinds_of(scaled):
         part, at = scaled.take(index), a[index]
-        shape, body = shape_in(part), BODIES[str(part.base[0])](part)
+        shape, body = shape_of(part), BODIES[str(part.base[0])](part)
         response, even = respond(shape, body, at), shape.even
         sticks = -np.sqrt(2 * np.pi * at * part.w_adhesion / body.E)
-        A = D[index] / response.flat_D if part.shape[0] == "flat" else sticks
+        A = D[index] / response.flat_D if has_radius(shape).all() else sticks
         several = np.flatnonzero(~even)
         for rows in (np.flatnonzero(even), *several[:, None]):
             if len(rows):
@@ -47,9 +47,8 @@ def corners(scaled, a):
     """Radius (B,) in a of where the slope of the shape jumps inside the contact, the innermost; 0 of a sharp tip, NaN
     where there is none. The pressure of a smooth punch is infinite there, like a logarithm."""
     at = np.full(len(scaled), np.nan)
-    for mask, _ in kinds_of(scaled) if shaped(scaled).any() else ():
-        index = np.flatnonzero(mask)
-        shape = shape_in(scaled.take(index))
+    for index in kinds_of(scaled) if shaped(scaled).any() else ():
+        shape = shape_of(scaled.take(index))
         kinks = shape.kinks()
         jumps = shape.slope(kinks * (1 + _APART)) - shape.slope(kinks * (1 - _APART))
         sharp = (jumps > _JUMP * shape.slope(a[index, None])) & (kinks < a[index, None])

@@ -39,6 +39,7 @@ class Kernel(Protocol):
     stiffness : (B,), the largest of L, and of the lengths over h at which L still varies: below u = 0.15/stiffness
         (where that is above 2) L is a straight line
     sampler : Sampler of the family, or None: L is then evaluated at all nodes, some hundreds to two thousand
+    take : the kernel of a sub-batch, :func:`~solver.numerics.batch.take`
     """
 
     E1: np.ndarray
@@ -46,9 +47,7 @@ class Kernel(Protocol):
     slope: np.ndarray
     stiffness: np.ndarray
     sampler: Sampler | None
-
-    def take(self, index):
-        """The kernel of the sub-batch at `index`."""
+    take: Callable
 
     def formulas(self):
         """Indices of the cases that one formula serves, a list of (b,): each is evaluated by itself."""

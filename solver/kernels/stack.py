@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from .kernel import Sampler
 from .minors import Layer, across, at_surface, base, numerator, scaled, through
 from .two_layers import thin_layer_coefficients
@@ -19,6 +20,7 @@ _NEAR = 0.7
 _BLOCK = 2048
 
 
+@batch.of_cases
 class Stack(NamedTuple):
     """The :class:`~solver.kernels.kernel.Kernel` of B stacks of N layers, the top first.
 
@@ -76,9 +78,6 @@ class Stack(NamedTuple):
         bodies = np.hstack([self.n, np.where(self.rigid, np.inf, 1.0)[:, None]])
         under = np.minimum.accumulate(bodies[:, ::-1], axis=1)[:, ::-1][:, 1:]
         return np.maximum(softest, (self.depth * np.maximum(1.0, self.n / under)).sum(axis=1))
-
-    def take(self, index):
-        return Stack(*(field[index] for field in self[:-1]), self.sampler)
 
     def formulas(self):
         return [np.arange(len(self.n))]

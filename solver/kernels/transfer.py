@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..numerics.codes import Codes
+from ..status import Codes
 
 #: Where X = kh is below it, the layer is thin. Against 113 bits 0.5 and 1.5 do as well (docs/stresses.md), so that
 #: cases whose h differ by a factor of 2 may have one limit in k.

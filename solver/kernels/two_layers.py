@@ -5,10 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from .closed_form import decaying_part, whole
 from .kernel import Sampler
 
 
+@batch.of_cases
 class TwoLayers(NamedTuple):
     """The :class:`~solver.kernels.kernel.Kernel` of B layers on half-spaces, arrays (B,): n = E1*/E2*, the Poisson
     ratios nu1, nu2 of layer and half-space, and whether they are bonded."""
@@ -44,9 +46,6 @@ class TwoLayers(NamedTuple):
     @property
     def sampler(self):
         return SAMPLER
-
-    def take(self, index):
-        return TwoLayers(*(field[index] for field in self))
 
     def formulas(self):
         return [np.flatnonzero(self.bonded), np.flatnonzero(~self.bonded)]

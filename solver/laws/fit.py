@@ -4,7 +4,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from ..threads import one_blas_thread
+from ..numerics.threads import one_blas_thread
 from .disc_cell import displacement
 
 

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..numerics import batch
 from ..parameters import Parameter
 
 #: Most Newton steps of an inverse, far more than the laws of this package need; and the largest change of ln y in one.
@@ -26,6 +27,7 @@ _STEPS, _LONGEST = 100, 5.0
 _LAST, _ROUNDING = 1e-9, 1e-3
 
 
+@batch.of_cases
 class Curve(NamedTuple):
     """A law at some y.
 
@@ -159,6 +161,7 @@ class Law:
         return Spots(*(v.reshape(p.shape) for v in spots))
 
 
+@batch.of_cases
 class Bound(NamedTuple):
     """A law with the numbers of B cases: p* and A* (B,), and in `own`, (B, 1) each, what else its functions need."""
 
@@ -170,9 +173,6 @@ class Bound(NamedTuple):
     @property
     def rough(self):
         return self.law.rough
-
-    def take(self, index):
-        return Bound(self.law, self.p_star[index], self.A_star[index], tuple(v[index] for v in self.own))
 
     def evaluate(self, y):
         """:class:`Curve` at y (B, m)."""

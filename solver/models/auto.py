@@ -9,12 +9,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..contact.start import guess_radius
 from ..kernels.closed_form import decaying_part, whole
 from ..kernels.two_layers import layer_modulus
 from ..laws import LAWS
 from ..laws.disc_cell import SMOOTH
 from ..numerics.quadrature import gauss_legendre
+from ..rough.start import guess_radius
 from ..scaling import as_cases, dimensionless, law_of, restore
 from ..solution import Model, Solution
 from ..status import Status

@@ -9,17 +9,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..bases import is_exact, named
 from ..body.graded import contrast
 from ..kernels.two_layers import layer_modulus
 from ..laws import LAWS
 from ..laws.cell.law import end
-from ..parameters import one_of
 from ..problem import far_apart
 from ..scaling import dimensionless, law_of, of_one_law
 
-#: Bases that have no error of their own. To that of "auto" this one is added where its law could feel the body; that of
-#: a thin layer is left as it is.
-_EXACT = ("layered", "stack")
 #: The mean over the angle errs by this part, times 2 λ to a power, in A, λ or p_max of resolved cells
 #: (tests/models/test_errors_on_layers.py): of a square lattice, and of a hexagonal one, whose waves the disc cell has.
 _SQUARE, _HEX = (0.03, 3.5), (1e-3, 4.0)
@@ -44,12 +41,13 @@ def left_out(problem, solution):
     `solution` and problem have one unit."""
     error = np.zeros(len(problem))
     felt = problem.feels_layer()
-    there = (one_of(problem.base, _EXACT) | problem.can_feel()) & np.isfinite(problem.Ra) & problem.rough()
+    # to the error of "auto" this one is added where its law could feel the body; that of a thin layer is left as it is
+    there = (is_exact(problem.base) | problem.can_feel()) & np.isfinite(problem.Ra) & problem.rough()
     index = np.flatnonzero(there & np.isfinite(solution.P) & (felt | far_apart(problem.Nbar, problem.h)))
     if not len(index):
         return error
     part, ended = problem.take(index), solution.take(index)
-    scaled = dimensionless(part).but(base=np.where(part.base == "auto", "layered", part.base))
+    scaled = dimensionless(part).but(base=named(part.base))
     ended = replace(ended, p0=_largest(ended) / part.E2, D=ended.D / part.R, A0=ended.A0 / part.R)
     for rows in of_one_law(scaled):
         some, state = scaled.take(rows), ended.take(rows)
@@ -63,7 +61,7 @@ def last_fraction(problem):
     fraction = np.full(len(problem), np.nan)
     felt = np.flatnonzero(problem.feels_layer())
     scaled = dimensionless(problem.take(felt))
-    for rows in of_one_law(scaled.but(base=np.where(scaled.base == "auto", "layered", scaled.base))):
+    for rows in of_one_law(scaled.but(base=named(scaled.base))):
         law = law_of(scaled.take(rows))
         most = end(law)
         lam = law.at(np.where(np.isfinite(most), most, 0.0)[:, None]).lam[:, 0]

@@ -9,10 +9,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..contact.driver import solve_on
-from ..contact.equation import State, evaluate
-from ..contact.results import difference, quantities
+from ..bases import exact_of
+from ..numerics.batch import alike
 from ..numerics.mesh import mesh_of
+from ..rough.equation import State, evaluate
+from ..rough.newton import solve_on
+from ..rough.results import difference, quantities
 from ..scaling import as_cases, dimensionless, kinds_of_laws, restore
 from ..solution import Solution
 from .named import error_of_law, solve_named, with_model_error
@@ -28,10 +30,8 @@ def judged(problem, x):
     problem : all of base "thin_layer" or "thin_stack"; x : (m,) radii
     """
     pieces, scaled = [], dimensionless(problem)
-    exact = scaled.but(base=np.where(scaled.base == "thin_stack", "stack", "layered"))
-    kinds = problem.micro, problem.base, kinds_of_laws(exact)
-    for kind in dict.fromkeys(zip(*(words.tolist() for words in kinds), strict=True)):
-        index = np.flatnonzero(np.all([words == word for words, word in zip(kinds, kind, strict=True)], axis=0))
+    exact = scaled.but(base=exact_of(scaled.base))
+    for index in alike(problem.micro, problem.base, kinds_of_laws(exact)):
         part = scaled.take(index).but(model_check="closed_form")
         cheap = solve_named(part, np.concatenate([x, mesh_of(NODES).x]))
         solved, error = np.flatnonzero(np.isfinite(cheap.a)), np.full(len(index), np.nan)

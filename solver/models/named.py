@@ -1,24 +1,14 @@
 """Cases whose base has a name, each by the cheapest way that solves it."""
 
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 
-from ..contact import smooth
+from .. import ways
+from ..bases import is_thin_layer, on_springs
 from ..laws import LAWS
-from ..scaling import (
-    as_cases,
-    dimensionless,
-    kinds_of_laws,
-    restore,
-    with_a_stiff_base,
-    with_rigid_punch,
-    without_springs,
-)
-from ..schemes import SCHEMES
-from ..shapes import shaped
-from ..smooth_contact.contact import kinds_of
+from ..numerics.batch import alike
+from ..scaling import dimensionless, restore, with_a_stiff_base, with_rigid_punch, without_springs
 from ..solution import Model, Solution
 from ..status import Status
 from .range_of_law import edge_error, outside_law
@@ -36,9 +26,10 @@ _BY_NAME = {
 def model_of(problem):
     """:class:`Model` (B,) int8 of cases whose base is named; NONE of "auto"."""
     used, rough = np.zeros(len(problem), dtype=np.int8), problem.rough()
-    for base, model in _BY_NAME.items():
-        of_base = problem.base == base
-        used[of_base] = np.where(rough[of_base], model, model + 1)
+    for index in alike(problem.base):
+        model = _BY_NAME.get(str(problem.base[index[0]]))
+        if model is not None:
+            used[index] = np.where(rough[index], model, model + 1)
     return used
 
 
@@ -52,13 +43,7 @@ def solve_named(problem, x):
     scaled, size = dimensionless(rigid), (len(problem), len(x))
     no_springs = without_springs(scaled)
     status = np.where(no_springs, Status.THIN_LAYER_NOT_APPLICABLE, 0)
-    pieces = []
-    for mask, way in _ways(scaled, ~no_springs):
-        if mask.any():
-            index = np.flatnonzero(mask)
-            part = scaled if len(index) == len(scaled) else scaled.take(index)
-            pieces.append((index, way(part, x)))
-    solution = Solution.join(*size, pieces, status=status)
+    solution = Solution.join(*size, ways.solved(scaled, ~no_springs, x), status=status)
     missed = (solution.status == Status.CONVERGED) & ~(solution.error <= problem.rtol)
     solution.status[missed] = Status.TOLERANCE_NOT_MET
     return with_model_error(problem, _with_model(problem, restore(solution, rigid)))
@@ -97,38 +82,11 @@ def closed_form(problem, a):
     return errors
 
 
-def _ways(problem, solvable):
-    """Pairs of a mask (B,), True for some cases, and the way to solve these."""
-    half_space, thin = problem.base == "half_space", problem.base == "thin_layer"
-    is_smooth, special = ~problem.rough(), shaped(problem) | (problem.w_adhesion > 0)
-    if np.any(of_shape := solvable & is_smooth & special):
-        yield from ((of_shape & mask, way) for mask, way in kinds_of(problem))
-        solvable = solvable & ~of_shape
-    yield solvable & is_smooth & half_space, _smooth_half_space
-    yield solvable & is_smooth & thin, _smooth_layer
-    iterated = solvable & ~(is_smooth & (half_space | thin))
-    kinds = problem.micro, problem.base, problem.scheme, problem.shape, kinds_of_laws(problem)
-    # of each kind the words that occur, and the cases that have them
-    present = ([(word, words == word) for word in dict.fromkeys(words.tolist())] for words in kinds)
-    for (_, of_law), (_, on_body), (scheme, by_scheme), (_, of_shape), (_, of_kind) in product(*present):
-        chosen = iterated & of_law & on_body & by_scheme & of_shape & of_kind
-        for limit in np.unique(problem.max_iterations[chosen]):
-            yield chosen & (problem.max_iterations == limit), SCHEMES[scheme]
-
-
-def _smooth_half_space(part, x):
-    return smooth.half_space(part.control, part.value, x)
-
-
-def _smooth_layer(part, x):
-    return smooth.thin_layer(part.control, part.value, as_cases(part).body.C, part.rtol, part.nodes, x)
-
-
 def _with_model(problem, solution):
     """The solution with its `model_used`, and its `model_error` without that of the range of the law."""
-    solved, thin = np.isfinite(solution.P) & np.isfinite(solution.D), problem.base == "thin_layer"
-    error = np.where(solved & ~thin & (problem.base != "thin_stack"), 0.0, np.nan)
-    judged = np.flatnonzero(solved & thin)
+    solved = np.isfinite(solution.P) & np.isfinite(solution.D)
+    error = np.where(solved & ~on_springs(problem.base), 0.0, np.nan)
+    judged = np.flatnonzero(solved & is_thin_layer(problem.base))
     if len(judged):
         part = problem if len(judged) == len(problem) else problem.take(judged)
         error[judged] = closed_form(part, solution.a[judged])

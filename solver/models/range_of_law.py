@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..bases import is_bare
 from ..kernels.two_layers import layer_modulus
 from ..laws import LAWS
 from ..laws.cell.family import MOST
@@ -83,6 +84,6 @@ def _of_law(problem, solution, law):
     point, the largest pressure of the profile stands for it."""
     index = np.flatnonzero(problem.micro == law.name)
     part = problem.take(index)
-    E = part.E2 * np.where(part.base == "half_space", 1.0, layer_modulus(part.n)) / (1 + part.m)
+    E = part.E2 * np.where(is_bare(part.base), 1.0, layer_modulus(part.n)) / (1 + part.m)
     p0 = solution.p0[index]
     return index, np.where(np.isnan(p0), np.fmax.reduce(solution.p[index], axis=1, initial=np.nan), p0), E

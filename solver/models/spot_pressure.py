@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..bases import is_exact_stack, named
 from ..laws import LAWS, elastic_plastic
 from ..laws.cell.members import members, peaks_of
 from ..laws.cell.peak import NARROW, U
@@ -46,7 +47,7 @@ def lifts_off(problem, lam):
     """(B,) bool: the pressure is below 0 inside of a spot; lam : (B,), the largest λ of the contact. Of random heights
     it is not looked for."""
     lifted, felt = np.zeros(len(problem), dtype=bool), problem.feels_layer()
-    problem = problem.but(base=np.where(problem.base == "auto", "layered", problem.base))
+    problem = problem.but(base=named(problem.base))
     for index, part, body in _of_one_law(problem, felt & _may_be_hard(problem, _LIFTS)):
         b = np.sqrt(lam[index] / np.pi)
         for rows, member in _wide_spots(part, body, b, _LIFTS):
@@ -56,7 +57,7 @@ def lifts_off(problem, lam):
 
 
 def _may_be_hard(problem, hard=_HARD):
-    return (problem.base == "stack") | (problem.n > hard)
+    return is_exact_stack(problem.base) | (problem.n > hard)
 
 
 def _of_one_law(problem, some):

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..kernels.closed_form import whole
 from ..kernels.two_layers import thin_layer_coefficients
-from ..threads import one_blas_thread
+from ..numerics.threads import one_blas_thread
 
 #: Step of the trapezoidal rule for κ in ln u, and its points u. The integrand decays like e^-|ln u| at both ends. κ is
 #: right to 2e-6 (tests/models/test_thin_layer_error.py, test_edge_shift_is_the_integral_and_what_the_solver_finds).

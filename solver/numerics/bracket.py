@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from .batch import march
+
 
 def false_position(evaluate, start, tolerance):
     """Root of an increasing function of each of B cases by false position (Illinois) from a bracket around `start`: the
@@ -21,10 +23,9 @@ def between(evaluate, low, high, g_low, g_high, tolerance):
     """The same from the ends `low`, `high` (B,) of a bracket, which it narrows in place, and the function there. A case
     whose function is NaN at an end is given up."""
     x, g = high.copy(), g_high.copy()
-    active, was_below = np.flatnonzero(np.isfinite(g_low + g_high)), np.full(len(low), np.nan)
-    for _ in range(80):
-        if not len(active):
-            break
+    was_below = np.full(len(low), np.nan)
+
+    def step(active):
         lo, hi, gl, gh = low[active], high[active], g_low[active], g_high[active]
         guess = lo - gl * (hi - lo) / (gh - gl)
         x[active] = np.where((guess > lo) & (guess < hi), guess, 0.5 * (lo + hi))
@@ -35,8 +36,9 @@ def between(evaluate, low, high, g_low, g_high, tolerance):
         was_below[active] = below
         low[active], high[active] = np.where(below, x[active], lo), np.where(below, hi, x[active])
         near = tolerance[active]
-        done = (np.abs(value) < near) | (high[active] - low[active] < near) | np.isnan(value)
-        active = active[~done]
+        return (np.abs(value) < near) | (high[active] - low[active] < near) | np.isnan(value)
+
+    march(step, np.flatnonzero(np.isfinite(g_low + g_high)), most=80)
     return x, g
 
 
@@ -73,17 +75,22 @@ def secant(evaluate, start, steps=12, reach=1.0):
     evaluate : as of :func:`false_position`
     """
     size = len(start)
-    out, active, x = np.full(size, np.nan), np.arange(size), np.array([start, start + 0.1])
-    g = evaluate(x.ravel(), np.tile(active, 2)).reshape(2, size)
-    for _ in range(steps):
+    out, every, x = np.full(size, np.nan), np.arange(size), np.array([start, start + 0.1])
+    g = evaluate(x.ravel(), np.tile(every, 2)).reshape(2, size)
+
+    def step(active):
+        (before, now), (g_before, g_now) = x[:, active], g[:, active]
         with np.errstate(all="ignore"):
-            step = np.clip(-g[1] * (x[1] - x[0]) / (g[1] - g[0]), -reach, reach)
-        done = np.abs(step) < 1e-13
-        out[active[done]] = x[1][done]
-        left = ~done & np.isfinite(step)
-        active, x, g, step = active[left], x[:, left], g[:, left], step[left]
-        if not len(active):
-            break
-        following = x[1] + step
-        x, g = np.array([x[1], following]), np.array([g[1], evaluate(following, active)])
+            by = np.clip(-g_now * (now - before) / (g_now - g_before), -reach, reach)
+        done = np.abs(by) < 1e-13
+        out[active[done]] = now[done]
+        ended = done | ~np.isfinite(by)
+        left = active[~ended]
+        if len(left):
+            following = (now + by)[~ended]
+            x[:, left] = x[1, left], following
+            g[:, left] = g[1, left], evaluate(following, left)
+        return ended
+
+    march(step, every, most=steps)
     return out

@@ -3,13 +3,14 @@ error meets it."""
 
 import numpy as np
 
+from .batch import join
 from .mesh import mesh_of, panel_mesh
 
 LADDER = (6, 8, 12, 16, 22, 32, 48, 64, 96)
 #: (rtol, nodes): the mesh to begin on for this rtol and larger ones, where nothing else is known. Below the last: 32.
 _START = ((1e-3, 6), (1e-5, 8), (3e-7, 12), (3e-8, 16), (1e-9, 22))
 #: The estimated error is this times the distance to the next finer mesh, since the finer mesh has an error too
-#: ("margin" of tests/contact/errors/test_error_bars.py).
+#: ("margin" of tests/rough/errors/test_error_bars.py).
 MARGIN = 2.0
 #: Unknowns that are solved together. With more of them they would leave the processor's cache, with fewer the time of
 #: the calls would count.
@@ -47,8 +48,7 @@ def climb(rtol, nodes, solve_on, first=None, order=None):
     nodes : (B,) int, a fixed mesh, or 0: begin on `first`
     solve_on : ``solve_on(index, n, start) -> error, finer, answer`` solves the cases `index` on n nodes. `start` is the
         `finer` of the mesh before, None on the first. error (b,): estimated errors, NaN where there is no use in going
-        on. finer: what the next finer mesh begins with, which has ``finer.take(rows)`` and ``finer.join(others)``; or
-        None. answer: passed on as it is
+        on. finer: what the next finer mesh begins with, a batch; or None. answer: passed on as it is
     first : (B,) int, the mesh to begin on; None: chosen by rtol
     order : (B,) int, permutation of the cases; neighbours in it are solved together
     """
@@ -74,7 +74,7 @@ def _together(climbing, n):
     """The stacks (index, start) on n nodes of the `climbing` cases, (index, start), that come from the mesh before."""
     index, start = np.concatenate([rows for rows, _ in climbing]), climbing[0][1]
     if start is not None:
-        start = start.join([begin for _, begin in climbing])
+        start = join([begin for _, begin in climbing])
     return [(index[rows], None if start is None else start.take(rows)) for rows in _stacks(np.arange(len(index)), n)]
 
 

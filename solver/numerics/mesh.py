@@ -12,8 +12,7 @@ from functools import lru_cache
 import numpy as np
 
 from . import special
-from .pieces import against, pieces
-from .quadrature import gauss_legendre, lagrange, radau_nodes
+from .quadrature import against, gauss_legendre, lagrange, pieces, radau_nodes
 
 WHOLE = (0.0, 1.0)
 

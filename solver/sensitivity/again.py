@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from ..contact.driver import budget_of, solve_on
-from ..contact.equation import evaluate
-from ..contact.panels import solve_on_panels
-from ..contact.results import quantities
-from ..contact.start import first_guess
 from ..numerics.ladder import LADDER
 from ..numerics.mesh import mesh_of
+from ..rough.equation import evaluate
+from ..rough.newton import budget_of, solve_on
+from ..rough.panels import solve_on_panels
+from ..rough.results import quantities
+from ..rough.start import first_guess
 from ..scaling import as_cases, kinds_of_laws
-from ..shapes import PARABOLOID, flat
+from ..ways import by_equation
 
 #: The closed form of the smooth half-space is a polynomial in s that the coarsest mesh has.
 _LEAST = LADDER[0]
@@ -23,10 +23,9 @@ def meshes(solution, problem):
 
 
 def without_state(problem):
-    """(B,) bool: cases whose equation is not that of :mod:`..contact`: smooth punches of other shapes than a
+    """(B,) bool: cases whose equation is not that of :mod:`..rough`: smooth punches of other shapes than a
     paraboloid, what sticks, and flat punches."""
-    shaped = problem.shape != PARABOLOID
-    return shaped & (~problem.rough() | (problem.shape == flat.KIND.name)) | (problem.w_adhesion > 0)
+    return ~by_equation(problem, "nodes")
 
 
 def stacks(problem, nodes, a, most):
@@ -42,7 +41,7 @@ def stacks(problem, nodes, a, most):
 
 
 def found_again(cases, nodes, a, rtol):
-    """:class:`~solver.contact.driver.Iterated` of cases of about the radii a (B,), in units R = E2* = 1, on `nodes`
+    """:class:`~solver.rough.newton.Iterated` of cases of about the radii a (B,), in units R = E2* = 1, on `nodes`
     nodes; 0: of one case on panels of its own."""
     if not nodes:
         return solve_on_panels(cases, rtol[0], budget_of(cases))[0]

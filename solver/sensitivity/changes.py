@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..contact.equation import Cases, groups
 from ..layers import numbers_of, table
 from ..parameters import CONTROL, is_ratio
-from ..punches.shaped import Shaped
+from ..rough.equation import Cases, groups
+from ..rough.punch import punch_of
 from ..scaling import as_cases
 from ..shapes import PARABOLOID, SHAPES, shape_of
 
@@ -115,7 +115,7 @@ def _of_punch(part, eta, k):
             both = values.reshape(k, 2, len(eta))
             middle = both.mean(axis=1, keepdims=True)
             nearer[name] = (middle + _NEARER * (both - middle)).ravel()
-    punch, a = Shaped(shape_of(part.but(**nearer))), np.tile(np.exp(eta), 2 * k)
+    punch, a = punch_of(shape_of(part.but(**nearer))), np.tile(np.exp(eta), 2 * k)
     step = STEP * _NEARER
     return slope_of(punch.depth(a), k, step), lambda s: slope_of(punch.drop(a, s), k, step)
 

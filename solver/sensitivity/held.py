@@ -4,8 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..bases import is_chosen
 from ..kernels.two_layers import layer_modulus
 from ..laws.disc_cell import SMOOTH
+from ..numerics import batch
 from ..problem import Problem
 from ..scaling import dimensionless, with_a_stiff_base, with_rigid_punch
 from ..solution import Model
@@ -15,6 +17,7 @@ _EXACT = (Model.LAYERED, Model.SMOOTH_LAYERED)
 _SMOOTH = (Model.SMOOTH_LAYER_ALONE, Model.SMOOTH_THIN_LAYER)
 
 
+@batch.of_cases
 class Held(NamedTuple):
     """Cases whose base is the one that was used.
 
@@ -29,14 +32,11 @@ class Held(NamedTuple):
     E2: np.ndarray
     added: np.ndarray
 
-    def take(self, index):
-        return Held(self.named.take(index), self.written.take(index), self.E2[index], self.added[index])
-
 
 def held(scaled, used):
     """:class:`Held` of a problem in units R = E2* = 1; used : (B,), the :class:`~solver.solution.Model` of each case.
     The base "auto" stays at the model that it chose."""
-    auto, thin, exact = scaled.base == "auto", np.isin(used, _THIN), np.isin(used, _EXACT)
+    auto, thin, exact = is_chosen(scaled.base), np.isin(used, _THIN), np.isin(used, _EXACT)
     alone, added = auto & ~thin & ~exact, auto & np.isin(used, _SMOOTH) & scaled.rough()
     of_model = np.select([thin, exact], ["thin_layer", "layered"], "half_space")
     named = scaled.but(

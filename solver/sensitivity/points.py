@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..contact.results import interpolate, stiffness_between
 from ..numerics.mesh import gauss_rule
+from ..rough.results import interpolate, stiffness_between
 from .state import along, moving_numbers, of_law
 
 #: Gauss points between any two nodes at which a λ that bends is differentiated. With 5 points the derivatives of
@@ -26,7 +26,7 @@ def at_points(ev, changes, derivatives, s):
     """:class:`Points` at s (m,) > 0. `derivatives`: :class:`.state.Implicit` of the solutions `ev`.
 
     Without asperities q is a polynomial in s, and so is its change. With them it is not one next to the edge, but what
-    bodies and asperities make of q is: so the equation of :func:`~solver.contact.results.interpolate` is
+    bodies and asperities make of q is: so the equation of :func:`~solver.rough.results.interpolate` is
     differentiated.
     """
     law, s = ev.cases.law, np.asarray(s, dtype=float)

@@ -11,14 +11,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..contact.results import pointed
 from ..numerics.ladder import STACK
+from ..numerics.threads import one_blas_thread
 from ..parameters import is_ratio, uses
 from ..problem import Problem
+from ..rough.results import pointed
 from ..scaling import as_cases, dimensionless
 from ..solution import Solution
 from ..status import Status
-from ..threads import one_blas_thread
 from .added import added_slopes
 from .again import found_again, meshes, same, stacks, without_state
 from .changes import changes_of, inputs_of, moved, slope_of

@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..body.operator import Operator
-from ..contact.equation import control_gradient, jacobian
-from ..contact.results import quantities
 from ..numerics.linalg import solve_stack
+from ..rough.equation import control_gradient, jacobian
+from ..rough.results import quantities
 from .changes import STEP
 
 

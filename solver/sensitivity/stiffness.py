@@ -13,11 +13,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..contact.driver import solve_on
-from ..contact.equation import State, control_gradient, evaluate, jacobian
 from ..numerics.linalg import solve_stack
 from ..numerics.mesh import panel_mesh
-from ..punches.kinks import ends_of, followed
+from ..rough.equation import State, control_gradient, evaluate, jacobian
+from ..rough.newton import solve_on
+from ..rough.panels import ends_of, followed
 from .changes import changes_of
 from .state import explicit, moving_numbers, of_law, operators_of
 

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from ..parameters import PARAMETERS, Register
-from . import blunt_cone, cone, flat, frustum, power, rounded_flat, sphere, table
-from .shape import Kind, Shape
+from . import blunt_cone, cone, flat, frustum, paraboloid, power, rounded_flat, sphere, table
+from .shape import Kind, Shape, has_radius
 
-__all__ = ["PARABOLOID", "SHAPES", "Kind", "Shape", "named", "register", "shape_of", "shaped"]
+__all__ = ["PARABOLOID", "ROUND", "SHAPES", "Kind", "Shape", "is_flat", "named", "register", "shape_of", "shaped"]
 
-#: The shape of the paper, which stands in :mod:`..punches.paraboloid` as well: the default.
-PARABOLOID = "paraboloid"
+#: The shape of the paper: the default.
+PARABOLOID = paraboloid.KIND.name
 
 
 def register(kind: Kind) -> Kind:
@@ -37,7 +37,7 @@ def register(kind: Kind) -> Kind:
     --------
     docs/extending.md has a shape in one file.
     """
-    if SHAPES.get(kind.name, kind) in BUILT_IN and kind not in BUILT_IN or kind.name == PARABOLOID:
+    if SHAPES.get(kind.name, kind) in BUILT_IN and kind not in BUILT_IN:
         raise ValueError(f"shape {kind.name}: is one of this package: take another name")
     with SHAPES.lock:
         _declare(SHAPES | {kind.name: kind})
@@ -56,7 +56,7 @@ def _declare(shapes):
                 raise ValueError(f"shape {kind.name}: the parameter {name} is that of something else")
             declared[name] = there, (*words, kind.name)
     PARAMETERS.update({name: row._replace(needed_by=("shape", words)) for name, (row, words) in declared.items()})
-    PARAMETERS["shape"] = PARAMETERS["shape"]._replace(choices=(PARABOLOID, *shapes))
+    PARAMETERS["shape"] = PARAMETERS["shape"]._replace(choices=tuple(shapes))
     return shapes
 
 
@@ -68,7 +68,7 @@ def named(shapes: Any) -> None:
 
 
 def shape_of(problem) -> Shape:
-    """The :class:`~.shape.Shape` of the cases of a problem in units R = 1, which have one `shape`, no paraboloid."""
+    """The :class:`~.shape.Shape` of the cases of a problem in units R = 1, which have one `shape`."""
     kind = SHAPES[str(problem.shape[0])]
     return kind.of(**{name: getattr(problem, name) for name in kind.parameters}, size=len(problem))
 
@@ -78,9 +78,20 @@ def shaped(problem):
     return problem.shape != PARABOLOID
 
 
+def is_flat(problem):
+    """(B,) bool: the cases of a problem whose contact radius is that of the punch, whatever the load."""
+    flat_ones, others = np.zeros(len(problem), dtype=bool), shaped(problem)
+    for word in np.unique(problem.shape[others]).tolist():
+        index = np.flatnonzero(problem.shape == word)
+        flat_ones[index] = has_radius(shape_of(problem.take(index)))
+    return flat_ones
+
+
 BUILT_IN = (
-    *(sphere.KIND, cone.KIND, *cone.PYRAMIDS, power.KIND, frustum.KIND, blunt_cone.KIND, flat.KIND),
+    *(paraboloid.KIND, sphere.KIND, cone.KIND, *cone.PYRAMIDS, power.KIND, frustum.KIND, blunt_cone.KIND, flat.KIND),
     rounded_flat.KIND,
 )
-#: Name -> :class:`~.shape.Kind` of all shapes but the paraboloid.
+#: The names of those whose profile has the radius R in it.
+ROUND = tuple(kind.name for kind in BUILT_IN if kind.round)
+#: Name -> :class:`~.shape.Kind` of all shapes.
 SHAPES = Register(_declare({kind.name: kind for kind in BUILT_IN}))

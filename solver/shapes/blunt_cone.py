@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..parameters import Parameter
 from .cone import HALF_ANGLE, cotangent
 from .shape import Kind, angle, beyond, column, load_by_quadrature, radii_at
@@ -17,6 +18,7 @@ TIP_RADIUS = Parameter(interval="[1e-12, 1e6]", powers=(0, 1))
 TIP = Parameter("paraboloid", ("paraboloid", "sphere"))
 
 
+@batch.of_cases
 class BluntCone(NamedTuple):
     """The :class:`~.shape.Shape` of tips of radius `rho` and slopes `cot`; `ball` (B,) bool, the tip is a ball."""
 
@@ -41,9 +43,6 @@ class BluntCone(NamedTuple):
     def side(self):
         """Of a ball, sqrt(ρ² - b²) (B,)."""
         return self.rho / np.hypot(1.0, self.cot)
-
-    def take(self, index):
-        return BluntCone(*(values[index] for values in self))
 
     def height(self, r):
         tip = np.minimum(r, column(self.b))

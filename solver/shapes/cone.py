@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..parameters import Parameter
 from .shape import Kind, column, no_kinks, radii_at
 
@@ -14,6 +15,7 @@ HALF_ANGLE = Parameter(interval="(0, 90)")
 _AREA, _CUBE_CORNER = 24.5, 42.2784
 
 
+@batch.of_cases
 class Cone(NamedTuple):
     """The :class:`~.shape.Shape` of cones of slope `cot` (B,)."""
 
@@ -26,9 +28,6 @@ class Cone(NamedTuple):
     @property
     def even(self):
         return self.cot < 0
-
-    def take(self, index):
-        return Cone(self.cot[index])
 
     def height(self, r):
         return column(self.cot) * r

@@ -4,10 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from .frustum import FLAT_RADIUS
 from .shape import Kind, column
 
 
+@batch.of_cases
 class Flat(NamedTuple):
     """The :class:`~.shape.Shape` of radii `b` (B,): f = 0."""
 
@@ -20,9 +22,6 @@ class Flat(NamedTuple):
     @property
     def even(self):
         return self.b > 0
-
-    def take(self, index):
-        return Flat(self.b[index])
 
     def height(self, r):
         return 0 * column(self.b) * r

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..parameters import Parameter
 from .cone import HALF_ANGLE, cotangent
 from .shape import Kind, angle, beyond, column, radii_at
@@ -12,6 +13,7 @@ from .shape import Kind, angle, beyond, column, radii_at
 FLAT_RADIUS = Parameter(interval="[1e-9, 1e3]", powers=(0, 1))
 
 
+@batch.of_cases
 class Frustum(NamedTuple):
     """The :class:`~.shape.Shape` of radii `b` and slopes `cot` (B,)."""
 
@@ -25,9 +27,6 @@ class Frustum(NamedTuple):
     @property
     def even(self):
         return self.b < 0
-
-    def take(self, index):
-        return Frustum(self.b[index], self.cot[index])
 
     def height(self, r):
         return column(self.cot) * np.maximum(r - column(self.b), 0.0)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..parameters import Parameter
 from .shape import Kind, column, no_kinks
 
@@ -12,6 +13,7 @@ from .shape import Kind, column, no_kinks
 SHAPE_POWER, SHAPE_COEFFICIENT = Parameter(interval="[1, 100]"), Parameter(interval="[1e-12, 1e12]")
 
 
+@batch.of_cases
 class Power(NamedTuple):
     """The :class:`~.shape.Shape` of coefficients c and exponents k (B,); `B` (B,) is F over f."""
 
@@ -26,9 +28,6 @@ class Power(NamedTuple):
     @property
     def even(self):
         return self.k % 2 == 0
-
-    def take(self, index):
-        return Power(*(values[index] for values in self))
 
     def height(self, r):
         return column(self.c) * r ** column(self.k)

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..parameters import Parameter
 from .frustum import FLAT_RADIUS
 from .shape import Kind, beyond, column, radii_at
@@ -14,6 +15,7 @@ EDGE_RADIUS = Parameter(interval="[1e-12, 1e6]", powers=(0, 1))
 _SERIES, _TERMS = 0.3, 16
 
 
+@batch.of_cases
 class RoundedFlat(NamedTuple):
     """The :class:`~.shape.Shape` of radii `b` of what is flat, and `rho` of the edge, (B,)."""
 
@@ -27,9 +29,6 @@ class RoundedFlat(NamedTuple):
     @property
     def even(self):
         return self.b < 0
-
-    def take(self, index):
-        return RoundedFlat(self.b[index], self.rho[index])
 
     def height(self, r):
         return np.maximum(r - column(self.b), 0.0) ** 2 / (2 * column(self.rho))

@@ -8,7 +8,7 @@ the depth at which a half-space is touched up to the radius t (docs/shapes.md). 
 
     P = 2 E ∫₀ᵃ (F(a) - F(t)) dt = 2 E lifted_load(a)
 
-it is touched up to a. A rough contact needs the drop (2/a²) [f(a) - f(ax)] of :mod:`..punches.punch`.
+it is touched up to a. A rough contact needs the drop (2/a²) [f(a) - f(ax)] of :mod:`..rough.punch`.
 """
 
 from collections.abc import Callable, Mapping
@@ -28,13 +28,12 @@ class Shape(Protocol):
 
     pointed : (B,) bool, f'(0+) > 0: the pressure on the axis is infinite
     even : (B,) bool, f is a smooth function of r²: then the pressure is smooth in s too
+    take : the shapes of a sub-batch, :func:`~solver.numerics.batch.take`
     """
 
     pointed: np.ndarray
     even: np.ndarray
-
-    def take(self, index):
-        """The shapes of the sub-batch at `index`."""
+    take: Callable
 
     def height(self, r):
         """f at r."""
@@ -71,12 +70,20 @@ class Kind(NamedTuple):
     parameters : name -> :class:`~solver.parameters.Parameter` of its numbers
     of : function of these numbers, arrays (B,) by their names, that makes the :class:`Shape`
     words : what it is, for messages and tables
+    round : whether its profile is that of a ball of radius R, or of one near its axis; R is the mere unit of length of
+        all others
     """
 
     name: str
     parameters: Mapping[str, Parameter]
     of: Callable[..., Shape]
     words: str
+    round: bool = False
+
+
+def has_radius(shape):
+    """(B,) bool: the contact radius is that of the punch whatever the load, as under a flat one."""
+    return shape.least() == shape.most()
 
 
 def column(values):

@@ -4,12 +4,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from .shape import Kind, column, no_kinks
 
 #: Below this, artanh(a) - a is taken from its series, Σ a^(2j + 1)/(2j + 1) from j = 1, of so many terms.
 _SERIES, _TERMS = 0.3, 16
 
 
+@batch.of_cases
 class Sphere(NamedTuple):
     """The :class:`~.shape.Shape` of balls, one for each entry of `ones` (B,)."""
 
@@ -22,9 +24,6 @@ class Sphere(NamedTuple):
     @property
     def even(self):
         return self.ones > 0
-
-    def take(self, index):
-        return Sphere(self.ones[index])
 
     def height(self, r):
         return r**2 / (1 + _side(r))
@@ -70,4 +69,4 @@ def _series(a):
     return a * total
 
 
-KIND = Kind("sphere", {}, lambda size: Sphere(np.ones(size)), "a ball of radius R")
+KIND = Kind("sphere", {}, lambda size: Sphere(np.ones(size)), "a ball of radius R", round=True)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import batch
 from ..numerics.profiles import is_number
 from ..numerics.userfile import content
 from ..parameters import Parameter
@@ -48,6 +49,7 @@ class Rows(NamedTuple):
 TABLES: dict[str, Rows] = {}
 
 
+@batch.of_cases
 class Table(NamedTuple):
     """The :class:`~.shape.Shape` of one table, whose lengths are in `unit` (B,)."""
 
@@ -61,9 +63,6 @@ class Table(NamedTuple):
     @property
     def even(self):
         return self.unit < 0
-
-    def take(self, index):
-        return Table(self.rows, self.unit[index])
 
     def height(self, r):
         r = r / column(self.unit)

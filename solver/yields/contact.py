@@ -2,11 +2,12 @@
 
 import numpy as np
 
+from ..bases import is_bare
 from ..fields.contact import are_infinite, bodies_of, have_fields, pressures_of
 from ..fields.shaped import corners
+from ..numerics.threads import one_blas_thread
 from ..scaling import dimensionless
 from ..shapes import shaped
-from ..threads import one_blas_thread
 from .extremes import EXTREMES, coarsely, extremes
 from .loaded import Loaded
 
@@ -59,7 +60,7 @@ def _touched(loaded):
 
 def alike(scaled, a, pressure, mu, residual, punch=None):
     """Yield indices of cases that have one coarse grid, and their :class:`~.loaded.Loaded`."""
-    bare = (scaled.base == "half_space") | (punch is not None)
+    bare = is_bare(scaled.base) | (punch is not None)
     h = np.where(bare, 1.0, scaled.h / a)
     n = np.where(bare, 1.0, scaled.n)
     kinds = np.stack([bare, n == 0, np.floor(np.log2(h)), np.floor(np.log2(np.maximum(n, 1.0)))], axis=1)

@@ -5,6 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics.batch import march
+
 #: A step is at most _STEP where the stress is near the strength; farther away the power _SLOWEST of what is missing, at
 #: most _LARGEST: the stress of films and of asperities that have only begun to touch grows like a^4 or less.
 _STEP, _SLOWEST, _LARGEST, _NEAR = 1.1, 0.2, 1.5, 0.7
@@ -74,8 +76,9 @@ def _bracketed(stress, index, start, last):
     """ln of the places before and behind the first crossing, NaN where there is none, and ln of the stress over the
     strength there, (2, b) each; and whether some contact has no solution."""
     places, values = np.full((2, 2, len(index)), np.nan)
-    failed, at, active = np.zeros(len(index), dtype=bool), np.log(start), np.arange(len(index))
-    while len(active):
+    failed, at = np.zeros(len(index), dtype=bool), np.log(start)
+
+    def step(active):
         value = stress(index[active], np.exp(at[active]), True)[0]
         near = np.flatnonzero(value >= 1 - _MISSED)
         if len(near):
@@ -89,7 +92,9 @@ def _bracketed(stress, index, start, last):
         farther = np.clip((_NEAR / np.maximum(value, np.finfo(float).tiny)) ** _SLOWEST, _STEP, _LARGEST)
         done = over | (at[active] >= last[active])
         at[active] = np.minimum(at[active] + np.log(np.where(unknown, _STEP, farther)), last[active])
-        active = active[~done]
+        return done
+
+    march(step, np.arange(len(index)))
     return places, values, failed
 
 
@@ -97,10 +102,9 @@ def _searched(made, stress, index, places, values):
     """Put the crossings between two places into `made`: by false position, where the value at an end that stays is
     halved."""
     (below, above), (left, right) = places, values
-    active, stays = np.arange(len(index)), np.zeros(len(index))
-    for _ in range(_MOST):
-        if not len(active):
-            break
+    stays = np.zeros(len(index))
+
+    def step(active):
         at = (below * right - above * left)[active] / (right - left)[active]
         at = np.where(np.isfinite(at), np.clip(at, below[active], above[active]), (below + above)[active] / 2)
         value, r, z, solution = stress(index[active], np.exp(at), False)
@@ -117,5 +121,6 @@ def _searched(made, stress, index, places, values):
         some = active[~over]
         right[some] = np.where(stays[some] < 0, right[some] / 2, right[some])
         below[some], left[some], stays[some] = at[~over], np.nan_to_num(f[~over], nan=-1.0), -1
-        active = active[~done]
-    made.unsolved[index[active]] = True
+        return done
+
+    made.unsolved[index[march(step, np.arange(len(index)), most=_MOST)]] = True

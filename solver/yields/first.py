@@ -8,12 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..bases import is_bare
 from ..kernels.two_layers import layer_modulus
+from ..shapes import ROUND
 from ..solve import solve
 from . import spots
 from .contact import of_contacts
 from .crossing import NUMBERS, first_crossing
-from .way import NARROWEST, ROUND, WIDEST, way_of
+from .reach import NARROWEST, WIDEST, reach_of
 
 #: No body yields where (a/R) E*/strength is below _NEVER, E* the larger of layer and body; sliding adds so much.
 _NEVER, _BY_FRICTION = 0.3, 4.0
@@ -41,11 +43,11 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slope
     if body == "asperities":
         problem = problem.but(micro=np.where(problem.micro == "elastic_plastic", "disc_cell", problem.micro))
     at_radius = replace(problem, control="a", value=problem.R)
-    left = strength - np.where(problem.base == "half_space", 0.0, np.abs(residual))
-    way = way_of(problem, left / problem.E2, mu, _touched(problem, body, punch))
+    left = strength - np.where(is_bare(problem.base), 0.0, np.abs(residual))
+    reach = reach_of(problem, left / problem.E2, mu, _touched(problem, body, punch))
 
     def stress(index, at, coarse):
-        part = replace(at_radius.take(index), value=(way.flat[index] + at) * problem.R[index])
+        part = replace(at_radius.take(index), value=(reach.flat[index] + at) * problem.R[index])
         solution = solve(part)
         if body == "asperities":
             value, r, z = spots.of_contacts(part, solution, mu, residual[index])
@@ -55,19 +57,19 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slope
         return value / strength[index], r, z, solution
 
     start, round_ = _start(problem, body, left / problem.E2, mu), np.isin(problem.shape, ROUND)
-    start = np.where(round_, np.maximum(start, NARROWEST), np.where(way.sharp, np.nan, way.start))
-    made = first_crossing(stress, np.where(left > 0, start, np.nan), np.where(round_, WIDEST, way.last), slopes)
+    start = np.where(round_, np.maximum(start, NARROWEST), np.where(reach.sharp, np.nan, reach.start))
+    made = first_crossing(stress, np.where(left > 0, start, np.nan), np.where(round_, WIDEST, reach.last), slopes)
     # the residual stress alone is as large as the strength, or there is a tip or corner below which it is infinite
-    rest = (left <= 0) | way.sharp & (left > 0)
+    rest = (left <= 0) | reach.sharp & (left > 0)
     made.crossed[rest], made.at[rest] = True, 0.0
     for number in NUMBERS:
-        made.numbers[number][rest] = way.flat[rest] * problem.R[rest] if number == "a" else 0.0
+        made.numbers[number][rest] = reach.flat[rest] * problem.R[rest] if number == "a" else 0.0
     return made
 
 
 def _touched(problem, body, punch):
     """(B,) bool: the punch touches the body, which is not incompressible; or it is the punch itself."""
-    bare = problem.base == "half_space"
+    bare = is_bare(problem.base)
     if body == "punch":
         return punch < 0.5
     return np.where(bare, (body == "body") & (problem.nu2 < 0.5), (body == "layer") & (problem.nu1 < 0.5))
@@ -75,7 +77,7 @@ def _touched(problem, body, punch):
 
 def _start(problem, body, strength, mu):
     """A radius over R below which nothing yields."""
-    n = np.where(problem.base == "half_space", 1.0, problem.n)
+    n = np.where(is_bare(problem.base), 1.0, problem.n)
     if body == "asperities":
         least = _NO_SPOT * strength / layer_modulus(n) * np.sqrt(problem.Ra / problem.R)
         soft = np.where(n > 0, np.minimum(n, 1.0), 0.1)

@@ -8,10 +8,12 @@ from ..fields import normal, sliding
 from ..fields.field import integrals
 from ..fields.pressure import Pressure
 from ..kernels.two_layers import TwoLayers
+from ..numerics import batch
 
 STRESSES = ("sr", "st", "sz", "trz")
 
 
+@batch.of_cases
 class Loaded(NamedTuple):
     """Cases of one mesh, one octave of h, and all with a layer or all without.
 
@@ -35,12 +37,6 @@ class Loaded(NamedTuple):
     def signs(self):
         """Of x in the plane y = 0, where sliding tells ahead from behind."""
         return (1.0, -1.0) if self.mu > 0 else (1.0,)
-
-    def take(self, index):
-        pressure = self.pressure.take(index)
-        return self._replace(
-            layers=self.layers.take(index), h=self.h[index], pressure=pressure, residual=self.residual[index]
-        )
 
     def stresses(self, r, z, body, roughly=False):
         """sr, st, sz, trz (4, B, S, Z, R), for each sign of x, at radii r (R,) and depths z (B, Z) or (Z,) in a of the

@@ -3,14 +3,15 @@ as tensors on the axis of each spot (docs/stresses.md, Asperities)."""
 
 import numpy as np
 
+from ..bases import is_bare
 from ..fields.contact import have_fields, pressures_of
 from ..fields.invariants import mises
 from ..kernels.two_layers import layer_modulus
 from ..numerics.quadrature import gauss_legendre
+from ..numerics.threads import one_blas_thread
 from ..scaling import dimensionless
 from ..solve import solve
 from ..status import Status
-from ..threads import one_blas_thread
 from .asperities import POINTS, hertz_part
 from .below import felt_spots
 from .below.felt_cells import felt_cells
@@ -82,7 +83,7 @@ def _on_half_space(loaded, scaled, a, at_radii):
 def _of_spots(scaled, at_radii):
     """b/B̄ and Hertz's part of the largest pressure of the spots at :data:`_RADII`, (B, R) each; NaN where no spot is
     known."""
-    E = np.where(scaled.base == "half_space", 1.0, layer_modulus(scaled.n)) / (1 + scaled.m)
+    E = np.where(is_bare(scaled.base), 1.0, layer_modulus(scaled.n)) / (1 + scaled.m)
     c = np.where(np.isin(scaled.micro, _CELLS)[:, None], np.maximum(np.sqrt(at_radii.lam), _LEAST), np.nan)
     p0s = 2 * E[:, None] * c / (np.pi * np.sqrt(np.pi * scaled.Nbar) * scaled.Ra)[:, None]
     central = hertz_part(at_radii.p_max, at_radii.p0, E, scaled.Nbar, scaled.Ra)

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from solver import Problem, Solution, Status, solve
-from solver.contact.results import difference
+from solver.rough.results import difference
 from study.figures import registry
 
 from ..paper import paper_error

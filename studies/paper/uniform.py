@@ -11,8 +11,8 @@ import numpy as np
 from scipy.special import ellipkm1
 
 from solver import Problem, Status
+from solver.numerics.threads import one_blas_thread
 from solver.scaling import as_cases, dimensionless
-from solver.threads import one_blas_thread
 
 LIMIT, LIMIT_RELAXED = 200, 40
 """Most approximations at one radius: LIMIT, or LIMIT_RELAXED (1 + k) if that is more, since relaxation slows them by

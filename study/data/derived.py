@@ -12,6 +12,7 @@ from inspect import cleandoc
 import numpy as np
 
 from solver import Model, Problem
+from solver.bases import is_bare
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS, identity, name_in
 from solver.problem import feels
@@ -166,7 +167,7 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
             continue
         numbers = {name: dataset.get(name, np.nan) for name in law.parameters}
         arguments = [without_unit(value, VOCABULARY[name].powers, unit, R) for name, value in numbers.items()]
-        nu = xr.where(dataset["base"] == "half_space", dataset.get("nu2", np.nan), dataset.get("nu1", np.nan))
+        nu = xr.where(is_bare(dataset["base"]), dataset.get("nu2", np.nan), dataset.get("nu1", np.nan))
         arguments = [pressures / unit, E1, *arguments, *[nu] * law.poisson]
         at_spots = xr.apply_ufunc(_largest(law), *arguments, dask="parallelized", output_dtypes=[float])
         peaks = xr.where(dataset["micro"] == law.name, at_spots, peaks)
@@ -253,7 +254,7 @@ def _profile(dataset: xr.Dataset, name: str) -> xr.DataArray:
 
 def _surface_modulus(dataset: xr.Dataset):
     """The reduced modulus of what the punch touches, in the unit of moduli."""
-    return xr.where(dataset["base"] == "half_space", 1.0, layer_modulus(dataset.get("n", np.nan)))
+    return xr.where(is_bare(dataset["base"]), 1.0, layer_modulus(dataset.get("n", np.nan)))
 
 
 def _rough_model(used: xr.DataArray) -> xr.DataArray:

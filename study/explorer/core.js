@@ -352,7 +352,7 @@ const Core = (() => {
 
   const sparse = (c, g) => (c.rough ? (g / (Math.PI / 2) ** (2 / 3)) ** 1.5 : Infinity);
 
-  /* ---- the contact; solver/contact ---- */
+  /* ---- the contact; solver/rough ---- */
 
   /** A model from parameters as in docs/model.md: control ("P", "a", "D"), value, layered, h, n, m, nu1, nu2, bonded,
       rough, Nbar, Ra. */
@@ -473,7 +473,7 @@ const Core = (() => {
     return found && evaluate(c, found.y, eta, mesh);
   }
 
-  /** A search for the radius where Newton's method fails, by false position; solver/contact/driver.py. */
+  /** A search for the radius where Newton's method fails, by false position; solver/rough/newton.py. */
   function byRadius(c, mesh) {
     let low = null, high = null, eta = Math.log(guessRadius(c));
     for (let count = 0; count < 60; count++) {

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from solver import Problem
-from solver.estimate import estimate
-from solver.parameters import one_of
+from solver.bases import may_be_layered
+from solver.models.estimate import estimate
 
 from ..data.dataset import validity_of_rows
 from ..inputs.definition import Definition
@@ -36,7 +36,7 @@ def far_outside(definition: Definition) -> list[str]:
     judged.
     """
     grid = definition.grid
-    slow = one_of(along(grid, "base"), ("layered", "auto")) & have("rough", along(grid, "micro"))
+    slow = may_be_layered(along(grid, "base")) & have("rough", along(grid, "micro"))
     slow = slow & (along(grid, "n") < SOFT)
     if not (definition.scene and slow.any()):
         return []

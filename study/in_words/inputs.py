@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from solver.bases import is_bare
 from solver.laws import LAWS
 
 from ..arrays import xarray_later as xr
@@ -64,7 +65,7 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
         hidden |= {"n", "m", *(name for name in of_lower_layers(contacts.variables) if name.endswith(".n"))}
     hidden |= {"m", "punch", "E_punch", "nu_punch", "Y_punch"} if is_rigid(contacts, "punch") else set()
     hidden |= {"n", "body", "E2", "nu2", "Y2"} if is_rigid(contacts, "base") else set()
-    hidden |= {"layer", "E1", "nu1", "Y1"} if (values("base") == "half_space").all() else set()
+    hidden |= {"layer", "E1", "nu1", "Y1"} if is_bare(values("base")).all() else set()
     hidden |= {"micro"} if np.isin(values("micro"), smooth_laws()).all() else set()
     unknown_law = not np.isin(values("micro"), list(LAWS)).all()
     certain = {ratio for modulus, ratio, _ in bodies_of(contacts.variables).values() if modulus in contacts}
@@ -101,7 +102,7 @@ def is_rigid(contacts: xr.Dataset, body: str) -> bool:
     modulus, ratio = ("E_punch", "m") if body == "punch" else ("E2", "n")
     if modulus in contacts:
         return bool(np.isinf(contacts[modulus]).all())
-    if ratio not in contacts or (ratio == "n" and (contacts["base"] == "half_space").any()):
+    if ratio not in contacts or (ratio == "n" and is_bare(contacts["base"]).any()):
         return False
     return bool((contacts[ratio] == 0).all())
 

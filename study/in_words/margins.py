@@ -8,9 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver import Problem, solve
+from solver.bases import is_bare
 from solver.closed_forms import yield_pressure
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS
+from solver.shapes import ROUND
 from solver.yields import spots
 from solver.yields.below import central_spot
 from solver.yields.below.central_spot import SPOT_EXTREMES
@@ -21,7 +23,6 @@ from ..again import Again, known_strengths, no_stresses, of_all_cases, strengths
 from ..arrays import xarray_later as xr
 from ..data.dataset import flag_words
 from ..inputs.definition import StudyError
-from ..inputs.punch.shapes import ROUND
 from ..inputs.vocabulary import bodies_of
 from ..rules.assumptions import FEW_SPOTS
 from ..rules.yield_bounds import stress_below_one
@@ -157,7 +158,7 @@ def _looked_at(case: xr.Dataset) -> _Looked | str:
         return f"Not known: {reason}."
     if problem.shape[0] not in ROUND:
         return _SHAPE
-    if problem.base[0] != "half_space" and problem.h[0] < _THINNEST * _radius(case, again):
+    if not is_bare(problem.base[0]) and problem.h[0] < _THINNEST * _radius(case, again):
         return _FILM + "."
     at_a = replace(problem, control="a", value=np.array([_radius(case, again)]))
     solution, limits = solve(at_a), _limits(case, again, known)
@@ -198,7 +199,7 @@ def _of_spots(problem: Problem, solution: Any) -> np.ndarray:
 
 def _below(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
     """The modulus that the asperities feel, in series with the punch, and the Poisson ratio below them."""
-    bare = problem.base == "half_space"
+    bare = is_bare(problem.base)
     E = np.where(bare, 1.0, layer_modulus(problem.n)) / (1 + problem.m)
     return E * problem.E2, np.where(bare, problem.nu2, problem.nu1)
 
@@ -244,7 +245,7 @@ def _radius(case: xr.Dataset, again: Again) -> float:
 def _limits(case: xr.Dataset, again: Again, known: dict[str, list]) -> list[_Limit]:
     """The limits of a contact at which something fails."""
     problem, limits = again.problem, []
-    coated, mises, Y = problem.base[0] != "half_space", "largest von Mises stress", "yield strength"
+    coated, mises, Y = not is_bare(problem.base[0]), "largest von Mises stress", "yield strength"
 
     def yields(who: str, stress: str, body: str, needs: str, what: str = mises) -> _Limit:
         value, spread, hard = known[body]

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from solver import Status, solve
+from solver.bases import is_bare
 from solver.laws import LAWS
 from solver.laws.cell.family import MOST, REACH
 from solver.models.cells import last_fraction
@@ -79,7 +80,7 @@ def _angle_of(shape: str) -> str:
 
 def _inwards(case: xr.Dataset, shape: str) -> list[str]:
     """A note on the surface under a cone, which is pulled inwards: Hay, Bolshakov and Pharr (1999)."""
-    nu = case.get("nu2" if case["base"] == "half_space" else "nu1")
+    nu = case.get("nu2" if is_bare(case["base"]) else "nu1")
     if shape not in _CONES or nu is None:
         return []
     cot = _CONES[shape] or float(1 / np.tan(np.radians(case["half_angle"])))
@@ -87,7 +88,7 @@ def _inwards(case: xr.Dataset, shape: str) -> list[str]:
     gamma = np.pi * (np.pi / 4 + 0.1548 * c) / (np.pi / 2 - 0.8312 * c) ** 2
     if gamma - 1 < _SMALL:
         return []
-    where = "" if case["base"] == "half_space" else " on a half-space of the layer's material"
+    where = "" if is_bare(case["base"]) else " on a half-space of the layer's material"
     return [
         f"Note: a rigid cone pulls the surface inwards, which is left out here. At one depth the load is then about "
         f"{gamma:.3g} times as large{where} (Hay, Bolshakov and Pharr 1999; docs/shapes.md)."

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from solver import Status
+from solver.bases import is_bare
 
 from ..arrays import xarray_later as xr
 from ..data.dataset import flag_words
@@ -94,7 +95,7 @@ def assumed(case: xr.Dataset) -> list[str]:
     """A sentence for each default that stands for an input which was not given, and may be far from it."""
     v = case.variables
     taken = {name for name in v if v[name].attrs.get("comment") == ASSUMED}
-    found = unit_of_length(case) + [SLIDES] * bool("bonding" in taken and v["base"] != "half_space")
+    found = unit_of_length(case) + [SLIDES] * bool("bonding" in taken and not is_bare(v["base"].item()))
     for modulus, ratio, _ in bodies_of(v).values():
         if ratio in taken and modulus in v and v[modulus].attrs.get("units") == "Pa" and v[modulus] < RUBBER:
             found.append(f"{ratio} = {v[ratio].item():g}. Of rubbers and gels, as soft as this, it is nearly 0.5.")

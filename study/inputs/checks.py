@@ -6,8 +6,9 @@ from functools import partial
 import numpy as np
 
 from solver import Problem
+from solver.bases import STACKS
 from solver.laws import LAWS, untried
-from solver.parameters import STACKED, one_of
+from solver.parameters import one_of
 from solver.scaling import dimensionless, law_of
 
 from ..terminal import shown
@@ -43,7 +44,7 @@ def missing_everywhere(names: Collection[str], texts_of: Callable[[str], Iterabl
     messages = []
     if any(text in error for error in errors for text in ("is not a parameter", "is not a section", "layers")):
         return []
-    stacked = [word for word in STACKED[1] if word in texts_of("base")]
+    stacked = [word for word in STACKS if word in texts_of("base")]
     if stacked and "h" not in names and not any(name.startswith("layers.") and name.endswith(".h") for name in names):
         return [f"layers are missing: base = {shown(stacked[0])} needs them"]
     neither = not {*FITTED} & {*names}  # then both are fitted, and one message is about both

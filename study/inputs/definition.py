@@ -1,17 +1,18 @@
 """Study files: TOML text -> a checked, frozen Definition with the digest of what determines its numbers."""
 
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
+
+from solver.bases import may_be_layered
 
 from ..specimen.foreign import plain
 from ..terminal import counted, shown
 from .grid import Grid, along
 from .punch.asperities import many_bodies
 from .request import MOST_MESSAGES
-from .vocabulary import among, finite, names
+from .vocabulary import finite, names
 
 POINTS = 33  # of a profile, unless the study says it
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a mistake, so `run` wants --yes
@@ -144,7 +145,7 @@ def profile_points(x, errors: list[str]) -> np.ndarray:
 def usual_block(grid: Grid) -> int:
     """Number of cases in a block, unless the study says it. The slowest kind of case in the grid decides."""
     n, rtol, nodes = (along(grid, name) for name in ("n", "rtol", "nodes"))
-    layered = among(("base", ("layered", "auto")), partial(along, grid)).any()
+    layered = np.any(may_be_layered(along(grid, "base")))
     approximated = (along(grid, "scheme") == "picard").any()
     if layered and (approximated or (n > _STIFF).any() or (rtol < _FINE).any()):
         return SLOWEST

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from solver.bases import is_thin_layer
 from solver.shapes import PARABOLOID
 
 from ..inputs.vocabulary import ROWS
@@ -91,7 +92,7 @@ def spot_not_small_against_h(v, times):
 @rule(8, r"layer not soft, $n \geq 1$", "0.93")
 def n_not_below_one(v, times):
     """The layer is not softer than the body (n >= 1), which the paper's thin layer assumes. Take base = "layered"."""
-    return (v["base"] == "thin_layer") & (v["n"] >= times)
+    return is_thin_layer(v["base"]) & (v["n"] >= times)
 
 
 @rule(16, rf"spots merge, $\lambda(0) > {MERGING:g}$", "0.83")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from solver.bases import is_bare
 from solver.parameters import one_of
 
 from ..arrays import xarray_later as xr
@@ -65,7 +66,7 @@ def metals_yield(v):
     v |= {name: v[name].where(np.isfinite(v[name])) for name in ("p_peak", "p_ring") if name in v}
     moduli = {body: as_xarray(E) for body, E in moduli.items()}
     moduli = {body: E.where((E >= STIFF) & np.isfinite(E)) for body, E in moduli.items()}
-    bare = v["base"] == "half_space"
+    bare = is_bare(v["base"])
     under = v["p_peak"].where(bare, v["p_ring"].where(v["a"] > v["h"]) if "h" in v else np.nan)
     pressures = {"punch": v["p_peak"], "layer": v["p_peak"].where(~bare), "body": under}
     shares = {body: (pressures[body] / moduli.get(body, xr.Variable((), np.nan))).fillna(0) for body in _PRESSED}

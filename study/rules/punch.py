@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from solver.bases import is_bare
 from solver.shapes import PARABOLOID
 
 from .rule import rule
@@ -39,9 +40,9 @@ def not_jkr(v, times):
     than {ZONE:g} of the contact radius or of the layer. adhesion = "maugis" has it in the equations."""
     if "w_adhesion" not in v:
         return np.False_
-    E = np.where(v["base"] == "half_space", 1.0, v["E1*"]) / (1 + v["m"])
+    E = np.where(is_bare(v["base"]), 1.0, v["E1*"]) / (1 + v["m"])
     zone = np.pi * E * v["w_adhesion"] / (4 * stress_of_adhesion(v) ** 2)
-    size = np.where(v["base"] == "half_space", v["a"], np.fmin(v["a"], v["h"]))
+    size = np.where(is_bare(v["base"]), v["a"], np.fmin(v["a"], v["h"]))
     return (v["adhesion"] == "jkr") & (v["w_adhesion"] > 0) & (zone > times * ZONE * size)
 
 

@@ -8,11 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solver.bases import is_bare
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS
 from solver.parameters import one_of
 from solver.problem import can_feel
-from solver.shapes import PARABOLOID, SHAPES
+from solver.shapes import SHAPES
 
 from ..arrays import xarray_later as xr
 from ..arrays.labelled import Labelled, along
@@ -121,15 +122,15 @@ def numbers(variables: Mapping) -> Mapping:
     )
     v |= {"slope": slope(v), "pressure": _pressure(v)}
     v |= {"on_half_space": ~can_feel(v["base"], v["micro"]) | (v.get("asperities_on", "auto") == "half_space")}
-    v |= {"layered": v["base"] != "half_space", "rough": have("rough", v["micro"]), "E1*": layer_modulus(v["n"])}
+    v |= {"layered": ~is_bare(v["base"]), "rough": have("rough", v["micro"]), "E1*": layer_modulus(v["n"])}
     return v | {"spots": spots(v) * _touching(v), "b": spot_radius(v)}
 
 
 def slope(v):
-    """f'(a) of the shapes of the punches: a/R of paraboloids; NaN of a shape that is not registered."""
+    """f'(a) of the shapes of the punches; NaN of a shape that is not registered."""
     if "shape" not in v:
         return v["a"]
-    slopes = np.where(v["shape"] == PARABOLOID, v["a"], np.nan) * np.ones(np.shape(v["shape"]))
+    slopes = np.full(np.broadcast(v["a"], v["shape"]).shape, np.nan)
     for kind in SHAPES.values():
         if np.any(v["shape"] == kind.name):
             arrays = np.broadcast_arrays(*(v[name] for name in ("a", *kind.parameters)), slopes)

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solver.bases import is_stack
 from solver.closed_forms import yield_pressure
-from solver.parameters import STACKED, one_of
 from solver.shapes import PARABOLOID
 
 from ..inputs.vocabulary import VOCABULARY
@@ -124,7 +124,7 @@ def _known(v) -> np.ndarray:
     """Where bounds are known: balls that do not stick, not on stacks."""
     ball = v["shape"] == PARABOLOID if "shape" in v else True
     free = ~(v["w_adhesion"] > 0) if "w_adhesion" in v else True
-    return ball & free & ~one_of(v["base"], STACKED[1])
+    return ball & free & ~is_stack(v["base"])
 
 
 def _where(known, bounds: Bounds) -> Bounds:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solver.bases import is_thin_layer, may_be_layered
 from solver.numerics.ladder import LADDER, STACK
 
 from ..data.dataset import not_run
@@ -66,7 +67,7 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     memory += (AHEAD + WORKING) * count * block
     base, judged = (definition.grid.values[name][1] for name in ("base", "model_check"))
     # whether some case may need the operator of the exact layer: as its base, or for the error of the thin layer
-    exact = np.isin(base, ("layered", "auto")).any() or (base == "thin_layer").any() and (judged == "first_order").any()
+    exact = may_be_layered(base).any() or is_thin_layer(base).any() and (judged == "first_order").any()
     nodes = max(LADDER[-1], int(definition.grid.values["nodes"][1].max()))
     matrices = nodes**2 * min(definition.block, cases), nodes * (3 * STACK if exact else STACK)
     memory += count * (SOLVING + 8 * MATRICES * min(matrices)) + (processes + (here or threads)) * TABLES * exact

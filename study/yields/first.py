@@ -5,9 +5,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from solver.bases import is_bare
+from solver.shapes import ROUND
 from solver.yields.crossing import NUMBERS, Crossing
 from solver.yields.first import first_yield as crossing_of
-from solver.yields.way import ROUND, STEEPEST
+from solver.yields.reach import STEEPEST
 
 from ..again import Again, of_all_cases, strengths
 from ..fields import carried, friction, refuse_both, residual_stress, units_of
@@ -116,7 +118,7 @@ def first_yield(
 
 def _there(problem: Any, body: str) -> np.ndarray:
     """Which cases have such a body, and it is elastic."""
-    bare = problem.base == "half_space"
+    bare = is_bare(problem.base)
     rough = np.isfinite(problem.Nbar) & (problem.micro != "smooth")
     return {"layer": ~bare, "body": bare | (problem.n > 0), "asperities": rough, "punch": problem.m > 0}[body]
 

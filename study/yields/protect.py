@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from solver.bases import is_bare
 from solver.yields.protect import protection
 
 from ..again import Again, strengths
@@ -56,7 +57,7 @@ def h_protect(
         again = _under_its_load(contact, again)
     else:
         contact, again = _of_inputs(P, parameters, given)
-    if np.any(again.problem.base == "half_space"):
+    if np.any(is_bare(again.problem.base)):
         raise StudyError(['h_protect: base = "half_space" has no layer that could protect it'])
     known = strengths(contact, again, own_materials(parameters))["body"]
     if np.isnan(known[again.problem.n > 0]).any():
@@ -85,7 +86,7 @@ def _of_inputs(P: Any, parameters: dict, strengths: dict) -> tuple[xr.Dataset, A
         raise StudyError(["h_protect: give the load P, or a contact, which is a dataset of study.solve"])
     refuse("h_protect", parameters, ("h",), "it is what is looked for")
     refuse("h_protect", parameters, ("a", "D", "cases"), "the load P is given")
-    if np.any(np.asarray(parameters.get("base", "layered")) == "half_space"):
+    if np.any(is_bare(np.asarray(parameters.get("base", "layered")))):
         raise StudyError(['h_protect: base = "half_space" has no layer that could protect it'])
     return contacts("h_protect", parameters | {"P": P} | strengths, "h", 0.01)
 

@@ -12,13 +12,13 @@ from solver_cases import JUDGED, MAIN, difference, layer_of
 from solver import Problem, Status, solve
 from solver.body import film, tables, wave_rule
 from solver.body.wave_rule import CUT, FILM
-from solver.contact.driver import solve_on
-from solver.contact.equation import evaluate
-from solver.contact.start import first_guess
 from solver.kernels.closed_form import decaying_part
 from solver.kernels.two_layers import SAMPLER
 from solver.models.thin_layer_error import edge_shift
 from solver.numerics.mesh import mesh_of, panel_mesh
+from solver.rough.equation import evaluate
+from solver.rough.newton import solve_on
+from solver.rough.start import first_guess
 from solver.scaling import as_cases, dimensionless
 
 #: Rough contacts on films, by the whole quadrature in k: make_film_reference.py.

@@ -10,6 +10,7 @@ from solver.body import tables
 from solver.body.wave_rule import STIFFEST, few, quadrature
 from solver.kernels.closed_form import decaying_part
 from solver.kernels.two_layers import SAMPLER
+from solver.numerics import batch
 from solver.numerics.mesh import mesh_of
 from solver.numerics.quadrature import gauss_legendre
 
@@ -84,7 +85,7 @@ def test_a_part_of_an_operator_and_the_whole_of_its_parts():
     layer, order = layers(10 ** random.uniform(-4, 1, 30), 3), random.permutation(30)
     whole, places = layer.at(np.ones(30), mesh), [np.sort(order[:4]), np.sort(order[4:])]
     parts, q = [whole.take(place) for place in places], random.random((30, 8))
-    alone, again = layer.take(places[0]).at(np.ones(4), mesh), whole.join(parts, places)
+    alone, again = layer.take(places[0]).at(np.ones(4), mesh), batch.join(parts, places)
     assert_allclose(parts[0].K, alone.K, rtol=0, atol=1e-14 * np.abs(alone.K).max())
     for found, expected, own in ((parts[0], alone, q[:4]), (again, whole, q)):
         half_space = own @ mesh.K.T

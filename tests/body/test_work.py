@@ -8,9 +8,9 @@ from solver_cases import layer_of
 from solver import Problem, Status, solve
 from solver.body import film, hankel, tables
 from solver.body.wave_rule import CUT, FILM, quadrature
-from solver.contact.start import smooth_start
 from solver.numerics.kept import Kept
 from solver.numerics.mesh import mesh_of, panel_mesh
+from solver.rough.start import smooth_start
 from solver.scaling import as_cases
 
 #: Panels towards the edge, as a film asks for.

@@ -10,10 +10,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 from solver import Problem
 from solver.compiled import cells, library, newton
 from solver.compiled.library import available
-from solver.contact.equation import Cases
 from solver.kernels.two_layers import TwoLayers
 from solver.laws import LAWS
 from solver.laws.cell import law
+from solver.rough.equation import Cases
 from solver.scaling import as_cases
 
 pytestmark = pytest.mark.skipif(not available(), reason="no compiled core was built here")

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from solver import Problem, Status
 from solver.compiled import newton
 from solver.compiled.library import available
-from solver.contact import adaptive
+from solver.rough import adaptive
 
 pytestmark = pytest.mark.skipif(not available(), reason="no compiled core was built here")
 #: Relative difference of the numbers. Rounding of a stiff plate is n times that of its base, so that its pressures move

@@ -11,8 +11,8 @@ from numpy.testing import assert_allclose
 from solver_cases import MAIN
 
 from solver import Problem, Status, solve
-from solver.contact import picard
 from solver.numerics.mesh import mesh_of
+from solver.rough import picard
 from solver.scaling import as_cases, dimensionless
 from study.studies.evidence.picard_domain import LARGEST, MAPS, SHARES, cycle_size, theory
 from study.studies.paper.uniform import uniform_mesh

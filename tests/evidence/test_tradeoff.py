@@ -10,7 +10,7 @@ import xarray as xr
 from conftest import ROOT
 
 from solver import Problem, solve
-from solver.contact.results import JUDGED
+from solver.rough.results import JUDGED
 from study import open_results
 from study.figures import registry
 from study.figures.figure_results import digest, results

@@ -13,11 +13,12 @@ from solver import Problem, Status, solve
 from solver.body import tables
 from solver.body.hankel import Hankel
 from solver.body.wave_rule import STIFFEST, few, quadrature
-from solver.contact.adaptive import solve_newton
-from solver.contact.equation import Cases
 from solver.kernels.closed_form import layered_kernel
 from solver.laws import LAWS
 from solver.numerics.mesh import mesh_of
+from solver.rough.adaptive import solve_newton
+from solver.rough.equation import Cases
+from solver.shapes.paraboloid import Paraboloid
 
 REFERENCES = Path(__file__).parents[1] / "references"
 
@@ -43,7 +44,8 @@ def stack_of(row, size=1):
 
 def solved(kernel, h, control, value, rtol=1e-9, sampler=None):
     body = Hankel(kernel._replace(sampler=sampler), h, 0 * h)
-    case = Cases(control, LAWS["smooth"].bind(body.E), body, np.asarray(value, float))
+    punch = Paraboloid(np.full(np.shape(value), 2.0))
+    case = Cases(control, LAWS["smooth"].bind(body.E), body, np.asarray(value, float), punch)
     with np.errstate(all="ignore"):  # as in solver.solve: what goes wrong is a status
         return solve_newton(case, np.full(len(h), rtol), np.zeros(len(h), int), 0, np.array([0.0, 0.5]))
 

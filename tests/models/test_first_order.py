@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from solver import Problem, Status, solve
-from solver.contact.results import difference
 from solver.laws import LAWS
 from solver.models.model_error import NODES, distance
 from solver.numerics.mesh import mesh_of
+from solver.rough.results import difference
 from solver.scaling import as_cases
 
 

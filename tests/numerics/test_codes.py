@@ -8,14 +8,14 @@ import pytest
 from conftest import ROOT
 
 from solver import Model, Status
-from solver.contact.answer import Verdict
 from solver.kernels.transfer import Kind
+from solver.rough.answer import Verdict
 from study.inverse.fits.block import FitStatus
 
 
 def test_all_codes_are_of_this_kind():
     files = [path for folder in ("solver", "study") for path in (ROOT / folder).rglob("*.py")]
-    assert [path.name for path in files if "IntEnum" in path.read_text(encoding="utf-8")] == ["codes.py"]
+    assert [path.name for path in files if "IntEnum" in path.read_text(encoding="utf-8")] == ["status.py"]
 
 
 @pytest.mark.parametrize("kind", [Status, Model, Verdict, Kind, FitStatus], ids=lambda kind: kind.__name__)

@@ -7,10 +7,9 @@ from scipy.special import beta, ellipe, factorial, hyp2f1
 
 from solver import Problem
 from solver.numerics.mesh import half_space_rows, mesh_of
-from solver.numerics.pieces import pieces
-from solver.numerics.quadrature import gauss_legendre, lagrange, log_rule, radau_nodes
-from solver.punches.paraboloid import HERTZ
+from solver.numerics.quadrature import gauss_legendre, lagrange, log_rule, pieces, radau_nodes
 from solver.scaling import as_cases, dimensionless
+from solver.shapes.paraboloid import HERTZ
 
 #: Points in s = sqrt(1 - x²), from the edge to the centre.
 S = np.concatenate([[0.0, 1e-12, 1e-6, 1e-3], np.linspace(0.05, 0.95, 19), [1 - 1e-3, 1 - 1e-6, 1.0]])

@@ -25,9 +25,9 @@ OURS = {"roughcoat", "solver", "study", "studies"}
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
     "solver": (
-        *("threads", "closed_forms", "numerics", "status", "parameters", "layers", "shapes", "punches", "kernels"),
-        *("laws", "body", "problem", "solution", "contact", "compiled", "scaling", "estimate"),
-        *("flat", "schemes", "smooth_contact", "models", "solve", "sensitivity", "fields", "yields"),
+        *("closed_forms", "numerics", "status", "bases", "parameters", "layers", "shapes", "kernels"),
+        *("laws", "body", "problem", "solution", "rough", "compiled", "scaling"),
+        *("schemes", "smooth", "ways", "models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (
         *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives"),
@@ -36,7 +36,7 @@ ROOMS = {
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.
-APART = {"body": {"laws"}, "kernels": {"laws", "punches"}}
+APART = {"body": {"laws"}, "kernels": {"laws", "shapes"}}
 
 
 def name(path: Path) -> str:
@@ -289,7 +289,7 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
 #: Files with locks -> why a forked process does not wait for one that a thread held which it does not have.
 LOCKS = {
     "solver/numerics/kept.py": "the fork waits until they are free",
-    "solver/threads.py": "renewed",
+    "solver/numerics/threads.py": "renewed",
     "study/files/access.py": "the fork waits until it is free",
     "study/work/engine.py": "renewed",
     "study/work/processes.py": "of processes, which a fork starts anew",

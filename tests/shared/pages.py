@@ -54,7 +54,7 @@ def check_examples(page: str, folder: Path, most: int | None = None) -> None:
 
 
 #: The share of itself by which a printed number may differ. The solver's numbers on other processors differ by 1e-9 at
-#: most, the SAME of tests/contact/errors/test_golden_numbers.py. That moves the last of six digits in one number of a
+#: most, the SAME of tests/rough/errors/test_golden_numbers.py. That moves the last of six digits in one number of a
 #: thousand, and that of three digits in one of a million. One in the last of three digits is more than 1e-3, and so a
 #: wrong page. Under four kernels of OpenBLAS (`make kernels`) all pages are the same to the last digit.
 _SHARE = 1e-3

@@ -13,10 +13,10 @@ from benchmark_cases import by_turns, on_path
 from benchmark_work import load_axis
 
 from solver import solve
-from solver.contact import adaptive
-from solver.contact.equation import State, evaluate
-from solver.contact.start import first_guess
 from solver.numerics.mesh import mesh_of
+from solver.rough import adaptive
+from solver.rough.equation import State, evaluate
+from solver.rough.start import first_guess
 from solver.scaling import as_cases, dimensionless
 
 SIZES = (1e-3, 1e-4, 1e-6)

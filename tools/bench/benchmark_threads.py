@@ -4,8 +4,8 @@
     python tools/bench/benchmark_threads.py core
 
 Each row is a process of its own, whose BLAS is told by OPENBLAS_NUM_THREADS to have so many threads. "free" takes the
-limit of the solver away (solver/threads.py), "limited" is the solver as it is. A number above that of the processors
-stands for a machine with more of them.
+limit of the solver away (solver/numerics/threads.py), "limited" is the solver as it is. A number above that of the
+processors stands for a machine with more of them.
 """
 
 import json

@@ -16,7 +16,7 @@ import study
 from solver import Problem, solve
 from solver.body import hankel
 from solver.compiled.library import available
-from solver.contact import newton, start
+from solver.rough import newton, start
 
 ROUGH = {"Nbar": 250_000.0, "Ra": 0.004}
 #: The core with the widest vectors, if there is one, and numpy.

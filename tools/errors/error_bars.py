@@ -1,4 +1,4 @@
-"""What the factors in solver/contact/error.py are worth: `python tools/errors/error_bars.py [SIZE]`, a minute.
+"""What the factors in solver/rough/error.py are worth: `python tools/errors/error_bars.py [SIZE]`, a minute.
 
 SIZE random cases (2,000 by default) of each law on each base, far beyond any scene, are solved on few nodes and on 96,
 which are the truth. Of few cases none may be left to judge; shares of none are nan. A line for each number of nodes:
@@ -20,13 +20,13 @@ sys.path.append(str(Path(__file__).parents[2] / "tests/shared"))  # pytest has i
 from solver_cases import EXTREMES, ROUGH_KINDS, random_cases  # noqa: E402
 
 from solver import Problem
-from solver.contact.driver import solve_on
-from solver.contact.equation import evaluate
-from solver.contact.error import _BLIND, _RISEN, completed, estimate, margin, refine
-from solver.contact.results import difference, quantities
-from solver.contact.start import first_guess
 from solver.numerics.ladder import MARGIN
 from solver.numerics.mesh import mesh_of
+from solver.rough.equation import evaluate
+from solver.rough.error import _BLIND, _RISEN, completed, estimate, margin, refine
+from solver.rough.newton import solve_on
+from solver.rough.results import difference, quantities
+from solver.rough.start import first_guess
 from solver.scaling import as_cases, dimensionless
 
 NODES = (6, 12, 22, 32)

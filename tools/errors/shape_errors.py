@@ -23,8 +23,8 @@ import numpy as np
 
 from solver import Problem, Status, solve
 from solver.body import wave_rule
-from solver.smooth_contact import contact, equation, products
-from solver.smooth_contact.adhesion import maugis
+from solver.smooth import contact, equation, products
+from solver.smooth.adhesion import maugis
 
 SHAPES = (
     "paraboloid", "sphere", "cone", "power", "frustum", "blunt_cone", "ball_cone", "rounded_flat", "table", "flat",

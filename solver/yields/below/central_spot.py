@@ -9,8 +9,8 @@ import numpy as np
 from ...fields.contact import have_fields, pressures_of
 from ...fields.invariants import mises
 from ...laws.cell.sums import LATTICES
+from ...numerics.threads import one_blas_thread
 from ...scaling import dimensionless
-from ...threads import one_blas_thread
 from ..contact import alike
 from ..extremes import farthest_of
 from ..peaks import chebyshev_nodes, in_patch

@@ -5,6 +5,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from solver.bases import is_bare
+
 from ...again import Again, refuse_without_stresses, strengths
 from ...data.dataset import decode
 from ...fields import extremes, stresses
@@ -56,7 +58,7 @@ def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tu
     contact = one_contact(contact)
     refuse_without_stresses(Again.of(contact, "plot_stresses"), "plot_stresses")
     largest = extremes(contact, mu, sigma_res)
-    bare, rigid = str(contact["base"].values) == "half_space", is_rigid(contact, "base")
+    bare, rigid = is_bare(str(contact["base"].values)), is_rigid(contact, "base")
     h = None if bare else float(contact["h"] / contact["a"])
     r = np.concatenate([-_RADII[:0:-1], _RADII]) if mu > 0 else _RADII
     whole = h is not None and (h <= THICKEST or bool(largest["sr_interface1"] > _BENT * largest["mises1"]))

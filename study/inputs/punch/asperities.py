@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from solver.bases import FELT, is_chosen, is_exact, is_stack, on_springs
 from solver.laws import LAWS
 from solver.laws.own_table import PREFIX
 from solver.parameters import one_of
-from solver.problem import FELT, can_feel, far_apart, feels
+from solver.problem import can_feel, far_apart, feels
 
 from ...terminal import shown
 from ..grid import Grid, along
@@ -17,8 +18,6 @@ from ..vocabulary import cases_with
 
 #: What asperities have pressed on, value of `asperities_used` -> its name.
 USED = ("none", "half_space", "layer")
-#: Bases whose `model_error` is that of the exact layer, though asperities on them do not feel it.
-_THIN = ("thin_layer", "thin_stack")
 
 #: What the law of asperities that feel the body depends on, which takes some 10 ms for each. Where a body and a pitch
 #: have at least so many cases that is little.
@@ -56,8 +55,9 @@ def stand_apart(grid: Grid) -> np.ndarray:
     if not {"h", "Nbar"} <= {*grid.values}:
         return np.False_
     base, micro, check = (along(grid, name) for name in ("base", "micro", "model_check"))
-    exact = one_of(base, ("layered", "stack")) | (base == "auto") & can_feel(base, micro)
-    against = (base == _THIN[1]) | (base == _THIN[0]) & (check == "first_order")
+    exact = is_exact(base) | is_chosen(base) & can_feel(base, micro)
+    # the `model_error` of these is that of the exact layer, though asperities on them do not feel it
+    against = on_springs(base) & (is_stack(base) | (check == "first_order"))
     counts = exact | against & can_feel("layered", micro)
     there = cases_with("Nbar", partial(along, grid)) & cases_with("h", partial(along, grid))
     return counts & there & far_apart(along(grid, "Nbar"), along(grid, "h"))

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from solver import shapes
+from solver.bases import on_springs
 from solver.shapes import table
 
 from ...specimen.quantities import has_unit, quantity
@@ -16,11 +17,8 @@ from ..vocabulary import VOCABULARY, Entry, add_rows, cases_with, of_package
 #: Inputs besides the shape that are words, of which capitals, blanks and hyphens do not matter.
 WORDS = ("tip", "adhesion", "branch")
 #: Bases that take the paraboloid alone, and nothing that sticks.
-THIN = ("thin_layer", "thin_stack")
 #: Angles of the punch: numbers of degrees.
 ANGLES = ("half_angle",)
-#: The shapes whose profile has the radius R in it. R is the unit of length of all others.
-ROUND = (shapes.PARABOLOID, "sphere")
 #: The shapes with a flat end, beyond which a contact reaches.
 WITH_A_FLAT = ("frustum", "rounded_flat")
 #: Inputs with a length of which the first that is given is the unit of length of a shape without a radius.
@@ -100,7 +98,7 @@ def left_out(name: str, sections: Any) -> bool:
 
 def radius_needed(words: Any) -> bool:
     """Whether some case has a shape with a radius."""
-    return bool(np.isin(words, ROUND).any())
+    return bool(np.isin(words, shapes.ROUND).any())
 
 
 def in_metres(words: Any) -> Any:
@@ -115,7 +113,7 @@ def mistakes(grid: Grid, sections: Any, physical: bool) -> list[str]:
     if "shape" not in grid.values:
         return messages
     words = values("shape")
-    if ((words != shapes.PARABOLOID) & np.isin(values("base"), THIN)).any():
+    if ((words != shapes.PARABOLOID) & on_springs(values("base"))).any():
         messages.append('base = "thin_layer" is for shape = "paraboloid": take "layered", or "auto"')
     if np.any(in_metres(words)) and not physical:
         example = 'R = "1 um", E2 = "1 MPa"'

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from solver.bases import on_springs
 from solver.parameters import Parameter, one_of
 
 from ...specimen.quantities import readable
@@ -12,7 +13,6 @@ from ...terminal import shown
 from ..grid import Grid, along
 from ..laws import smooth_laws
 from ..vocabulary import VOCABULARY, finite, names
-from .shapes import THIN
 
 OF_ADHESION = names("adhesion")
 #: Bounds of load and depth under adhesion.
@@ -64,7 +64,7 @@ def mistakes(grid: Grid, sections: Any) -> list[str]:
     messages += [f'{name} is given with adhesion = "dmt", which has no use for it' for name in extra]
     if (dmt & (values("shape") != "paraboloid")).any():
         messages.append(f'adhesion = "dmt" is for shape = "paraboloid", not {_first(values("shape"), "paraboloid")}')
-    if (sticks & one_of(values("base"), THIN)).any():
+    if (sticks & on_springs(values("base"))).any():
         messages.append('base = "thin_layer" does not stick: w_adhesion > 0 needs base = "layered", or "auto"')
     if (maugis & (values("shape") == "flat")).any():
         messages.append('adhesion = "maugis" does not go with shape = "flat", whose edge is held: take "jkr"')

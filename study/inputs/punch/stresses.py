@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solver.parameters import STACKED
+from solver.bases import is_stack
 from solver.shapes import PARABOLOID
 
 from ..grid import Grid, along
@@ -18,7 +18,7 @@ def without_stresses(base, micro, shape=PARABOLOID, w_adhesion=0.0, adhesion="jk
     shape, sticks = np.asarray(shape), np.asarray(w_adhesion) > 0
     rough, flat = ~np.isin(micro, smooth_laws()), shape == "flat"
     reasons = (
-        (np.isin(base, STACKED[1]), "no stresses in stacks of layers yet, but of one layer (base = layered)"),
+        (is_stack(np.asarray(base)), "no stresses in stacks of layers yet, but of one layer (base = layered)"),
         (sticks & (np.asarray(adhesion) != "jkr"), 'no stresses of contacts that stick yet, but by adhesion = "jkr"'),
         (
             rough & (shape != PARABOLOID),

@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from solver.bases import WITH_LAYERS
+
 from ...specimen import materials
 from ...specimen.quantities import Quantity
 from ...terminal import shown
@@ -66,7 +68,7 @@ def of_names(body: str, names: Any) -> list[tuple]:
 def layered(values: dict) -> bool:
     """Whether some case may have a layer; values : as those of a Grid. A word that is no base is refused elsewhere."""
     _, base = values.get("base", ((), VOCABULARY["base"].parameter.default))
-    return bool(np.isin(base, [*{*VOCABULARY["base"].parameter.choices} - {"half_space"}]).any())
+    return bool(np.isin(base, WITH_LAYERS).any())
 
 
 def assumed(names: set[str], values: dict, si_values: dict) -> tuple[str, ...]:

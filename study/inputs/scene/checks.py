@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from solver.bases import is_bare
 from solver.laws.own_table import PREFIX
 from solver.shapes import PARABOLOID
 
@@ -70,7 +71,7 @@ def impossible(scene: Scene) -> list[str]:
     if not np.any(rigid):
         wrong = 'n = 0 is a rigid base: give E2 = "rigid" and E1, the modulus of the layer'
         return messages + [wrong] * bool(np.any(scene.parameters.get("n", values.get("n", 1.0)) == 0))
-    if np.any(rigid & (scene.parameters.get("base", "layered") == "half_space")):
+    if np.any(rigid & (is_bare(scene.parameters.get("base", "layered")))):
         swap = "a rigid body and an elastic ball are the same contact as a rigid ball on a body of the ball's modulus"
         messages.append(f'E2 is rigid and base = "half_space": no layer is there to yield; {swap}')
     if "n" in scene.parameters:

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from solver.bases import is_bare
+
 from ...arrays import xarray_later as xr
 from ..vocabulary import SCENE, VOCABULARY
 from .layers import moduli_of
@@ -36,7 +38,7 @@ def make_dimensionless(scene: Scene) -> None:
     if "E_punch" in values:
         values.setdefault("nu_punch", _POISSON)  # results say which it was
         base = scene.parameters.get("base", "layered")
-        surface = _where(base == "half_space", body, layer)
+        surface = _where(is_bare(base), body, layer)
         scene.parameters["m"] = surface / _reduced(values, "E_punch", "nu_punch")
     for name, value in values.items():
         if name not in SCENE:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy import special
 
-from solver.numerics.codes import Codes
+from solver.status import Codes
 
 from .averages import LONG, Averages, averages_of
 from .curve import MeasuredCurves

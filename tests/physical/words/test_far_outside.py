@@ -11,7 +11,7 @@ from conftest import STUDIES
 import study
 from solver import Problem, laws, solve
 from solver.closed_forms import hertz
-from solver.estimate import estimate
+from solver.models.estimate import estimate
 from study import solving
 from study.data.dataset import model_attributes
 from study.in_words import FarOutside, estimates, far_outside

@@ -1,7 +1,7 @@
 """The four terms of a contact with adhesion: powers of inputs times functions of the radius and of the other inputs.
 
-P = P₀ - pull_P and D = D₀ - pull_D, :mod:`solver.smooth_contact.adhesion.apart`. P₀ and pull_P have the modulus E of
-the touched body as a factor. Under :mod:`~solver.smooth_contact.adhesion.jkr` both pulls go with the root of w/E, and
+P = P₀ - pull_P and D = D₀ - pull_D, :mod:`solver.smooth.adhesion.apart`. P₀ and pull_P have the modulus E of
+the touched body as a factor. Under :mod:`~solver.smooth.adhesion.jkr` both pulls go with the root of w/E, and
 under a paraboloid or a cone lengths act through a/h alone. So w and k_machine are no coordinates of a table, and often
 E, h, R and half_angle are not.
 """
@@ -12,7 +12,7 @@ import numpy as np
 
 from solver import Problem
 from solver.shapes import PARABOLOID
-from solver.smooth_contact.adhesion.apart import apart
+from solver.smooth.adhesion.apart import apart
 
 from ....inputs.scene.scales import with_unit
 from ....inputs.vocabulary import PARAMETERS

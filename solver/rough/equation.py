@@ -1,0 +1,215 @@
+"""The discrete equation of a batch of cases of one micro law on one body: its groups X, Y, Z, residual, derivatives.
+
+With p = p* q(y), A = A* g(y), x = r/a and s = sqrt(1 - x²), Eq. (4) divided by a²/2 is
+
+    X K[q] + Y q + Z g - s² = 0,    X = 8 p*/(π a E),  Y = 2 C p*/a²,  Z = 2 A*/a²        (R = E2* = 1)
+
+at the nodes of the mesh. Under a punch of another shape its drop stands for s² (:mod:`.punch`). The control
+(load, radius or depth) is one more equation. The unknowns are y at the nodes and η = ln a. The body has E, the springs
+C and K (:mod:`..body.operator`); the law has p*, A*, q, g (:mod:`..laws.law`). At the edge of the contact q is 0, as
+polynomials in s are by themselves.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ..body.operator import Body, Operator
+from ..laws import Bound, Curve
+from ..numerics import batch
+from ..numerics.kept import once
+from ..shapes.shape import has_radius
+from .punch import Punch, largest
+
+#: A pressure below this part of the largest counts as none.
+_NOTHING = 1e-16
+#: An iteration has closed (it has found its solution) when the residual is below _CLOSED, or below this part of the
+#: error of the operator, or is the rounding of a soft layer.
+_CLOSED, _OF_OPERATOR = 1e-13, 1e-2
+#: A residual above this is too large for any operator: whether the iteration has closed is then known without the error
+#: of the operator. It is far above what closes an iteration with the worst operator
+#: (tests/rough/extremes/test_extremes.py).
+_OPEN = 1e-5
+#: Rounding of the residual of a soft layer, times its softness. In its operator the terms of the half-space and L - 1
+#: nearly cancel: rounding moves the pressure, and so the load, the more the softer the layer. The residual scatters
+#: from step to step: half are below 0.5 eps, few above 20 eps (tests/rough/test_equation.py).
+_ROUNDING = 20 * np.finfo(float).eps
+#: Rounding of the radius, over its distance from a flat end of the punch: what counts is a - b, and η = ln a. The
+#: residual of a frustum of b = 0.012 scatters by 2.5e-13 where a/(a - b) is 1100, by 1 eps of that.
+_OF_RADIUS = 16 * np.finfo(float).eps
+#: The paper's scheme may leave no pressure in the centre, and 0/0 is no error.
+_TINY = np.finfo(float).tiny
+
+
+@batch.of_cases
+class Cases(NamedTuple):
+    """A batch of B cases of one body, micro law and punch in units R = 1, E2* = 1: the `control` "P", "a" or "D" of the
+    whole batch, the law, body and punch with their numbers, and the controlled `value` (B,)."""
+
+    control: str
+    law: Bound
+    body: Body
+    value: np.ndarray
+    punch: Punch
+
+    @property
+    def shape(self):
+        """The :class:`~solver.shapes.shape.Shape` of the punch."""
+        return self.punch.shape
+
+    @property
+    def is_flat(self):
+        """Whether the contact radius is that of the punch, whatever the load."""
+        return bool(has_radius(self.shape).all())
+
+
+@batch.of_cases
+class State(NamedTuple):
+    """Unknowns: y (B, n) of the micro law at the nodes, and η = ln a (B,)."""
+
+    y: np.ndarray
+    eta: np.ndarray
+
+
+@batch.of_cases
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """The equation of `cases` at a state: the operator of the body and the curve of the law there, the groups X, Y, Z
+    (B, 1), K q and the residual F at the nodes (B, n), and edge @ q (B,); in both is what the edge adds."""
+
+    cases: Cases
+    state: State
+    operator: Operator
+    curve: Curve
+    X: np.ndarray
+    Y: np.ndarray
+    Z: np.ndarray
+    Kq: np.ndarray
+    edge_q: np.ndarray
+    F: np.ndarray
+
+    @property
+    def mesh(self):
+        return self.operator.mesh
+
+    @once
+    def G(self):
+        """Residual of the control, (B,): the logarithm of the controlled quantity over its given value. The load is
+        that of Eq. (5), the depth that of Eq. (3) at r = a."""
+        return control_residual(self.cases, self.state.eta, self.X, self.curve.q, self.edge_q, self.mesh)
+
+    @once
+    def drop(self):
+        """Right-hand side of the equation at the nodes, (B or 1, n)."""
+        return self.cases.punch.drop(np.exp(self.state.eta), self.mesh.s)
+
+    @once
+    def slopes(self):
+        """Derivatives of K q (B, n) and edge @ q (B,) by η at fixed q."""
+        return self.operator.slopes(self.curve.q)
+
+    @once
+    def gap(self):
+        """(B, n): height over a²/2 of asperities above the surface, where they bear no pressure because the pressure
+        around them presses the surface away; else 0."""
+        q = self.curve.q
+        if q.min(initial=np.inf) > _NOTHING * q.max(initial=0.0):  # quick to see, and true of most batches
+            return np.zeros(q.shape)
+        bare = (q >= 0) & (q < _NOTHING * q.max(axis=1, keepdims=True))
+        return np.where(bare, np.maximum(self.F - self.Z * self.curve.g, 0.0), 0.0)
+
+    @once
+    def residual(self):
+        """Largest residual of a case (B,): of the equation, over the largest right-hand side, and of the control. The
+        equation need not hold where asperities without pressure hang over the surface."""
+        F = np.abs(self.F)
+        F[self.gap > 0] = 0.0
+        return np.maximum(F.max(axis=1) / largest(self.cases.punch, np.exp(self.state.eta)), np.abs(self.G))
+
+    @once
+    def floor(self):
+        """Error (B,) that no estimate may go below: rounding, of a small p(0) under a plate too, and the error of the
+        operator itself."""
+        q = self.curve.q
+        rounded = self.cases.body.rounding() * q.max(axis=1)
+        centre = rounded / np.maximum(np.abs(q[:, -1]), np.maximum(rounded, _TINY))
+        body, a = self.cases.body, np.exp(self.state.eta)
+        return np.maximum(np.maximum(_floor(body, a, self.mesh.n), centre), _near_flat(self.cases, a))
+
+    @property
+    def closed(self):
+        """(B,) bool: the residual is so small that only rounding and the error of the operator are left."""
+        closed = self.residual < _CLOSED
+        near = np.flatnonzero(~closed & (self.residual < _OPEN))
+        if len(near):
+            body, a = self.cases.body.take(near), np.exp(self.state.eta[near])
+            least = np.maximum(_OF_OPERATOR * _floor(body, a, self.mesh.n), _ROUNDING / body.softness(a))
+            closed[near] = self.residual[near] < np.maximum(least, _near_flat(self.cases.take(near), a))
+        return closed
+
+    @property
+    def lost(self):
+        return ~np.isfinite(self.residual)
+
+
+def _floor(body, a, nodes):
+    return np.maximum(4 * nodes * np.finfo(float).eps, body.error(a, nodes))
+
+
+def _near_flat(cases, a):
+    """Rounding (B,) of the height of an edge of radius a (B,) next to a flat end; 0 of a punch without one."""
+    if cases.is_flat:
+        return np.zeros(len(a))
+    b = cases.shape.least()
+    return np.where(b > 0, _OF_RADIUS * a / (a - b), 0.0)
+
+
+def groups(cases, eta):
+    """X, Y, Z (B, 1) at η = ln a (B,)."""
+    a, p_star = np.exp(eta), cases.law.p_star
+    X = (8 / np.pi) * p_star / (a * cases.body.E)
+    return X[:, None], (2 * cases.body.C * p_star / a**2)[:, None], (2 * cases.law.A_star / a**2)[:, None]
+
+
+def evaluate(cases, state, mesh, near=None):
+    """:class:`Evaluation` of `cases` at `state`. `near`: their operator at another state or on another mesh, of which
+    what still holds is used again."""
+    X, Y, Z = groups(cases, state.eta)
+    curve, a = cases.law.evaluate(state.y), np.exp(state.eta)
+    operator = cases.body.at(a, mesh, near)
+    Kq, edge_q = operator.products(curve.q)
+    F = X * Kq + Y * curve.q + Z * curve.g - cases.punch.drop(a, mesh.s)
+    return Evaluation(cases, state, operator, curve, X, Y, Z, Kq, edge_q, F)
+
+
+def control_residual(cases, eta, X, q, edge_q, mesh):
+    """:attr:`Evaluation.G` (B,) at η (B,) for X (B, 1), q (B, n) and edge @ q (B,)."""
+    if cases.control == "a":
+        return eta - np.log(cases.value)
+    if cases.control == "P":
+        load = np.einsum("bj,j->b", q, mesh.w)  # not BLAS, whose rounding would depend on the number of cases
+        return np.log(2 * np.pi * cases.law.p_star * load / cases.value) + 2 * eta
+    depth = cases.punch.depth(np.exp(eta)) + X[:, 0] * edge_q
+    return np.log(depth / (2 * cases.value)) + 2 * eta
+
+
+def control_gradient(control, ev):
+    """Derivatives of the logarithm of `control` by q (B, n) and by η (B,)."""
+    q, X, w, a = ev.curve.q, ev.X[:, 0], ev.mesh.w, np.exp(ev.state.eta)
+    if control == "P":
+        return w / (q @ w)[:, None], np.full(len(q), 2.0)
+    if control == "a":
+        return np.zeros_like(q), np.ones(len(q))
+    edge, punch = X * ev.edge_q, ev.cases.punch
+    depth, slope = punch.depth(a) + edge, punch.depth_slope(a) + X * ev.slopes[1] - edge
+    return ev.X * ev.operator.edge / depth[:, None], 2 + slope / depth
+
+
+def jacobian(ev):
+    """d (B, n) of dF/dq = X (K + diag(d)) at fixed η; and dF/dη over X (B, n) at fixed q. By q and not by y, because
+    the operator is linear in q."""
+    diagonal = ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
+    drop_slope = ev.cases.punch.drop_slope(np.exp(ev.state.eta), ev.mesh.s)
+    dF_deta = ev.slopes[0] - ev.Kq - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g) / ev.X - drop_slope / ev.X
+    return diagonal / ev.X, dF_deta

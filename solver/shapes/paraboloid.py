@@ -1,0 +1,92 @@
+"""The paraboloid f = r²/2, in R, for which the model takes a sphere. Its drop is s² at every radius.
+
+What a rough contact asks of a shape (:mod:`...contact.punch`) it has in closed form.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..numerics import batch
+from .shape import Kind, column, no_kinks
+
+#: For Hertz's pressure the operator is (H[s])(x) - (H[s])(1) = HERTZ s², which makes the first guess exact there.
+HERTZ = np.pi**2 / 16
+
+
+@batch.of_cases
+class Paraboloid(NamedTuple):
+    """The :class:`~.shape.Shape` of B paraboloids, and their :class:`~solver.rough.punch.Punch`. `power` (B,) is 2 of
+    all: an array, by which numpy rounds r² as it does the other powers of :mod:`.power`."""
+
+    power: np.ndarray
+
+    polynomial = True
+
+    @property
+    def shape(self):
+        return self
+
+    @property
+    def pointed(self):
+        return self.power < 0
+
+    @property
+    def even(self):
+        return self.power > 0
+
+    def height(self, r):
+        return 0.5 * r ** column(self.power)
+
+    def slope(self, r):
+        return r + 0 * column(self.power)
+
+    def lifted(self, t):
+        return 2 * self.height(t)
+
+    def lifted_slope(self, t):
+        return 2 * self.slope(t)
+
+    def lifted_load(self, a):
+        return 2 / 3 * a ** (self.power + 1)
+
+    def drop(self, a, s):
+        return (s**2)[None]
+
+    def kinks(self):
+        return no_kinks(self.power)
+
+    def least(self):
+        return 0 * self.power
+
+    def most(self):
+        return np.inf * self.power
+
+    def drop_slope(self, a, s):
+        return 0.0
+
+    def depth(self, a):
+        return 1.0
+
+    def depth_slope(self, a):
+        return 0.0
+
+    def radius_at_depth(self, D):
+        """a² is D for a half-space and 2 D where the displacement is local."""
+        return np.sqrt(1.5 * D)
+
+    def on_half_space(self, P, E, softness):
+        return np.cbrt(0.75 * P / E) * np.cbrt(softness)
+
+    def on_springs(self, P, C):
+        return (4 * C * P / np.pi) ** 0.25
+
+    def on_asperities(self, P, p_star, A_star, e):
+        alone = P / (2 * np.pi * p_star) * (2 * A_star) ** e * (2 * e + 2)
+        return alone ** (1 / (2 + 2 * e))
+
+    def stiffness(self, a, s, half_space, springs):
+        return (half_space * HERTZ * s + springs) / s**2
+
+
+KIND = Kind("paraboloid", {}, lambda size: Paraboloid(np.full(size, 2.0)), "a paraboloid r²/(2R)", round=True)

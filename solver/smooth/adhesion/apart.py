@@ -1,0 +1,68 @@
+"""Load and depth at many radii, what the shape makes of them and what adhesion takes away, apart.
+
+Along the curve of a contact that sticks P = P₀ - pull_P and D = D₀ - pull_D. All four are positive and smooth functions
+of the radius, and those of :mod:`.jkr` follow w and E as powers. So curves of many works of adhesion need them once.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...body import BODIES
+from ...body.graded import is_graded
+from ...scaling import dimensionless, with_rigid_punch
+from ...shapes import shape_of
+from ..equation import respond
+from ..radius import Radii
+from ..tabulated import where_slow
+from .jkr import Jkr
+from .maugis import Maugis, ring_stress
+
+#: Sublayers in each octave of a graded layer: answers with both are extrapolated, as of errors that fall like 1/m².
+_SUBLAYERS = (4, 8)
+
+
+class Apart(NamedTuple):
+    """P₀, D₀, pull_P and pull_D, in units R = E2* = 1: `values` (4, B, m), and their derivatives `slopes` (4, B, m) by
+    the variable of :class:`~..radius.Radii`. What a contact does not have is NaN."""
+
+    values: np.ndarray
+    slopes: np.ndarray
+
+
+def apart(problem, x):
+    """:class:`Apart` of B contacts with w > 0, of one base, shape and law of adhesion, in units R = E2* = 1.
+
+    x : (B, m), at which radii; the load, depth or radius of the problem do not count
+    """
+    if not is_graded(problem).any():
+        return _apart(problem, x)
+    few, many = (_apart(problem.but(sublayers=np.full(len(problem), count)), x) for count in _SUBLAYERS)
+    return Apart(*((4 * more - less) / 3 for less, more in zip(few, many, strict=True)))
+
+
+def _apart(problem, x):
+    rigid = with_rigid_punch(problem)
+    part, (rows, points) = dimensionless(rigid), x.shape
+    shape, body = shape_of(part), where_slow(BODIES[str(part.base[0])](part))
+    index = np.repeat(np.arange(rows), points)
+    with np.errstate(all="ignore"):
+        a, da = Radii(shape).at(x.ravel(), index)
+        values, slopes = _at(part.take(index), shape.take(index), body.take(index), a)
+    unit = np.stack([rigid.E2, np.ones(rows)] * 2)[:, :, None]  # R is 1
+    return Apart(values.reshape(4, rows, points) * unit, (slopes * da).reshape(4, rows, points) * unit)
+
+
+def _at(part, shape, body, a):
+    """The four (4, b), and their derivatives by the radius a (b,)."""
+    r, none = respond(shape, body, a), 0 * a
+    free, grows = (r.P, r.D), (r.S * r.slope, r.slope)
+    word = str(part.adhesion[0])
+    if word == "dmt":
+        return np.array([*free, 2 * np.pi * part.w_adhesion, none]), np.array([*grows, none, none])
+    law = Jkr(shape, body, part.w_adhesion)
+    if word == "maugis":
+        law = Maugis(shape, body, part.w_adhesion, ring_stress(part))
+    state = law.at(a)
+    pulls = (r.P - state.P, r.D - state.D), (grows[0] - state.dP, grows[1] - state.dD)
+    return np.array([*free, *pulls[0]]), np.array([*grows, *pulls[1]])

@@ -1,0 +1,32 @@
+"""What holds a punch: a load, a depth, or a machine of some stiffness."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...numerics import batch
+
+
+@batch.of_cases
+class Holder(NamedTuple):
+    """What holds the punches: of B cases whether the load counts alone, k = 0, and the compliance 1/k else."""
+
+    load: np.ndarray
+    compliance: np.ndarray
+
+    @classmethod
+    def by(cls, k):
+        """The stiffnesses k (B,), from 0 to infinite."""
+        with np.errstate(divide="ignore"):
+            return cls(k == 0, np.where(k == 0, 0.0, 1 / k))
+
+    def of(self, P, D):
+        """Q, or its slope, of P and D, or their slopes."""
+        with np.errstate(invalid="ignore"):
+            return np.where(self.load, P, D + self.compliance * P)
+
+
+def machine(part):
+    """Stiffness (B,) of what holds the punches: 0 and infinite where nothing is said, for loads and for depths."""
+    usual = np.inf if part.control == "D" else 0.0
+    return np.where(np.isnan(part.k_machine), usual, part.k_machine)

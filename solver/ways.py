@@ -1,0 +1,133 @@
+"""The ways by which cases are solved whose base has a name: one table, of which a case takes the first row that is its
+own; and which cases have none."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from .bases import is_bare, is_thin_layer, on_springs
+from .numerics.batch import alike
+from .rough.flat import solve_flat
+from .scaling import as_cases, kinds_of_laws
+from .schemes import SCHEMES
+from .shapes import PARABOLOID, is_flat, shape_of, shaped
+from .shapes.shape import column
+from .smooth import paraboloids
+from .smooth.contact import not_sticking, sticking
+
+
+class Way(NamedTuple):
+    """One way to solve cases.
+
+    name : of the way
+    has : function of a problem and of which of its cases (B,) are smooth, (B,) bool: those of this way, as far as no
+        row before has them
+    alike : function of a problem, arrays (B,): cases that differ in none of these are solved together
+    solve : ``function(part, x) -> Solution`` of such cases, in units R = E2* = 1, at the radii x (m,)
+    equation : by which a solved case can be found again: "nodes", :mod:`.rough.equation`; "flat",
+        :mod:`.rough.flat`; "basis", :mod:`.smooth.equation`
+    """
+
+    name: str
+    has: Callable
+    alike: Callable
+    solve: Callable
+    equation: str
+
+
+def _hertz(part, x):
+    return paraboloids.on_half_space(part.control, part.value, x)
+
+
+def _on_springs(part, x):
+    return paraboloids.on_thin_layer(part.control, part.value, as_cases(part).body.C, part.rtol, part.nodes, x)
+
+
+def _flat(part, x):
+    return solve_flat(as_cases(part), part.rtol, part.nodes, int(part.max_iterations[0]), x)
+
+
+def _by_scheme(part, x):
+    return SCHEMES[str(part.scheme[0])](part, x)
+
+
+def _of_equation(part):
+    return part.micro, part.base, part.scheme, part.shape, kinds_of_laws(part), part.max_iterations
+
+
+#: base, rough, shape, sticks -> function. Of rough cases none sticks (:func:`unfit`), and graded layers are many
+#: uniform ones here (:mod:`.models.graded`).
+WAYS = (
+    Way("sticking", lambda p, smooth: p.w_adhesion > 0, lambda p: (p.base, p.shape, p.adhesion), sticking, "basis"),
+    Way("shaped", lambda p, smooth: smooth & shaped(p), lambda p: (p.base, p.shape), not_sticking, "basis"),
+    Way("hertz", lambda p, smooth: smooth & is_bare(p.base), lambda p: (), _hertz, "nodes"),
+    Way("springs", lambda p, smooth: smooth & is_thin_layer(p.base), lambda p: (), _on_springs, "nodes"),
+    Way("flat", lambda p, smooth: is_flat(p) & (p.scheme == "newton"), _of_equation, _flat, "flat"),
+    Way("by_scheme", lambda p, smooth: np.ones(len(p), dtype=bool), _of_equation, _by_scheme, "nodes"),
+)
+
+
+def way_of(problem):
+    """(B,) int8: the place in WAYS of the way of each case."""
+    place = np.full(len(problem), len(WAYS) - 1, dtype=np.int8)
+    left, smooth = np.ones(len(problem), dtype=bool), ~problem.rough()
+    for number, way in enumerate(WAYS[:-1]):
+        cases = left & way.has(problem, smooth)
+        place[cases], left[cases] = number, False
+        if not left.any():
+            break
+    return place
+
+
+def by_equation(problem, equation):
+    """(B,) bool: the cases whose way has the `equation`, of :class:`Way`."""
+    return np.array([way.equation == equation for way in WAYS])[way_of(problem)]
+
+
+def solved(problem, solvable, x):
+    """Pairs of an index (b,) and the :class:`~solver.solution.Solution` there, of the `solvable` (B,) bool cases of a
+    problem in units R = E2* = 1; x : (m,) radii."""
+    places, pieces = way_of(problem), []
+    for number in np.unique(places[solvable]).tolist():
+        way, index = WAYS[number], np.flatnonzero(solvable & (places == number))
+        part = _at(problem, index)
+        for rows in alike(np.zeros(len(index)), *way.alike(part)):
+            pieces.append((index[rows], way.solve(_at(part, rows), x)))
+    return pieces
+
+
+def _at(problem, index):
+    return problem if len(index) == len(problem) else problem.take(index)
+
+
+def unfit(problem):
+    """(B,) bool: cases of a problem in units R = E2* = 1 that no way has: whose shape or adhesion does not go with the
+    base, the asperities, the scheme or the control."""
+    other, pulls = shaped(problem), problem.w_adhesion > 0
+    if not (other | pulls).any():
+        return np.zeros(len(problem), dtype=bool)
+    out = (other | pulls) & on_springs(problem.base)
+    out |= (other | pulls) & (problem.scheme == "picard")
+    out |= pulls & problem.rough()
+    if problem.control == "a":
+        for word in np.unique(problem.shape[other]).tolist():
+            index = np.flatnonzero(problem.shape == word)
+            out[index] |= _no_radius(problem.take(index))
+    return out | pulls & _unfit_law(problem)
+
+
+def _no_radius(part):
+    """(B,) bool: no contact of the one shape of the cases has the radius that is given. A flat punch has its own."""
+    shape, a = shape_of(part), part.value
+    poles = ~np.isfinite(shape.lifted(column(shape.most()))[:, 0])
+    return (a <= shape.least()) | (a >= shape.most()) & (poles | (shape.least() == shape.most()))
+
+
+def _unfit_law(problem):
+    """(B,) bool: the law of adhesion has a number that it does not take, or lacks one; or a shape for which it does
+    not stand. A flat punch is pinned at its edge: a ring beside it begins at a gap of 0."""
+    jkr, dmt = problem.adhesion == "jkr", problem.adhesion == "dmt"
+    numbers = np.isfinite(problem.sigma0).astype(int) + np.isfinite(problem.z0)
+    wrong = np.where(dmt, numbers != 0, np.where(jkr, numbers == 2, numbers != 1))
+    return wrong | dmt & (problem.shape != PARABOLOID) | ~jkr & (problem.shape == "flat")

@@ -5,8 +5,8 @@ import pytest
 
 from study.inputs.reading import from_call
 from study.inverse.fits.model import HERTZ, CurveModel
-from study.inverse.fits.tables.lattice import WIDE, Chebyshev, Lattice
 from study.inverse.fits.tables.ratio_table import STEP, Cubics, RatioTable
+from study.inverse.fits.tables.tiles import WIDE, Chebyshev, Lattice
 
 GEL = {"R": "5 um", "nu1": 0.45, "h": "1.5 um", "E2": "1 MPa", "nu2": 0.3, "bonding": "bonded", "E1": "1 MPa"}
 ROUGH = {"R": "50 um", "micro": "disc_cell", "Nbar": "1 1/um^2", "Ra": "1 um"}

@@ -7,7 +7,7 @@ a tile of the lattice has _LATTICE points, between which a cubic is drawn.
 import numpy as np
 
 from ..model import HERTZ, CurveModel, is_ratio
-from .lattice import WIDE, WIDE_RATIO, Chebyshev, Lattice
+from .tiles import WIDE, WIDE_RATIO, Chebyshev, Lattice
 
 _LATTICE = 32
 STEP = WIDE / _LATTICE

@@ -7,8 +7,8 @@ cubic is drawn.
 import numpy as np
 
 from ..model import CurveModel, is_ratio
-from .lattice import WIDE, WIDE_RATIO, Chebyshev, Lattice, Position
 from .terms import Terms, is_modulus
+from .tiles import WIDE, WIDE_RATIO, Chebyshev, Lattice, Position
 
 _LATTICE = 16
 STEP = WIDE / _LATTICE

@@ -149,7 +149,7 @@ def complete(commands: argparse.ArgumentParser) -> None:
 def perform(options, kept: str) -> int:
     """Run a command on each of its items, whatever is wrong with the others. Returns the largest exit code."""
     module, name = options.action
-    if wrong := wrong_core() if module not in ("reading", "exploring", "checking") else "":
+    if wrong := wrong_core() if module not in ("lookup", "exploring", "checking") else "":
         say(wrong, sys.stderr)
         return 2
     commands = import_module(f".commands.{module}", __package__)

@@ -7,10 +7,10 @@ import numpy as np
 from ...inputs.punch.shapes import ANGLES
 from .model import HERTZ
 from .tables.branch import Loads, branch
-from .tables.lattice import WIDE
 from .tables.ratio_table import STEP, Cubics, RatioTable
 from .tables.sticking_points import StickingPoints
 from .tables.term_table import TermTable
+from .tables.tiles import WIDE
 
 _TILES = 4  # along ln u: from the largest depth down, more than _REACH
 _REACH = np.log(800.0)  # below 1/800 of twice the range of x the curve goes on as a power of x

@@ -5,8 +5,8 @@ import pytest
 
 from study.inputs.reading import from_call
 from study.inverse.fits.model import HERTZ, CurveModel
-from study.inverse.fits.tables.lattice import WIDE, Chebyshev, Lattice
 from study.inverse.fits.tables.ratio_table import STEP, Cubics, RatioTable
+from study.inverse.fits.tables.tiles import WIDE, Chebyshev, Lattice
 
 GEL = {"R": "5 um", "nu1": 0.45, "h": "1.5 um", "E2": "1 MPa", "nu2": 0.3, "bonding": "bonded", "E1": "1 MPa"}
 ROUGH = {"R": "50 um", "micro": "disc_cell", "Nbar": "1 1/um^2", "Ra": "1 um"}
@@ -46,8 +46,8 @@ AXES, TILE_WIDTHS, POINTS = (Chebyshev(6), Chebyshev(5)), (1.0, 0.25), 4
 
 
 def polynomials(made):
-    """A lattice with the parts x + c₀² c₁ and x c₁³ of an abscissa x and two coordinates, whose derivatives by the one
-    moved input are three times as large as they. `made` gets the place of each tile."""
+    """A lattice, and the function of its tiles: the parts x + c₀² c₁ and x c₁³ of an abscissa x and two coordinates.
+    Their derivatives by the one moved input are three times as large. `made` gets the place of each tile."""
 
     def tile(place, moved):
         made.append((place, moved))
@@ -57,14 +57,14 @@ def polynomials(made):
         parts = np.array([x + (c0**2 * c1).ravel(), x * (c1**3).ravel()])
         return (3 * parts if moved else parts)[None]
 
-    return Lattice([*AXES], [*TILE_WIDTHS], tile, 2, POINTS)
+    return Lattice([*AXES], [*TILE_WIDTHS], 2, POINTS), tile
 
 
 def test_a_lattice_has_polynomials_and_their_derivatives():
     """Across tiles too; each is made once, and a curve has the same bits alone."""
     random, made = np.random.default_rng(2), []
-    lattice, c, first = polynomials(made), random.uniform(-1.0, 1.0, (40, 2)), random.integers(-2, 3, 40)
-    rows = lattice.read(first, lattice.position(c), 2, 1)
+    (lattice, tile), c, first = polynomials(made), random.uniform(-1.0, 1.0, (40, 2)), random.integers(-2, 3, 40)
+    rows = lattice.read(tile, first, lattice.position(c), 2, 1)
     x, (c0, c1) = first[:, None] * POINTS + np.arange(2 * POINTS), c.T[:, :, None]
     parts = np.stack([x + c0**2 * c1, x * c1**3], axis=1)
     by_0, by_1 = np.stack([2 * c0 * c1 + 0 * x, 0 * x], axis=1), np.stack([c0**2 + 0 * x, 3 * x * c1**2], axis=1)
@@ -72,5 +72,5 @@ def test_a_lattice_has_polynomials_and_their_derivatives():
     # the formula of the slope cancels digits next to a Chebyshev point
     np.testing.assert_allclose(rows[1:3], [by_0, by_1], rtol=0, atol=1e-8)
     assert len(made) == len({*made}) and {moved for _, moved in made} == {False, True}
-    alone = lattice.read(first[7:8], lattice.position(c[7:8]), 2, 1)
+    alone = lattice.read(tile, first[7:8], lattice.position(c[7:8]), 2, 1)
     assert alone.tobytes() == np.ascontiguousarray(rows[:, 7:8]).tobytes() and len(made) == len({*made})

@@ -7,7 +7,7 @@ a tile of the lattice has _LATTICE points, between which a cubic is drawn.
 import numpy as np
 
 from ..model import HERTZ, CurveModel, is_ratio
-from .lattice import WIDE, WIDE_RATIO, Chebyshev, Lattice
+from .tiles import WIDE, WIDE_RATIO, Chebyshev, Lattice
 
 _LATTICE = 32
 STEP = WIDE / _LATTICE
@@ -25,7 +25,7 @@ class RatioTable:
         self.model = model
         wide = [WIDE_RATIO if is_ratio(name) else WIDE for name in model.axes]
         self.chebyshev = Chebyshev(_POINTS[min(1 + len(model.axes), 4)])
-        self.lattice = Lattice([self.chebyshev] * len(wide), wide, self.tile, 1, _LATTICE)
+        self.lattice = Lattice([self.chebyshev] * len(wide), wide, 1, _LATTICE)
         points = (np.arange(_LATTICE) / _LATTICE * WIDE - WIDE / 2) / (WIDE / 2 + _MARGIN)
         self.along_u = self.chebyshev.lagrange(points)[0]
 
@@ -72,7 +72,7 @@ class RatioTable:
         count : of tiles
         """
         position = self.lattice.position(coordinates)
-        return self.lattice.read(first, position, count, len(self.model.moved) if moved else 0)[:, :, 0]
+        return self.lattice.read(self.tile, first, position, count, len(self.model.moved) if moved else 0)[:, :, 0]
 
 
 class Cubics:

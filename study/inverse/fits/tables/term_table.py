@@ -7,8 +7,8 @@ cubic is drawn.
 import numpy as np
 
 from ..model import CurveModel, is_ratio
-from .lattice import WIDE, WIDE_RATIO, Chebyshev, Lattice, Position
 from .terms import Terms, is_modulus
+from .tiles import WIDE, WIDE_RATIO, Chebyshev, Lattice, Position
 
 _LATTICE = 16
 STEP = WIDE / _LATTICE
@@ -38,7 +38,7 @@ class TermTable:
         self.axes = self.terms.axes
         count = min(len(self.axes), 3)
         points = [Chebyshev((_OF_MODULI if is_modulus(name) else _POINTS)[count]) for name in self.axes]
-        self.lattice = Lattice(points, list(map(_width, self.axes)), self.tile, 8, _LATTICE)
+        self.lattice = Lattice(points, list(map(_width, self.axes)), 8, _LATTICE)
 
     def tile(self, place: tuple[int, ...], moved: bool) -> np.ndarray:
         """A tile: 8 logarithms and slopes, or their derivatives by the inputs `moved` of the model, (1 or moved, 8,
@@ -51,7 +51,7 @@ class TermTable:
         x = place[0] * WIDE + STEP * np.arange(_LATTICE)
         if not moved:
             return np.ascontiguousarray(np.swapaxes(self.terms.logarithms(values, x), 1, 2))[None]
-        still = np.swapaxes(self.lattice.made(place)[0], 1, 2)
+        still = np.swapaxes(self.lattice.made(self.tile, place)[0], 1, 2)
         changes = [self.terms.moved(name, values, x, still) for name in self.model.moved]
         return np.ascontiguousarray(np.swapaxes(np.array(changes), 2, 3))
 
@@ -75,7 +75,8 @@ class TermTable:
         position = self.lattice.position(c)
         factors = np.broadcast_to(self.terms.factors(values).reshape(4, -1), (4, B)).T
         last = self._last(position, factors, deepest)
-        whole = self.lattice.read(last - _TILES + 1, position, _TILES, len(self.model.moved) if moved else 0)
+        count = len(self.model.moved) if moved else 0
+        whole = self.lattice.read(self.tile, last - _TILES + 1, position, _TILES, count)
         whole[0, :, :4] += factors[:, :, None]
         below = STEP * np.arange(-_BELOW * _LATTICE, 0)
         first = (
@@ -92,8 +93,8 @@ class TermTable:
             left = np.flatnonzero(up if step < _FAR else down & ~up)
             if not len(left):
                 continue
-            tile = last[left] - (0 if step < _FAR else 1)
-            rows = self.lattice.read(tile, position.values_of(left), 1)[0, :, :, -1]
+            first = last[left] - (0 if step < _FAR else 1)
+            rows = self.lattice.read(self.tile, first, position.values_of(left), 1)[0, :, :, -1]
             f = np.exp(rows[:, :4] + factors[left])
             depth, slope = f[:, 1] - f[:, 3], f[:, 1] * rows[:, 5] - f[:, 3] * rows[:, 7]
             beyond = (depth > deepest[left]) & (slope > 0)

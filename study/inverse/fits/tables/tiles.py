@@ -55,13 +55,16 @@ class Lattice:
     """The tiles of one table. Not for several threads.
 
     axes, wide : Chebyshev points and width of a tile along each coordinate of the unknown inputs
-    tile : (place, moved) -> the tile at a place, whole numbers along the abscissa and each coordinate, (rows, parts,
-        points, C). One row has the values; with `moved` each row has their derivatives by one of the inputs moved
     parts, points : functions that are tabulated, and points of a tile along the abscissa
+
+    The table makes the tiles. The argument `tile` of the methods is its function of a place, whole numbers along the
+    abscissa and each coordinate, and of `moved`; it returns the tile there, (rows, parts, points, C). One row has the
+    values. With `moved` each row has their derivatives by one of the inputs that are moved. The lattice does not keep
+    the function, which belongs to the table: so the tiles are freed as soon as the table is.
     """
 
-    def __init__(self, axes: list[Chebyshev], wide: list[float], tile: Tile, parts: int, points: int):
-        self.axes, self.wide, self.tile, self.parts, self.points = axes, np.array(wide, float), tile, parts, points
+    def __init__(self, axes: list[Chebyshev], wide: list[float], parts: int, points: int):
+        self.axes, self.wide, self.parts, self.points = axes, np.array(wide, float), parts, points
         self.tiles: dict[tuple, np.ndarray] = {}
         self.stacks: dict[tuple, np.ndarray] = {}
 
@@ -76,7 +79,7 @@ class Lattice:
         ]
         return Position(numbers, np.array([_products(factor, len(s)) for factor in factors]))
 
-    def read(self, first: np.ndarray, position: Position, count: int, moved: int = 0) -> np.ndarray:
+    def read(self, tile: Tile, first: np.ndarray, position: Position, count: int, moved: int = 0) -> np.ndarray:
         """Rows (weights + moved, B, parts, points) of B curves along `count` tiles: values, their derivatives by the
         coordinates and, if there are `moved` inputs, by these.
 
@@ -87,24 +90,24 @@ class Lattice:
         for place in map(tuple, np.unique(key, axis=0).tolist()):
             here = np.flatnonzero((key == place).all(axis=1))
             # einsum, not BLAS: the sums of a curve do not depend on how many others stand here
-            values = self._stack(place, count, False)[0]
+            values = self._stack(tile, place, count, False)[0]
             rows[: len(weights), here] = np.einsum("wbc,ilc->wbil", weights[:, here], values)
             if moved:
-                changes = self._stack(place, count, True)
+                changes = self._stack(tile, place, count, True)
                 rows[len(weights) :, here] = np.einsum("bc,kilc->kbil", weights[0, here], changes)
         return rows
 
-    def made(self, place: tuple[int, ...], moved: bool = False) -> np.ndarray:
+    def made(self, tile: Tile, place: tuple[int, ...], moved: bool = False) -> np.ndarray:
         """The tile at a place."""
         if (moved, *place) not in self.tiles:
-            self.tiles[moved, *place] = self.tile(place, moved)
+            self.tiles[moved, *place] = tile(place, moved)
         return self.tiles[moved, *place]
 
-    def _stack(self, place: tuple[int, ...], count: int, moved: bool) -> np.ndarray:
+    def _stack(self, tile: Tile, place: tuple[int, ...], count: int, moved: bool) -> np.ndarray:
         """Tiles one after another along the abscissa."""
         key = (moved, count, *place)
         if key not in self.stacks:
-            tiles = [self.made((place[0] + k, *place[1:]), moved) for k in range(count)]
+            tiles = [self.made(tile, (place[0] + k, *place[1:]), moved) for k in range(count)]
             self.stacks[key] = np.concatenate(tiles, axis=2) if count > 1 else tiles[0]
         return self.stacks[key]
 

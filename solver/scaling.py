@@ -15,7 +15,6 @@ from .laws import LAWS, try_out
 from .numerics.batch import alike
 from .parameters import CONTROL, PARAMETERS, allowed
 from .rough.equation import Cases
-from .rough.punch import punch_of
 from .solution import PULLS
 from .status import Status
 
@@ -110,7 +109,7 @@ def without_springs(scaled):
 def as_cases(part):
     """:class:`~solver.rough.equation.Cases` of a problem whose cases have one law, one base and one shape."""
     body = BODIES[str(part.base[0])](part)
-    return Cases(part.control, law_of(part, body), body, part.value, punch_of(shapes.shape_of(part)))
+    return Cases(part.control, law_of(part, body), body, part.value, shapes.shape_of(part))
 
 
 def kinds_of_laws(problem):

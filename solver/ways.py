@@ -11,7 +11,7 @@ from .numerics.batch import alike
 from .rough.flat import solve_flat
 from .scaling import as_cases, kinds_of_laws
 from .schemes import SCHEMES
-from .shapes import PARABOLOID, is_flat, shape_of, shaped
+from .shapes import is_flat, shape_of, shaped
 from .shapes.shape import column
 from .smooth import paraboloids
 from .smooth.contact import not_sticking, sticking
@@ -130,4 +130,4 @@ def _unfit_law(problem):
     jkr, dmt = problem.adhesion == "jkr", problem.adhesion == "dmt"
     numbers = np.isfinite(problem.sigma0).astype(int) + np.isfinite(problem.z0)
     wrong = np.where(dmt, numbers != 0, np.where(jkr, numbers == 2, numbers != 1))
-    return wrong | dmt & (problem.shape != PARABOLOID) | ~jkr & (problem.shape == "flat")
+    return wrong | dmt & shaped(problem) | ~jkr & is_flat(problem)

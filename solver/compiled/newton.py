@@ -60,7 +60,7 @@ def _taken(cases, nodes):
     """(B,) bool: the cases of which the core knows law, body and punch, and whose mesh is free."""
     law, body = cases.law.law, cases.body
     taken = (nodes == 0) | one_of(nodes, _MESHES)
-    if _law_of(law) is None or not isinstance(cases.punch, Paraboloid):
+    if _law_of(law) is None or not isinstance(cases.shape, Paraboloid):
         return np.zeros_like(taken)
     if law.name == "power_law":
         taken = taken & (cases.law.own[0][:, 0] >= STEEP)

@@ -13,7 +13,7 @@ from ..rough.answer import answer
 from ..scaling import as_cases, dimensionless
 from ..sensitivity.again import found_again, meshes, stacks
 from ..sensitivity.held import held
-from ..shapes import shaped
+from ..shapes import is_flat, shaped
 from ..solve import solve
 from ..status import Status
 from ..ways import by_equation
@@ -94,7 +94,7 @@ def have_fields(problem, solution):
 
 def are_infinite(problem):
     """(B,) bool: contacts whose stresses are infinite at the edge, as those of flat punches and of what sticks."""
-    return (problem.shape == "flat") | (problem.w_adhesion > 0)
+    return is_flat(problem) | (problem.w_adhesion > 0)
 
 
 def pressures_of(scaled, solution, a):

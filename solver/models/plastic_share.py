@@ -2,21 +2,14 @@
 
 import numpy as np
 
-from ..laws import LAWS
-from ..parameters import one_of
 from ..scaling import dimensionless, law_of, of_one_law
-from .range_of_law import RADII
+from .range_of_law import RADII, has_yield
 
 #: The places s² = 1 - (r/a)² of the profile, ascending from the edge.
 _S2 = (1 - RADII) * (1 + RADII)
 #: Between two radii ln s² is a polynomial of ln λ through this many of them, all on the elastic side of the bound, at
 #: which λ bends. Of 40 random contacts the largest error was 9e-7, with two on each side 4e-6.
 _POINTS = 4
-
-
-def has_yield(problem):
-    """(B,) bool: the cases whose micro law has spots that yield."""
-    return one_of(problem.micro, [name for name, law in LAWS.items() if law.yielded])
 
 
 def plastic_share(problem, lam):

@@ -7,6 +7,7 @@ from ..kernels.two_layers import layer_modulus
 from ..laws import LAWS
 from ..laws.cell.family import MOST
 from ..laws.cell.law import end
+from ..parameters import one_of
 from ..scaling import dimensionless, law_of, of_one_law
 from ..status import Status
 
@@ -22,6 +23,11 @@ _FEW = 4
 #: Ar/An by at most _GUESSED (p1/p(0))^_STEEPNESS. Random tables (`python tools/errors/own_tables.py`) need at most
 #: 0.205 for _GUESSED; a table of random heights needs more than 0.25 (tests/laws/test_own_table_range.py).
 _GUESSED, _STEEPNESS = 0.4, 1.2
+
+
+def has_yield(problem):
+    """(B,) bool: the cases whose micro law has spots that yield."""
+    return one_of(problem.micro, [name for name, law in LAWS.items() if law.yielded])
 
 
 def radii_of(problem, all_of_them=False):

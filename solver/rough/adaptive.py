@@ -18,10 +18,10 @@ from .answer import (
     Answer,
     Goal,
     Verdict,
+    after_panels,
     answer,
     before_panels,
     may_be_error,
-    on_panels,
     tensile_centre,
     unfinished,
 )
@@ -130,7 +130,7 @@ def _on_panels(case, before, rtol, x, left, nearer=1.0):
     """:class:`~solver.solution.Solution` of one case on panels of its own, with `left` of its budget; or that of
     `before`, the :class:`.answer.Answer` on the finest mesh, if its error is smaller.
 
-    Each round has finer panels, and a verdict (:func:`.answer.on_panels`).
+    Each round has finer panels, and a verdict (:func:`.answer.after_panels`).
     """
     best, count, at = before.solution, before.solution.iterations, None
     verdict = before_panels(before)
@@ -149,7 +149,7 @@ def _on_panels(case, before, rtol, x, left, nearer=1.0):
         clear, at = at is not None and verdict != Verdict.LIFTED, iterated.at
         answered = answer(iterated, x)
         left -= case.body.work(answered.solution.a, finer_mesh(at.mesh).n)[0][0]
-        best, verdict = on_panels(best, answered, at.floor, rtol, clear, spent)
+        best, verdict = after_panels(best, answered, at.floor, rtol, clear, spent)
         if verdict in (Verdict.SOLVED, Verdict.FLOOR):
             break
     verdict = Verdict.LIFTED if tensile_centre(best)[0] else verdict

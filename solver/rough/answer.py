@@ -46,8 +46,8 @@ class Verdict(Codes):
     ========  ==========================================================  ==============================================
 
     There are no panels for cases whose `nodes` or `max_iterations` are given. Each round of panels has a verdict too,
-    of the same conditions in another order (:func:`on_panels`): LIFTED, SOLVED, FLOOR, SPENT, COARSE, OPEN. The first
-    verdict that solves the case, or FLOOR, ends it; else the last one does, by the same statuses.
+    of the same conditions in another order (:func:`after_panels`): LIFTED, SOLVED, FLOOR, SPENT, COARSE, OPEN. SOLVED
+    and FLOOR end the case at once, another verdict after the last round, by the same statuses.
     """
 
     SOLVED = 0
@@ -156,7 +156,7 @@ def unfinished(verdict, spent):
     return Verdict.SPENT if spent and verdict != Verdict.LIFTED else verdict
 
 
-def on_panels(best, answered, floor, rtol, clear, spent):
+def after_panels(best, answered, floor, rtol, clear, spent):
     """The better one of the solution `best` and that of a round of panels, whose :class:`Answer` is `answered`; and the
     :class:`Verdict` after that round.
 

@@ -19,8 +19,8 @@ from ..body.operator import Body, Operator
 from ..laws import Bound, Curve
 from ..numerics import batch
 from ..numerics.kept import once
-from ..shapes.shape import has_radius
-from .punch import Punch, largest
+from ..shapes.shape import Shape, has_radius
+from .punch import largest, punch_of
 
 #: A pressure below this part of the largest counts as none.
 _NOTHING = 1e-16
@@ -44,19 +44,19 @@ _TINY = np.finfo(float).tiny
 
 @batch.of_cases
 class Cases(NamedTuple):
-    """A batch of B cases of one body, micro law and punch in units R = 1, E2* = 1: the `control` "P", "a" or "D" of the
-    whole batch, the law, body and punch with their numbers, and the controlled `value` (B,)."""
+    """A batch of B cases of one body, micro law and shape in units R = 1, E2* = 1: the `control` "P", "a" or "D" of the
+    whole batch, the law, body and shape with their numbers, and the controlled `value` (B,)."""
 
     control: str
     law: Bound
     body: Body
     value: np.ndarray
-    punch: Punch
+    shape: Shape
 
     @property
-    def shape(self):
-        """The :class:`~solver.shapes.shape.Shape` of the punch."""
-        return self.punch.shape
+    def punch(self):
+        """The :class:`.punch.Punch` of the shape."""
+        return punch_of(self.shape)
 
     @property
     def is_flat(self):

@@ -42,13 +42,30 @@ _ROUNDING, _TINY = 4 * np.finfo(float).eps, np.finfo(float).tiny
 
 @batch.of_cases
 class AsFlat(NamedTuple):
-    """The :class:`~solver.rough.punch.Punch` of a flat `shape` whose drop is `tau` (B,) at any radius. It needs no
+    """A flat `shape` as the :class:`~solver.rough.punch.Punch` whose drop is `tau` (B,) at any radius. It needs no
     first guess."""
 
     tau: np.ndarray
     shape: Shape
 
     polynomial = True
+
+    @property
+    def pointed(self):
+        return self.shape.pointed
+
+    @property
+    def even(self):
+        return self.shape.even
+
+    def kinks(self):
+        return self.shape.kinks()
+
+    def least(self):
+        return self.shape.least()
+
+    def most(self):
+        return self.shape.most()
 
     def drop(self, a, s):
         return self.tau[:, None] + 0 * s
@@ -77,7 +94,7 @@ def first_guess(case, a, mesh):
         q = 1 / (1 / smooth + 1 / case.law.sparse(2 * value / a**2 / Z))
     y = case.law.guess(q)
     tau = (Z * case.law.evaluate(y).g)[:, 0]
-    return evaluate(case._replace(punch=AsFlat(tau, case.shape)), State(y, eta), mesh)
+    return evaluate(case._replace(shape=AsFlat(tau, case.shape)), State(y, eta), mesh)
 
 
 def tangent(ev):
@@ -89,7 +106,7 @@ def tangent(ev):
 
 def explicit(control, ev):
     """Derivative (1,) of the logarithm of `control` by ln τ at fixed q."""
-    tau = ev.cases.punch.tau
+    tau = ev.cases.shape.tau
     return tau / (tau + ev.X[:, 0] * ev.edge_q) if control == "D" else 0 * tau
 
 
@@ -101,7 +118,7 @@ def _linear(ev, right):
 def misses(ev):
     """Largest residual (1,): of the equation over 2D/a², where asperities do not hang over the surface, and of the
     control."""
-    scale = ev.cases.punch.tau + np.abs(ev.X[:, 0] * ev.edge_q)
+    scale = ev.cases.shape.tau + np.abs(ev.X[:, 0] * ev.edge_q)
     return np.maximum(np.where(ev.gap > 0, 0.0, np.abs(ev.F)).max(axis=1) / scale, np.abs(ev.G))
 
 
@@ -140,7 +157,7 @@ def step(now):
     growth = explicit(ev.cases.control, ev) + (by_q * along).sum(axis=1)
     d_tau = np.clip(-(ev.G + (by_q * dq).sum(axis=1)) / growth, -1.0, 1.0)
     y = ev.state.y + (dq + along * d_tau[:, None]) / ev.curve.dq
-    cases = ev.cases._replace(punch=AsFlat(ev.cases.punch.tau * np.exp(d_tau), ev.cases.shape))
+    cases = ev.cases._replace(shape=AsFlat(ev.cases.shape.tau * np.exp(d_tau), ev.cases.shape.shape))
     state = State(cases.law.limit(y, ev.state.y), ev.state.eta)
     return Now(evaluate(cases, state, ev.mesh, ev.operator), now.missed)
 
@@ -221,7 +238,7 @@ def _profiles(ev, x):
     p, lam = profiles(ev, x, np.array([0]))
     at_edge, law = x == 1, ev.cases.law
     if at_edge.any():
-        y = law.from_displacement(ev.cases.punch.tau[:, None] / ev.Z)
+        y = law.from_displacement(ev.cases.shape.tau[:, None] / ev.Z)
         q = law.evaluate(y).q
         full = ~np.isfinite(q)
         p[:, at_edge] = law.p_star[:, None] * np.where(full, np.inf, q)

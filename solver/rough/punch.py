@@ -38,12 +38,10 @@ _LEFT = 0.1
 class Punch(Protocol):
     """The punch in B cases. What is the same for all cases may have one row in place of B.
 
-    shape : the :class:`~solver.shapes.shape.Shape` that it has
     take : the punch of a sub-batch, :func:`~solver.numerics.batch.take`
     polynomial : whether the drop is a polynomial in s²: then an error on one panel does not spoil those beside it
     """
 
-    shape: Shape
     polynomial: bool
     take: Callable
 
@@ -79,7 +77,7 @@ class Punch(Protocol):
 
 def punch_of(shape):
     """The :class:`Punch` of a shape: the shape itself if it has the closed forms."""
-    return shape if hasattr(shape, "on_asperities") else Shaped(shape)
+    return shape if hasattr(shape, "drop_slope") else Shaped(shape)
 
 
 def largest(punch, a):

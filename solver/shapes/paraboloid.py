@@ -24,10 +24,6 @@ class Paraboloid(NamedTuple):
     polynomial = True
 
     @property
-    def shape(self):
-        return self
-
-    @property
     def pointed(self):
         return self.power < 0
 

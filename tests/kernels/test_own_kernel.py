@@ -44,8 +44,8 @@ def stack_of(row, size=1):
 
 def solved(kernel, h, control, value, rtol=1e-9, sampler=None):
     body = Hankel(kernel._replace(sampler=sampler), h, 0 * h)
-    punch = Paraboloid(np.full(np.shape(value), 2.0))
-    case = Cases(control, LAWS["smooth"].bind(body.E), body, np.asarray(value, float), punch)
+    shape = Paraboloid(np.full(np.shape(value), 2.0))
+    case = Cases(control, LAWS["smooth"].bind(body.E), body, np.asarray(value, float), shape)
     with np.errstate(all="ignore"):  # as in solver.solve: what goes wrong is a status
         return solve_newton(case, np.full(len(h), rtol), np.zeros(len(h), int), 0, np.array([0.0, 0.5]))
 

@@ -28,10 +28,6 @@ class Quartic(NamedTuple):
     polynomial = True
 
     @property
-    def shape(self):
-        return self
-
-    @property
     def pointed(self):
         return self.c < 0
 
@@ -100,7 +96,7 @@ class Quartic(NamedTuple):
 
 def cases(c=1.0, **case):
     found = as_cases(dimensionless(Problem.of(**case)))
-    return found._replace(punch=Quartic(np.full(len(found.value), c)))
+    return found._replace(shape=Quartic(np.full(len(found.value), c)))
 
 
 @np.errstate(all="ignore")  # as in solver.solve: what goes wrong is a status

@@ -45,7 +45,7 @@ GRIDS = {"random": random_cases, "map": a_map}
 def child(grid: str, free: bool) -> None:
     """Print processor and wall seconds of one call of `study.solve`, after a small one that imports everything."""
     import study
-    from solver import threads
+    from solver.numerics import threads
 
     if free:
         threads._blas = lambda: (NOTHING, NOTHING)

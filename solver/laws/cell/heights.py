@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...numerics.batch import march
 from ...numerics.quadrature import gauss_legendre
 from .. import spread
 from .summits import at
@@ -140,31 +141,35 @@ def pressure(of, y, relief, q=None):
         # what others add may be more than all of q, at the approach without them
         ratio = np.where(at_zero.rest > 0, at_zero.load / at_zero.rest, np.inf)[0]
         q = np.clip(ratio, 1e-300, w * np.sqrt(few / relief))
-    q, area, going = q.copy(), np.full(len(y), np.nan), np.arange(len(y))
+    q, area = q.copy(), np.full(len(y), np.nan)
     low, high = np.zeros(len(y)), np.full(len(y), np.inf)
-    for step_number in range(_MOST + 1):
-        now = q[going]
-        delta, w = spread.depth(y[going], now, relief)
-        means_of = spread.Means(*(values[0] for values in of(now[None], delta[None])))
-        more = means_of.load - now * means_of.rest
+
+    def balance(active):
+        """q now, the approach δ and w there, the means, and by how much the load is above what the others leave."""
+        now = q[active]
+        delta, w = spread.depth(y[active], now, relief)
+        means = spread.Means(*(values[0] for values in of(now[None], delta[None])))
+        return now, delta, w, means, means.load - now * means.rest
+
+    def step(active):
+        now, delta, w, means, more = balance(active)
         solved = np.abs(more) < _CLOSE * now
-        area[going[solved]] = means_of.area[solved]
-        if step_number == _MOST:
-            solved = np.abs(more) < _SOLVED * now
-            area[going[solved]] = means_of.area[solved]
-            q[going[~solved]] = np.nan
-            break
-        low[going] = np.where(more > 0, now, low[going])
-        high[going] = np.where(more < 0, now, high[going])
-        slope = -means_of.fall - (6 / np.pi) * means_of.c * delta / (w + now)  # of P - q S
-        step = np.clip(more / now / -slope, -_LONGEST, _LONGEST)
-        new = now * np.exp(step)
-        astray = (low[going] > 0) & (high[going] < np.inf) & ((new <= low[going]) | (new >= high[going]))
-        new = np.where(astray, np.sqrt(low[going]) * np.sqrt(np.where(astray, high[going], 1.0)), new)
-        q[going] = np.where(solved, now, new)
-        going = going[~solved]
-        if not len(going):
-            break
+        area[active[solved]] = means.area[solved]
+        low[active] = np.where(more > 0, now, low[active])
+        high[active] = np.where(more < 0, now, high[active])
+        slope = -means.fall - (6 / np.pi) * means.c * delta / (w + now)  # of P - q S
+        new = now * np.exp(np.clip(more / now / -slope, -_LONGEST, _LONGEST))
+        astray = (low[active] > 0) & (high[active] < np.inf) & ((new <= low[active]) | (new >= high[active]))
+        new = np.where(astray, np.sqrt(low[active]) * np.sqrt(np.where(astray, high[active], 1.0)), new)
+        q[active] = np.where(solved, now, new)
+        return solved
+
+    left = march(step, np.arange(len(y)), most=_MOST)
+    if len(left):
+        now, _, _, means, more = balance(left)
+        solved = np.abs(more) < _SOLVED * now
+        area[left[solved]] = means.area[solved]
+        q[left[~solved]] = np.nan
     return q, area
 
 

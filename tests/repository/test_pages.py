@@ -33,6 +33,12 @@ def test_the_readme_is_short():
     assert len(TEXT["README.md"].splitlines()) <= 130
 
 
+def test_the_readme_shows_the_first_command_of_two_minutes():
+    """That page is compared with what its commands print."""
+    shown = re.compile(r"^```sh\nroughcoat ([^\n]*)\n```\n\n```text\n(.*?)^```", re.MULTILINE | re.DOTALL)
+    assert shown.findall(TEXT["README.md"]) == shown.findall(TEXT["docs/two_minutes.md"])[:1] != []
+
+
 def test_the_page_of_speeds_is_that_of_its_command():
     """Its text stands in the benchmark, so that `make speed` loses nothing."""
     pieces = re.split(r"\{.*?\}", PAGE)

@@ -1,6 +1,6 @@
-"""Derivatives of the answers by the inputs, from one more linear system for each solution."""
+"""Derivatives of the answers by the inputs, from one Newton step of each solved contact for each input moved."""
 
-from .changes import is_ratio
+from ..parameters import is_ratio
 from .sensitivities import QUANTITIES, Sensitivities, sensitivities
 
 __all__ = ["QUANTITIES", "Sensitivities", "is_ratio", "sensitivities"]

@@ -28,24 +28,24 @@ def without_state(problem):
     return ~by_equation(problem, "nodes")
 
 
-def stacks(problem, nodes, a, most):
-    """Yield the indices of cases of one law, base, shape and mesh, and their number of nodes; 0: of one case on panels.
-    No stack has more than `most` unknowns."""
-    words = problem.micro, problem.base, problem.shape, nodes.astype(str), kinds_of_laws(problem).astype(str)
-    kinds = np.stack(words)
+def stacks(problem, nodes, a, most, *words):
+    """Yield the indices of cases of one law, base, shape and mesh, and of the same further `words` (B,), and their
+    number of nodes; 0: of one case on panels. No stack has more than `most` unknowns."""
+    kinds = nodes.astype(str), problem.micro, problem.base, problem.shape, kinds_of_laws(problem).astype(str)
+    kinds = np.stack([*kinds, *words])
     for kind in np.unique(kinds, axis=1).T:
-        index, count = np.flatnonzero(np.all(kinds == kind[:, None], axis=0)), int(kind[3])
+        index, count = np.flatnonzero(np.all(kinds == kind[:, None], axis=0)), int(kind[0])
         order = as_cases(problem.take(index)).body.order(a[index])
         index = index if order is None else index[order]
         yield from ((part, count) for part in np.array_split(index, -(-len(index) * count // most) or len(index)))
 
 
 def found_again(cases, nodes, a, rtol):
-    """:class:`~solver.rough.newton.Iterated` of cases of about the radii a (B,), in units R = E2* = 1, on `nodes`
-    nodes; 0: of one case on panels of its own."""
+    """:class:`~solver.rough.newton.Iterated` of cases in units R = E2* = 1: at the radii a (B,), on `nodes` nodes; 0:
+    of one case under its control, on panels of its own, some of which are kept from when it was solved."""
     if not nodes:
         return solve_on_panels(cases, rtol[0], budget_of(cases))[0]
-    mesh = mesh_of(nodes)
+    mesh, cases = mesh_of(nodes), cases._replace(control="a", value=a)
     return solve_on(evaluate(cases, first_guess(cases, mesh, a), mesh))
 
 

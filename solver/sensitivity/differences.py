@@ -1,15 +1,14 @@
 """Derivatives by moved inputs: each case solved again with each input a little larger and a little smaller.
 
 It takes 2 k solutions, which have errors. It is for cases whose equation is not found again, such as those on panels
-that would be chosen otherwise a second time, and for those that :mod:`.state` does not know: smooth punches of other
-shapes than a paraboloid, what sticks, flat punches, and asperities that feel the coated body: each input that changes
-the kernel there changes the whole law.
+that would be chosen otherwise a second time, and for those that :mod:`.step` does not know: smooth punches of other
+shapes than a paraboloid, what sticks, and flat punches.
 """
 
 import numpy as np
 
 from ..solve import solve
-from .changes import moved, slope_of
+from .inputs import moved_cases, slope_of
 
 #: By how much an input is moved, and the rtol of the moved cases. The error is about _RTOL/_STEP, and _STEP². Where
 #: `fine` is True the inputs are moved twice as far as well, which leaves _STEP⁴: results of a cone, for example, change
@@ -34,7 +33,7 @@ def by_differences(problem, inputs, quantities, x, fine=False):
 
 
 def _by_step(problem, inputs, quantities, x, step):
-    cases = moved(problem, inputs, step)
+    cases = moved_cases(problem, inputs, step)
     solution = solve(cases.but(rtol=np.minimum(cases.rtol, _RTOL)), x)
     k = len(inputs)
     logs = {name: slope_of(np.log(np.abs(getattr(solution, name))), k, step) for name in quantities}

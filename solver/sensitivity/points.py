@@ -1,75 +1,54 @@
-"""Derivatives of pressure and λ between the nodes: of profiles, and of Ar/An where λ bends."""
-
-from typing import NamedTuple
+"""Pressure and λ between the nodes: of profiles, and of Ar/An where λ bends."""
 
 import numpy as np
 
 from ..numerics.mesh import gauss_rule
-from ..rough.results import interpolate, stiffness_between
-from .state import along, moving_numbers, of_law
+from ..rough.results import apart, interpolate, stiffness_between
 
-#: Gauss points between any two nodes at which a λ that bends is differentiated. With 5 points the derivatives of
-#: Ar/An are as right as the other ones (tests/sensitivity/test_sensitivities.py).
+#: Gauss points between any two nodes at which a λ that bends is summed. With 5 points the derivatives of Ar/An are as
+#: right as the other ones (tests/sensitivity/test_sensitivities.py).
 _FEW = 5
 
 
-class Points(NamedTuple):
-    """Pressure and λ (B, m) at points, in units R = E2* = 1; and their derivatives (k, B, m) by k inputs."""
+def between(start, contacts, s):
+    """q and λ (m B, c) of moved cases at points s (c,) > 0.
 
-    p: np.ndarray
-    lam: np.ndarray
-    d_p: np.ndarray
-    d_lam: np.ndarray
-
-
-def at_points(ev, changes, derivatives, s):
-    """:class:`Points` at s (m,) > 0. `derivatives`: :class:`.state.Implicit` of the solutions `ev`.
-
-    Without asperities q is a polynomial in s, and so is its change. With them it is not one next to the edge, but what
-    bodies and asperities make of q is: so the equation of :func:`~solver.rough.results.interpolate` is
-    differentiated.
+    The equation of :func:`~solver.rough.results.interpolate` is solved for the contacts before the step, and there
+    one Newton step is taken. Its right-hand side changes as bodies and asperities yield at the nodes: that change is a
+    polynomial, and small at the edge as the right-hand side is.
     """
-    law, s = ev.cases.law, np.asarray(s, dtype=float)
-    basis, y = ev.mesh.basis(s).T, interpolate(ev, s)
+    ev, now = start.at, contacts.at
+    law, inside = now.cases.law, apart(s, now.cases.law.rough)
+    blocks = len(now.state.eta) // len(ev.state.eta)
+    y = interpolate(ev, inside)
+    curve = ev.cases.law.evaluate(y)
+    (linear, yields), (moved_linear, moved_yields) = _at(ev, inside), _at(now, inside)
+    right = np.tile(linear * curve.q + ev.Z * curve.g - yields, (blocks, 1)) + moved_yields
+    y = np.tile(y, (blocks, 1))
     curve = law.evaluate(y)
-    at_s = of_law(law, y, curve, moving_numbers(changes))
-    if law.rough:
-        q = _between_nodes(ev, changes, derivatives, s, curve, at_s)
-    else:
-        q = s * ((derivatives.q / ev.mesh.s) @ basis)
-    d_lam = along(ev, changes, at_s, q)[1]
-    p_star = law.p_star[:, None]
-    return Points(p_star * curve.q, law.area(y, curve.q), p_star * (q + changes.p_star[..., None] * curve.q), d_lam)
+    missed = moved_linear * curve.q + now.Z * curve.g - right
+    change = law.limit(y - missed / (moved_linear * curve.dq + now.Z * curve.dg), y) - y
+    q, y = curve.q + curve.dq * change, y + change
+    return q * (s / inside), law.area(y, q)
 
 
-def _between_nodes(ev, changes, derivatives, s, curve, at_s):
-    """Derivatives (k, B, m) of q at s, where the asperities have the `curve` and the derivatives `at_s`."""
-    basis, stiff = ev.mesh.basis(s).T, ev.X * stiffness_between(ev.mesh, s)
-
-    def explicit(curve):
-        return changes.Y[..., None] * curve.q + changes.Z[..., None] * curve.g
-
-    dq = derivatives.q
-    yields = explicit(ev.curve) + ev.Y * dq + ev.Z * along(ev, changes, derivatives.law, dq)[0]
-    at_same_q = explicit(curve) + ev.Z * along(ev, changes, at_s, 0 * (dq @ basis))[0]
-    return (yields @ basis - at_same_q + stiff * (dq @ basis)) / (stiff + ev.Y + ev.Z * at_s.by_q[0])
+def _at(ev, s):
+    """X κ + Y (B, c) at the points s (c,); and there the polynomial (B, c) through what this and asperities make of the
+    pressures at the nodes."""
+    stiff, basis, curve = ev.X * stiffness_between(ev.mesh, s), ev.mesh.basis(s).T, ev.curve
+    return stiff + ev.Y, (ev.Y * curve.q + ev.Z * curve.g) @ basis + stiff * (curve.q @ basis)
 
 
-def of_corners(ev, changes, derivatives):
-    """Derivatives (k, B) of ln Ar/An of cases whose λ bends."""
-    s, w = gauss_rule(_FEW, (0.0, *ev.mesh.s.tolist()))
-    at = at_points(ev, changes, derivatives, s)
-    return (at.d_lam @ (w * s)) / (at.lam @ (w * s))
-
-
-def profiles(ev, changes, derivatives, x):
-    """:class:`Points` at the radii x (m,); 0 at the edge."""
+def profiles(start, contacts, x):
+    """q and λ (m B, c) at the radii x (c,); 0 at the edge."""
     s = np.sqrt((1 - x) * (1 + x))
     inner = s > 0
-    return Points(*(_with_edge(values, inner) for values in at_points(ev, changes, derivatives, s[inner])))
+    both = np.zeros((2, len(contacts.at.state.eta), len(x)))
+    both[:, :, inner] = between(start, contacts, s[inner])
+    return both
 
 
-def _with_edge(values, inner):
-    whole = np.zeros((*values.shape[:-1], len(inner)))
-    whole[..., inner] = values
-    return whole
+def area_of_corners(start, contacts):
+    """Ar/An (m B,) of cases whose λ bends."""
+    s, w = gauss_rule(_FEW, (0.0, *start.at.mesh.s.tolist()))
+    return 2 * between(start, contacts, s)[1] @ (w * s)

@@ -1,7 +1,9 @@
-"""Derivatives of the answers by the inputs: one more linear system for each solution.
+"""Derivatives of the answers by the inputs: of each solved contact one Newton step for each input moved.
 
-The equation of each case is found again on its mesh, from its radius, by a few Newton steps; there :mod:`.state` has
-all derivatives at once. Where that fails, the case is solved with each input moved: :mod:`.differences`.
+The equation of each case is solved once more on its mesh, at its radius. :mod:`.step` has the contacts of the same
+radius with an input moved up and down, and the differences of their answers are derivatives at that radius. With those
+by the radius itself, the control says how the radius changes. Where that fails, the case is solved with each input
+moved: :mod:`.differences`.
 """
 
 from collections.abc import Sequence
@@ -15,31 +17,21 @@ from ..numerics.ladder import STACK
 from ..numerics.threads import one_blas_thread
 from ..parameters import is_ratio, uses
 from ..problem import Problem
-from ..rough.results import pointed
-from ..scaling import as_cases, dimensionless
+from ..scaling import dimensionless
 from ..solution import Solution
 from ..status import Status
-from .added import added_slopes
-from .again import found_again, meshes, same, stacks, without_state
-from .changes import changes_of, inputs_of, moved, slope_of
+from .again import meshes, stacks, without_state
+from .answers import QUANTITIES, derivatives_of
 from .differences import SIGNED, by_differences
-from .held import Held, held
-from .points import of_corners, profiles
-from .state import implicit, operators_of
-from .stiffness import stiffness_slopes
+from .held import held
+from .inputs import inputs_of
 
-#: Quantities that have sensitivities, arrays (B,) of a :class:`~solver.solution.Solution`; and those among them whose
-#: unit has the modulus as a factor.
-QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD", "A0")
-_OF_MODULUS = ("P", "p0", "p_max", "dP_dD")
 #: Where a number changes by more than so many times itself with ln input it is taken to be near 0.
 _NEAR_0 = 5.0
-#: Those whose sensitivity is not known where they are 0, as a load may be under adhesion, or infinite, or not known.
+#: Quantities whose sensitivity is unknown where they are 0, as a load under adhesion may be, or infinite, or unknown.
 _NEVER_0 = tuple(name for name in QUANTITIES if name != "A0")
-#: Those that the pressure on the axis decides, which is not known under a point.
-_OF_CENTRE = ("p0", "p_max", "A0")
-#: Most unknowns of a stack: with k inputs it has k right-hand sides.
-_STACK = STACK // 4
+#: Most unknowns of a stack: with k inputs it has 2 (k + 1) moved contacts.
+_STACK = STACK // 8
 
 
 class Sensitivities(NamedTuple):
@@ -138,17 +130,15 @@ def _of_solved(scaled, solution, inputs, x):
     logs = {name: np.full((k, size), np.nan) for name in QUANTITIES}
     slopes = {name: np.full((k, size), np.nan) for name in SIGNED}
     shapes, left = np.full((2, k, size, len(x)), np.nan), np.ones(size, dtype=bool)
-    felt = scaled.feels_layer()
-    scaled = scaled.but(asperities_on=np.where(felt, "layer", "half_space"))  # also where a moved h is below the pitch
-    now, above = held(scaled, solution.model_used), moved(scaled, inputs)
-    beside = held(above, np.tile(solution.model_used, 2 * k))
-    stateless = without_state(scaled)
-    again = np.flatnonzero(~stateless & ~felt)
-    for rows, nodes in stacks(now.written.take(again), meshes(solution, scaled)[again], solution.a[again], _STACK):
+    # what asperities press on stays, also where a moved h is below the pitch
+    scaled = scaled.but(asperities_on=np.where(scaled.feels_layer(), "layer", "half_space"))
+    now, stateless = held(scaled, solution.model_used), without_state(scaled)
+    again = np.flatnonzero(~stateless)
+    cases = now.written.take(again), meshes(solution, scaled)[again], solution.a[again]
+    for rows, nodes in stacks(*cases, _STACK, scaled.micro[again]):
         index = again[rows]
-        rows = (np.arange(2 * k)[:, None] * size + index).ravel()
-        part = now.take(index), beside.take(rows), above.take(rows)
-        good, derivatives, at_x = _of_stack(*part, solution.take(index), nodes, x)
+        part = scaled.take(index), now.take(index), solution.take(index)
+        good, derivatives, at_x = derivatives_of(*part, inputs, nodes, x)
         left[index[good]] = False
         for name, values in derivatives.items():
             logs[name][:, index[good]] = values[:, good]
@@ -158,36 +148,7 @@ def _of_solved(scaled, solution, inputs, x):
         if not len(rest):
             continue
         derivatives, shapes[:, :, rest], signed = by_differences(now.named.take(rest), inputs, QUANTITIES, x, fine)
-        for found, into in (derivatives, logs), (signed, slopes):
-            for name, values in found.items():
+        for values_of, into in (derivatives, logs), (signed, slopes):
+            for name, values in values_of.items():
                 into[name][:, rest] = values
     return logs, shapes, slopes
-
-
-def _of_stack(now: Held, beside: Held, above, solution, nodes, x):
-    """(B,) bool, whether the solutions were found again; quantity -> (k, B); and (2, k, B, m) for p and λ.
-
-    beside, above : the 2 k B moved cases as they are solved, and as they were asked for
-    """
-    k, rtol = len(beside.E2) // (2 * len(now.E2)), now.written.rtol
-    iterated = found_again(as_cases(now.written), nodes, solution.a, rtol)
-    ev, d_E2 = iterated.at, slope_of(np.log(beside.E2), k)
-    changes = changes_of(beside.written, ev.state.eta, k)
-    operators = operators_of(ev, changes)
-    derivatives = implicit(ev, changes, operators)
-    logs = derivatives.logs | {"dP_dD": stiffness_slopes(ev, beside.written, derivatives, operators)}
-    bent = ev.cases.law.bent(ev.state.y, ev.curve.q)
-    if bent.any():
-        logs["Ar_An"] = np.where(bent, of_corners(ev, changes, derivatives), logs["Ar_An"])
-    logs |= {name: logs[name] + d_E2 for name in _OF_MODULUS}
-    at = profiles(ev, changes, derivatives, x)
-    d_p, d_lam = now.E2[:, None] * (at.d_p + d_E2[..., None] * at.p), at.d_lam
-    if now.added.any():
-        spots, lam = added_slopes(ev, changes, derivatives, above, (now.E2, d_E2), x)
-        logs = {name: np.where(now.added, spots.get(name, values), values) for name, values in logs.items()}
-        d_lam = np.where(now.added[:, None], lam, d_lam)
-    finite = np.ones(len(now.E2), dtype=bool)
-    for name, values in logs.items():
-        finite &= np.isfinite(values).all(axis=0) | (pointed(ev.cases) & (name in _OF_CENTRE))
-    good = iterated.closed & finite & same(ev, solution, rtol)
-    return good, logs, np.stack([d_p, d_lam])

@@ -218,3 +218,15 @@ def test_of_whatever_has_numbers():
     assert solution.status.tolist() == [Status.TOLERANCE_NOT_MET, Status.ITERATION_LIMIT]
     logs = sensitivities(problem, solution).logs["a"]
     assert np.isfinite(logs[0]).all() and np.isnan(logs[1]).all()
+
+
+def test_asperities_of_several_laws_that_are_added_afterwards():
+    """A smooth punch is solved for both, and each has the asperities of its own law."""
+    case = {"h": 1e-4, "n": 0.5, "Nbar": 1e10, "Ra": 1e-3, "B": 0.01, "beta": 0.5, "base": "auto", "accuracy": 0.1}
+    both = Problem.of(P=2e-5, micro=["disc_cell", "power_law"], **case)
+    solution = solve(both)
+    assert (solution.model_used == Model.SMOOTH_THIN_LAYER).all()
+    together = sensitivities(both, solution).logs["A0"]
+    for i in range(2):
+        alone = both.take([i])
+        np.testing.assert_allclose(together[i], sensitivities(alone, solve(alone)).logs["A0"][0], rtol=0, atol=1e-7)

@@ -1,0 +1,47 @@
+"""The inputs by which there are derivatives, the same cases with each of them moved, and the differences.
+
+All derivatives are by the logarithm of an input; by a Poisson ratio itself.
+"""
+
+import numpy as np
+
+from ..layers import numbers_of, table
+from ..parameters import CONTROL, is_ratio
+
+#: An input is moved up and down by this part of itself, a Poisson ratio by this number. The curvature then adds 1e-8
+#: times a third derivative, and rounding 1e-12 to 1e-9.
+STEP = 1e-4
+#: Numbers that are no inputs: they say how a case is solved, or are units, whose effect follows from dimensions.
+_NO_INPUTS = {"accuracy", "k", "rtol", "R", "E2"}
+
+
+def inputs_of(problem):
+    """Names of all inputs, the control first: numbers that have an interval."""
+    rows = table(numbers_of(problem.parameters))
+    numbers = [name for name, row in rows.items() if row.interval and not row.whole and name not in _NO_INPUTS]
+    return (problem.control, *numbers)
+
+
+def moved_cases(problem, inputs, step=STEP, copies=0):
+    """:class:`~solver.problem.Problem` of 2 (k + copies) B cases: for each of the k inputs all cases with it moved up,
+    then all with it moved down; and behind them so many pairs of unmoved ones."""
+    size, k = len(problem), len(inputs)
+    rows = problem.take(np.tile(np.arange(size), 2 * (k + copies)))
+    sign = np.array([1.0, -1.0])[:, None]
+    value, arrays = rows.value, {}
+    for i, name in enumerate(inputs):
+        values = np.array(rows.value if name in CONTROL else getattr(rows, name), dtype=float)
+        pair = values.reshape(-1, 2, size)[i]
+        pair += sign * step * (1.0 if is_ratio(name) else pair)
+        if name in CONTROL:
+            value = values
+        else:
+            arrays[name] = values
+    return type(problem)(problem.control, value, rows.parameters | arrays)
+
+
+def slope_of(values, k, step=STEP):
+    """Derivatives (k, B, ...) from values (2 k B, ...) of :func:`moved_cases`; 0 where nothing changes, infinite values
+    too."""
+    up, down = np.moveaxis(values.reshape(k, 2, len(values) // (2 * k), *values.shape[1:]), 1, 0)
+    return np.where(up == down, 0.0, (up - down) / (2 * step))

@@ -1,0 +1,148 @@
+"""One Newton step: from solved contacts to the same contacts with an input moved a little, at the same radius.
+
+With the equation F(q, t) = 0 there is that of its slope along the branch of solutions, t = dq/d ln a:
+
+    F = 0,      (dF/dq) t + dF/d ln a = 0.
+
+Both are evaluated for the moved input at the solved q and t, and what they miss is taken away by the inverse of the
+solved matrix. What remains is of second order in the step, and the same for the input moved up and down: it cancels in
+the difference.
+
+Radii are fixed because kinks of a punch then stay where they are, or move with an input by a known distance. So do the
+ends of the panels of a case that has kinks. The radius itself is moved like an input.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..numerics import batch
+from ..numerics.linalg import solve_stack
+from ..numerics.mesh import panel_mesh
+from ..rough.equation import Evaluation, State, evaluate, jacobian
+from ..rough.panels import ends_of, followed
+from ..rough.results import quantities
+from .inputs import STEP
+
+
+class Solved(NamedTuple):
+    """The equation `at` the solutions of B cases; the inverse (B, n, n) of dF/dq over X; and dq/d ln a (B, n) along the
+    branch of solutions."""
+
+    at: Evaluation
+    inverse: np.ndarray
+    tangent: np.ndarray
+
+    @classmethod
+    def of(cls, at):
+        diagonal, dF_deta = jacobian(at)
+        unit = np.broadcast_to(np.eye(at.mesh.n), (*diagonal.shape, at.mesh.n))
+        inverse = np.ascontiguousarray(solve_stack(at.operator.K, diagonal, unit))
+        return cls(at, inverse, -np.einsum("bij,bj->bi", inverse, dF_deta))
+
+    def removes(self, missed):
+        """The change of q, or of its slope, (m B, n), that removes what equations of moved cases miss, over X."""
+        size, n = self.tangent.shape
+        change = self.inverse @ missed.reshape(-1, size, n).transpose(1, 2, 0)
+        return change.transpose(2, 0, 1).reshape(missed.shape)
+
+
+class Moved(NamedTuple):
+    """The equation `at` moved cases, m blocks of the B solved ones, and their `tangent` (m B, n)."""
+
+    at: Evaluation
+    tangent: np.ndarray
+
+
+def moved_contacts(start, cases, eta, count=1):
+    """Yield numbers of blocks of the moved `cases`, at ln a = `eta` (m B,), and :class:`Moved`: all blocks together, or
+    those of a mesh. `count`: of steps with the one inverse, each of which is right to one more order."""
+    size = len(start.at.state.eta)
+    changed = _changed(start.at, cases, eta)
+    for mesh, blocks in _meshes(start.at, cases, eta).items():
+        rows = (np.array(blocks)[:, None] * size + np.arange(size)).ravel()
+        part = cases.take(rows), eta[rows]
+        operator = _operator(start.at, *part, mesh, changed[blocks] | (mesh != start.at.mesh))
+        yield blocks, _after_steps(start, *part, operator, count)
+
+
+def _after_steps(start, cases, eta, operator, count):
+    times = len(eta) // len(start.tangent)
+    y, tangent = np.tile(start.at.state.y, (times, 1)), np.tile(start.tangent, (times, 1))
+    now = evaluate(cases, State(y, eta), operator.mesh, operator)
+    for _ in range(count):
+        y = cases.law.limit(y - start.removes(now.F / now.X) / now.curve.dq, y)
+        now = evaluate(cases, State(y, eta), operator.mesh, operator)
+    diagonal, dF_deta = jacobian(now)
+    missed = operator.products(tangent)[0] + diagonal * tangent + dF_deta
+    return Moved(now, tangent - start.removes(missed))
+
+
+def on_kinks(ev):
+    """Whether `ev` is of one case whose panels have ends at kinks of the punch, in the contact."""
+    return ev.mesh.order < ev.mesh.n and len(_ends(ev)) > 2
+
+
+def _ends(ev):
+    return ends_of(ev.cases.shape, float(np.exp(ev.state.eta[0])))
+
+
+def branch_slope(start, cases, eta):
+    """d ln P/d ln D (m,) of moved cases whose panels follow kinks: there the slope at a fixed place is infinite. It is
+    the difference of contacts of two radii, by two steps each: of a second derivative no second order may be missed."""
+    logs = np.empty((2, 2, len(eta)))
+    for end, sign in zip(logs, (1, -1), strict=True):
+        for blocks, contacts in moved_contacts(start, cases, eta + sign * STEP, count=2):
+            numbers = quantities(contacts.at)
+            end[:, blocks] = np.log(numbers.P), np.log(numbers.D)
+    of_load, of_depth = logs[0] - logs[1]
+    return of_load / of_depth
+
+
+def _changed(ev, cases, eta):
+    """(m,) bool: the blocks whose body or radius is another than that of the solved cases."""
+    size = len(ev.state.eta)
+
+    def differ(values, old):
+        return np.any(values.reshape(-1, size, *values.shape[1:]) != old, axis=tuple(range(1, values.ndim + 1)))
+
+    changed = differ(eta, ev.state.eta)
+    for values, old in zip(_numbers(cases.body), _numbers(ev.cases.body), strict=True):
+        changed |= differ(values, old)
+    return changed
+
+
+def _numbers(body):
+    """Yield each array of numbers of a body."""
+    for part in body:
+        if hasattr(part, "_fields"):
+            yield from _numbers(part)
+        elif isinstance(part, np.ndarray) and part.dtype.kind == "f":
+            yield part
+
+
+def _meshes(ev, cases, eta):
+    """Mesh -> its blocks: the mesh of the solved cases; of one case whose panels end at kinks, meshes whose panels
+    follow the kinks of each block."""
+    mesh, blocks = ev.mesh, range(len(eta) // len(ev.state.eta))
+    if not on_kinks(ev):
+        return {mesh: list(blocks)}
+    before, meshes = _ends(ev), {}
+    for block in blocks:
+        ends = ends_of(cases.shape.take([block]), float(np.exp(eta[block])))
+        follows = len(ends) == len(before) and ends != before
+        stretched = panel_mesh(mesh.order, followed(mesh.breaks, before, ends)) if follows else mesh
+        meshes.setdefault(stretched, []).append(block)
+    return meshes
+
+
+def _operator(ev, cases, eta, mesh, changed):
+    """The operator of moved cases on a mesh: anew of the blocks that have `changed`, (m,) bool, and else that of the
+    solved ones."""
+    size = len(ev.state.eta)
+    places = np.arange(len(changed) * size).reshape(-1, size)
+    anew, same = places[changed].ravel(), places[~changed]
+    operators, where = [ev.operator] * len(same), [*same]
+    if len(anew):
+        operators, where = [cases.body.take(anew).at(np.exp(eta[anew]), mesh), *operators], [anew, *where]
+    return batch.join(operators, where)

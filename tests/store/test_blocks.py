@@ -14,7 +14,8 @@ from study.inputs.identity import case_keys
 from study.inputs.reading import from_tables
 from study.store import blocks
 from study.store.block_file import Block, Damaged, read_block, write_block
-from study.store.blocks import Store, add, count_statuses, facts, gather, inventory, put, usable
+from study.store.blocks import add, count_statuses, facts, gather, inventory, put, usable
+from study.store.windows import Store
 
 
 def line(**output) -> Definition:
@@ -231,7 +232,7 @@ def test_a_block_that_has_just_gone_is_missing(some, monkeypatch):
 def test_litter_is_removed_and_blocks_are_not(some):
     kept = put(some, block(some, [0], [0]))
     (some.folder / ".line.nc.0123.tmp").touch()
-    blocks.remove_litter(some)
+    some.remove_litter()
     assert list(some.folder.iterdir()) == [kept]
 
 

@@ -109,12 +109,8 @@ class Order:
         definition, windows = self.definition, []
         for window, condition in zip(state.windows, state.conditions, strict=True):
             edited = state.is_one and condition.title != (definition.title or definition.name)
-            if (
-                not belongs(definition, condition)
-                or (edited and self.store.record(condition.digest).exists())
-                or self.retry
-                and np.isin(statuses(window.path), self.retry).any()
-            ):
+            missing = not belongs(definition, condition) or (edited and self.store.record(condition.digest).exists())
+            if missing or (self.retry and np.isin(statuses(window.path), self.retry).any()):
                 windows.append(window)
         return windows
 

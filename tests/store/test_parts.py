@@ -15,7 +15,8 @@ import study
 from study.files.access import Unusable
 from study.files.results_file import numbers_digest
 from study.inputs.reading import from_tables
-from study.store import blocks, windows
+from study.store import blocks, windows, writer
+from study.store.windows import Store
 from study.work import cases
 from study.work import run as running
 from study.work.cases import compute, parcel
@@ -212,6 +213,36 @@ def test_a_damaged_block_of_a_window_is_computed_again(tmp_path, monkeypatch, ca
     monkeypatch.setattr(cases, "compute", real)
     assert large.run(workers=1).computed == 53 and f"{path}: is no whole block" in caplog.text
     assert large.verify().kind == "sound" and not on_disk(tmp_path)
+
+
+def test_what_appears_in_the_place_of_a_part_stays(tmp_path, monkeypatch):
+    real = cases.compute
+    path = windows.windows_of(Store(written(tmp_path).definition, tmp_path))[3].path
+
+    def compute(task):
+        if task.first == 57:
+            path.write_text("precious")
+        return real(task)
+
+    monkeypatch.setattr(cases, "compute", compute)
+    with pytest.raises(study.StudyError, match="has appeared or changed while its results were computed, and stays"):
+        written(tmp_path).run(workers=1)
+    assert path.read_text(encoding="utf-8") == "precious" and len(files(tmp_path)) == 4
+    path.unlink()
+    monkeypatch.setattr(cases, "compute", real)
+    assert written(tmp_path).run(workers=1).computed == 10
+
+
+def test_a_window_of_which_all_is_on_the_disk_is_written(tmp_path, monkeypatch):
+    """A run was killed between its last block and its results."""
+    monkeypatch.setattr(running, "BRIEF", 0)
+    large, real = written(tmp_path), writer.put
+    monkeypatch.setattr(writer, "put", lambda *_: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        large.run(workers=1)
+    monkeypatch.setattr(writer, "put", real)
+    assert large.status()["counts"] == {0: 20, 127: 40} and not files(tmp_path)
+    assert large.run(workers=1).computed == 40 and large.verify().kind == "sound" and not on_disk(tmp_path)
 
 
 def test_an_edit_that_makes_a_study_small_takes_the_blocks_of_windows(tmp_path, monkeypatch):

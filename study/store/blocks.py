@@ -56,8 +56,8 @@ class Source:
 
 
 @dataclass(frozen=True, eq=False)
-class Unwritten:
-    """A block that is in memory alone.
+class InMemory:
+    """A block that is in memory.
 
     index : (N,), its cases; arrays : its columns
     """
@@ -83,7 +83,7 @@ class Inventory:
     """
 
     keys: np.ndarray | None
-    sources: list[Source | Unwritten]
+    sources: list[Source | InMemory]
     source: np.ndarray
     row: np.ndarray
     status: np.ndarray
@@ -176,19 +176,26 @@ def put_in_memory(store: Store, stock: Inventory, index: np.ndarray, arrays: dic
     stock.source[index], stock.row[index] = len(stock.sources), np.arange(len(index))
     stock.status[index] = arrays["status"]
     stock.unwritten.append(len(stock.sources))
-    stock.sources.append(Unwritten(index, arrays))
+    stock.sources.append(InMemory(index, arrays))
 
 
 def write_rest(store: Store, stock: Inventory) -> None:
-    """Write the blocks that are in memory alone."""
+    """Write the blocks that are in memory alone.
+
+    Those of one of many windows are in memory too until it is written: without locks another run may write it before,
+    and remove its blocks.
+    """
     about, places = facts(store.definition.x, store.definition.inputs), list(range(len(store.definition.inputs)))
     while stock.unwritten:
-        index, arrays = stock.sources[stock.unwritten[0]].index, stock.sources[stock.unwritten[0]].arrays
+        number = stock.unwritten[0]
+        index, arrays = stock.sources[number].index, stock.sources[number].arrays
         stock.keys = keys_of(store) if stock.keys is None else stock.keys
         block = Block(about, stock.keys[index], arrays)
         path = put(store, block)
-        source = Source(path, block.keys, arrays["status"], about, [*arrays], places)
-        stock.sources[stock.unwritten.pop(0)], stock.blocks[path] = source, len(index)
+        if not store.window:
+            stock.sources[number] = Source(path, block.keys, arrays["status"], about, [*arrays], places)
+        stock.blocks[path] = len(index)
+        del stock.unwritten[0]
 
 
 def put(store: Store, block: Block) -> Path:

@@ -51,9 +51,7 @@ def _clean_windows(store: Store) -> list[str]:
     if not store.folder.exists():
         return lines
     with alone(store):
-        state = glance(store)
-        there = {window.path for window in state.there}
-        needed = tuple(window.prefix for window in state.windows if window.path not in there)
+        needed = tuple(window.prefix for window in glance(store).absent)
         gone = [path for path in store.folder.glob("*.block") if OF_A_WINDOW.match(path.name)]
         gone = [path for path in gone if not path.name.startswith(needed)]
         for path in gone:

@@ -60,6 +60,12 @@ class State:
         return [window for window, condition in pairs if belongs(self.store.definition, condition)]
 
     @property
+    def absent(self) -> list[Window]:
+        """The windows whose results are not there."""
+        pairs = zip(self.windows, self.conditions, strict=True)
+        return [window for window, condition in pairs if not belongs(self.store.definition, condition)]
+
+    @property
     def wrong(self) -> list[Condition]:
         """Of the files that are there those that are not the results that their names say."""
         return [condition for condition in self.conditions if not condition.good and condition.kind != "missing"]
@@ -67,7 +73,7 @@ class State:
     @property
     def is_complete(self) -> bool:
         """Whether all results are there."""
-        return len(self.there) == len(self.windows)
+        return not self.absent
 
     def store_of(self, window: Window) -> Store:
         return within(self.store, window, self.divided)
@@ -80,10 +86,10 @@ class State:
 
     def counts(self, windows: list[Window] | None = None) -> dict[int, int]:
         """status -> number of cases, in these windows or in all."""
-        total, there = dict[int, int](), {window.cases.start for window in self.there}
+        total, absent = dict[int, int](), {window.path for window in self.absent}
         for window in self.windows if windows is None else windows:
-            has_results = window.cases.start in there
-            add_counts(total, count_statuses(statuses(window.path)) if has_results else self.counts_of_blocks(window))
+            is_absent = window.path in absent
+            add_counts(total, self.counts_of_blocks(window) if is_absent else count_statuses(statuses(window.path)))
         return dict(sorted(total.items()))
 
     def counts_of_blocks(self, window: Window) -> dict[int, int]:
@@ -95,9 +101,7 @@ class State:
     @property
     def missing(self) -> int:
         """How many cases are neither in results nor in blocks."""
-        there = {window.cases.start for window in self.there}
-        windows = [window for window in self.windows if window.cases.start not in there]
-        return sum(self.counts_of_blocks(window).get(NOT_RUN, 0) for window in windows)
+        return sum(self.counts_of_blocks(window).get(NOT_RUN, 0) for window in self.absent)
 
     def summary(self) -> dict:
         """As `study.api.Study.status`."""

@@ -12,6 +12,7 @@ from children import PATIENCE, PROCESSES, wait_for
 from conftest import ROOT
 
 import study
+from study.files import lock
 from study.files.access import Unusable
 from study.files.results_file import numbers_digest
 from study.inputs.reading import from_tables
@@ -243,6 +244,23 @@ def test_a_window_of_which_all_is_on_the_disk_is_written(tmp_path, monkeypatch):
     monkeypatch.setattr(writer, "put", real)
     assert large.status()["counts"] == {0: 20, 127: 40} and not files(tmp_path)
     assert large.run(workers=1).computed == 40 and large.verify().kind == "sound" and not on_disk(tmp_path)
+
+
+def test_without_locks_the_second_run_ends_well_too(tmp_path, monkeypatch):
+    """One that has written a window removes its blocks, also those of the other."""
+    monkeypatch.setattr(running, "BRIEF", 0)
+    monkeypatch.setattr(lock, "fcntl", None)
+    large, real = written(tmp_path), running.add
+
+    def add(*given):
+        real(*given)
+        monkeypatch.setattr(running, "add", real)
+        assert written(tmp_path).run(workers=1).computed == 53
+
+    monkeypatch.setattr(running, "add", add)
+    report = large.run(workers=1)
+    assert report.complete and report.computed == 60 and not on_disk(tmp_path)
+    assert large.verify().kind == "sound"
 
 
 def test_an_edit_that_makes_a_study_small_takes_the_blocks_of_windows(tmp_path, monkeypatch):

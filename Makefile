@@ -124,6 +124,7 @@ fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crash
 	$(VENV)/bin/python tools/fuzz/fuzz_studies.py 2000
 	$(VENV)/bin/python tools/fuzz/fuzz_files.py 400
 	$(VENV)/bin/python tools/fuzz/kill_runs.py 10
+	$(VENV)/bin/python tools/fuzz/kill_runs.py 10 1 parts
 
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tools/bench/benchmark.py bench.json

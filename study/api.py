@@ -2,27 +2,23 @@
 
 import os
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
 from .data.provenance import command_line
-from .files.access import Unusable
-from .files.examine import Condition, statuses
-from .files.results_file import LAZY, opened
-from .inputs.definition import Definition, StudyError
+from .files.examine import Condition
+from .inputs.definition import Definition
 from .inputs.places import study_file
 from .inputs.reading import read
-from .inputs.vocabulary import NOT_RUN
-from .store.blocks import Store, count_statuses, inventory
 from .store.clean import clean
-from .store.parts import condition, is_large
+from .store.state import glance, verified
+from .store.windows import Store
 from .work.cost import Estimate
-from .work.large import dry_run_large, open_large, run_large, state_of
-from .work.plan import Report, anything_there, belongs, look, of_what
-from .work.run import dry_run, partial_dataset, run
+from .work.plan import Report
+from .work.run import dry_run, run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,11 +47,6 @@ class Study:
         return Store(self.definition, self._folder)
 
     @property
-    def _is_in_parts(self) -> bool:
-        """Whether the results are a folder of parts; a file that a former version has made of them counts too."""
-        return is_large(self.definition) and not belongs(self.definition, look(self._store, 0))
-
-    @property
     def _folder(self) -> Path:
         """Folder of the results, short while the program is where it was when the study was loaded."""
         return self.results if self.home in (None, _working_folder()) else self.home / self.results
@@ -80,8 +71,7 @@ class Study:
         --------
         `rc.load("studies/mine.toml").run(workers=4)`: docs/studies.md.
         """
-        computing = run_large if self._is_in_parts else run
-        return computing(self.definition, self._folder, command=command_line(), **options)
+        return run(self.definition, self._folder, command=command_line(), **options)
 
     def dry_run(self, workers: int | None = None, yes: bool = False, force: bool = False) -> Estimate:
         """What `run` would cost, how many cases it would find computed, and with which error it would end, if any.
@@ -97,8 +87,7 @@ class Study:
         -------
         Estimate : cases, seconds, bytes in memory and on disk
         """
-        estimating = dry_run_large if self._is_in_parts else dry_run
-        return estimating(self.definition, self._folder, workers=workers, force=force)
+        return dry_run(self.definition, self._folder, workers=workers, force=force)
 
     def status(self, yes: bool = False) -> dict:
         """What has been computed.
@@ -119,31 +108,8 @@ class Study:
         dict : "state", "cases", "counts" (status -> number of cases), "path" of the results, "reason"
         """
         with suppress(FileNotFoundError):  # somebody removed the results meanwhile: look again
-            return self._status()
-        return self._status()
-
-    def _status(self) -> dict:
-        store = self._store
-        if self._is_in_parts:
-            state, counts, reason = state_of(store)
-            cases = self.definition.grid.size
-            return {"state": state, "cases": cases, "counts": counts, "path": store.parts, "reason": reason}
-        found = look(store, LAZY)
-        state = "outdated" if found.good else {"missing": "new"}.get(found.kind, found.kind)
-        state = "done" if belongs(self.definition, found) else state
-        counts = {}
-        if state == "done":
-            counts = count_statuses(statuses(store.path))
-        elif state not in ("new", "outdated"):
-            pass
-        elif not anything_there(store):
-            counts = {NOT_RUN: self.definition.grid.size}
-        else:
-            known = inventory(store)
-            counts = count_statuses(known.status)
-            state = "partial" if state == "new" and len(known.missing) < len(known.keys) else state
-        cases = self.definition.grid.size
-        return {"state": state, "cases": cases, "counts": counts, "path": store.path, "reason": found.reason}
+            return glance(self._store).summary()
+        return glance(self._store).summary()
 
     def verify(self) -> Condition:
         """Compare all of the results file with its digest, and with the study: that it has these cases.
@@ -153,13 +119,7 @@ class Study:
         Condition : its `kind` is "sound" where nothing is wrong, else `reason` says what is: `study.files.examine`.
             It is "outdated" for undamaged results of another definition
         """
-        if self._is_in_parts:
-            return condition(self._store)
-        found = look(self._store)
-        if not found.good or belongs(self.definition, found):
-            return found
-        reason = f"nothing is damaged, but it holds results of {of_what(found, self.definition)}"
-        return replace(found, kind="outdated", reason=reason)
+        return verified(self._store).verdict()
 
     def clean(self) -> list[str]:
         """Remove blocks that hold no case of the study as it is. Never touches results.
@@ -188,18 +148,8 @@ class Study:
         ------
         StudyError : there are none, none of this definition, or they are damaged
         """
-        if self._is_in_parts:
-            return open_large(self._store)
-        path, found = self._store.path, look(self._store, LAZY)
-        if belongs(self.definition, found):
-            return opened(found)
-        if partial:
-            return partial_dataset(self.definition, self._folder)
-        if found.good or found.kind == "missing":
-            reason = f"holds results of {of_what(found, self.definition)}" if found.good else "does not exist"
-            raise StudyError([f"{path}: {reason}; run the study first"])
-        again = "; run the study, which writes it again" if found.kind == "damaged" else ""
-        raise Unusable(path, found.kind, found.reason + again)
+        state = glance(self._store)
+        return state.partial() if partial and state.is_one and not state.is_complete else state.opened()
 
     def plot(self, x: str, y: str, hue: str = "", **where: Any) -> "Figure":
         """A figure of the results: see `study.plot`.

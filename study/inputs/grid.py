@@ -68,7 +68,8 @@ def cut_out(grid: Grid, window: dict[str, slice]) -> Grid:
     """The grid within a window, a slice for each dimension."""
 
     def within(table: dict) -> dict:
-        return {name: (dims, array[tuple(window[dim] for dim in dims)]) for name, (dims, array) in table.items()}
+        # with ... the part of a single value is an array too
+        return {name: (dims, array[(*(window[dim] for dim in dims), ...)]) for name, (dims, array) in table.items()}
 
     sizes = {dim: len(range(size)[window[dim]]) for dim, size in grid.sizes.items()}
     return Grid(sizes, within(grid.values), within(grid.labels), grid.fitted)

@@ -1,10 +1,17 @@
 """What `clean` removes: blocks that hold no case of the study as it is."""
 
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from ..files.lock import held
 from ..inputs.definition import StudyError
 from ..terminal import counted
-from .blocks import Store, inventory, remove_litter
-from .parts import is_large
+from .blocks import inventory
+from .state import glance
+from .windows import Store, is_large
+
+OF_A_WINDOW = re.compile(r"\d{12}-[0-9a-f]{16}-")  # the beginning of the name of a block of one of many windows
 
 
 def clean(store: Store) -> list[str]:
@@ -13,22 +20,44 @@ def clean(store: Store) -> list[str]:
     Raises StudyError while a run of the study is going on.
     """
     if is_large(store.definition):
-        kept = f"it is so large that no block is looked for in {store.folder}"
-        return [f"{store.parts}: the study is kept in parts, which stay; {kept}"]
+        return _clean_windows(store)
     if not store.folder.exists():
         return [f"{store.folder}: is not there, nothing to remove"]
-    with held(store.lock, wait=False) as alone:
-        if not alone:
-            raise StudyError([f"{store.folder}: a run of this study is going on; clean when it has ended"])
+    with alone(store):
         stock = inventory(store)
         used = {stock.sources[number].path for number in set(stock.source[stock.source >= 0].tolist())}
         gone = [path for path in stock.blocks if path not in used and path.is_file()]
         for path in gone:
             path.unlink(missing_ok=True)
-        remove_litter(store)
+        store.remove_litter()
     kept = f"; the study needs the other {counted(len(used), 'block')}" if used else ""
     what = f"removed {_counted([stock.blocks[path] for path in gone])}" if gone else "nothing to remove"
     return [f"{store.folder}: {what}{kept}"]
+
+
+@contextmanager
+def alone(store: Store) -> Iterator[None]:
+    """Hold the lock of a study. Raises StudyError while a run of the study is going on."""
+    with held(store.lock, wait=False) as is_free:
+        if not is_free:
+            raise StudyError([f"{store.folder}: a run of this study is going on; clean when it has ended"])
+        yield
+
+
+def _clean_windows(store: Store) -> list[str]:
+    """Remove blocks of windows whose results are there, and of windows of another study, by their names."""
+    unread = f"it is so large that no block is looked for in {store.folder}"
+    lines = [f"{store.parts}: the study is kept in parts, which stay; {unread}"]
+    if not store.folder.exists():
+        return lines
+    with alone(store):
+        needed = tuple(window.prefix for window in glance(store).absent)
+        gone = [path for path in store.folder.glob("*.block") if OF_A_WINDOW.match(path.name)]
+        gone = [path for path in gone if not path.name.startswith(needed)]
+        for path in gone:
+            path.unlink(missing_ok=True)
+        store.remove_litter()
+    return lines + [f"{store.folder}: removed {counted(len(gone), 'block')} that no part needs"] * bool(gone)
 
 
 def _counted(cases: list[int]) -> str:

@@ -1,8 +1,10 @@
-"""The results file, written window by window, so that only a small part of a study is in memory at a time.
+"""The results file of a window, written piece by piece, so that only a small part of it is in memory at a time.
 
-It is begun while cases are still computed: a window is written when the last of its cases has come.
+It is begun while cases are still computed: a piece is written when the last of its cases has come. The file of one of
+many windows is a single piece.
 """
 
+import time
 from collections import deque
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
@@ -20,7 +22,8 @@ from ..files.netcdf import File
 from ..files.results_file import create, finish, put, stored
 from ..files.seal import seal
 from ..inputs.grid import Grid, box, cut_out, windows
-from .blocks import Inventory, Store, forget_other_exports, gather, note_export
+from .blocks import Inventory, forget_other_exports, gather, note_export
+from .windows import Store
 
 AT_ONCE = 64_000_000  # bytes gathered at a time; with less, blocks in another order than the cases are read too often
 
@@ -29,8 +32,9 @@ AT_ONCE = 64_000_000  # bytes gathered at a time; with less, blocks in another o
 class Export:
     """A results file that is being written, under another name.
 
-    opened : closes the file; windows, start : those that are not written yet, in order, and their first case
-    file, sums : None before the first window
+    opened : closes the file; since : when it was begun, by time.monotonic; chunk : cases in a chunk
+    pieces, start : those that are not written yet, in order, and their first case
+    file, sums : None before the first piece
     """
 
     store: Store
@@ -38,33 +42,37 @@ class Export:
     command: str
     temporary: Path
     opened: ExitStack
-    windows: deque = field(init=False)
+    since: float = field(default_factory=time.monotonic, init=False)
+    chunk: int = field(init=False)
+    pieces: deque = field(init=False)
     start: int = 0
     file: File | None = None
     sums: Sums | None = None
 
     def __post_init__(self):
         grid = self.store.definition.grid
-        most = AT_ONCE * grid.size // (8 * self.store.definition.numbers)
-        self.windows = deque(windows(grid, most, CHUNK))
+        self.chunk, most = CHUNK, AT_ONCE * grid.size // (8 * self.store.definition.numbers)
+        if self.store.window:
+            self.chunk = most = grid.size
+        self.pieces = deque(windows(grid, most, self.chunk))
 
     def advance(self) -> None:
-        """Write the windows of which all cases are in blocks, up to the first of which one is missing.
+        """Write the pieces of which all cases are in blocks, up to the first of which one is missing.
 
         Raises Damaged when a block has been spoiled since it was written, OSError when the file cannot be written.
         """
-        while self.windows:
-            grid = cut_out(self.store.definition.grid, self.windows[0])
+        while self.pieces:
+            grid = cut_out(self.store.definition.grid, self.pieces[0])
             stop = self.start + grid.size
             if (self.stock.source[self.start : stop] < 0).any():
                 break
-            self._write(grid, self.windows.popleft(), stop)
+            self._write(grid, self.pieces.popleft(), stop)
 
-    def _write(self, grid: Grid, window: dict[str, slice], stop: int) -> None:
+    def _write(self, grid: Grid, piece: dict[str, slice], stop: int) -> None:
         definition = self.store.definition
         arrays = gather(self.store, self.stock, self.start, stop)
-        here = replace(definition, grid=grid, scene=definition.scene and definition.scene.within(window))
-        part, place = dataset_of(here, parts(here, arrays, self.command)), definition.in_results(window)
+        here = replace(definition, grid=grid, scene=definition.scene and definition.scene.within(piece))
+        part, place = dataset_of(here, parts(here, arrays, self.command)), definition.in_results(piece)
         if self.file is None:
             self._create(part)
         for name, array in part.data_vars.items():
@@ -74,8 +82,8 @@ class Export:
 
     def _create(self, part: xr.Dataset) -> None:
         definition = self.store.definition
-        sizes = definition.grid.sizes
-        chunk = definition.in_results(dict(zip(sizes, box(definition.grid.shape, CHUNK), strict=True)))
+        sizes, part.attrs = definition.grid.sizes, part.attrs | self.store.attributes
+        chunk = definition.in_results(dict(zip(sizes, box(definition.grid.shape, self.chunk), strict=True)))
         self.file = self.opened.enter_context(File(self.temporary, "w", self.store.path))
         self.sums = create(self.file, part, dataset_of(definition, labelled(definition, {}, self.command)), chunk)
 
@@ -88,15 +96,21 @@ def exporting(store: Store, stock: Inventory, command: str, condition: Condition
 
     Raises OSError when the file cannot be written, StudyError when another file has come to its place.
     """
-    with replacing(store.path, store.folder, partial(put, condition, store.definition.digest)) as temporary:
+    folder = None if store.window else store.folder
+    with replacing(store.path, folder, partial(put, condition, store.definition.digest)) as temporary:
         with ExitStack() as opened:
             export = Export(store, stock, command, temporary, opened)
             yield export
-            if not export.windows:
+            if not export.pieces:
                 finish(export.file, export.sums)
-        if export.windows:
+        if export.pieces:
             temporary.unlink(missing_ok=True)
             return
-        note_export(store, stock)
+        if not store.window:
+            note_export(store, stock)
         seal(temporary)
-    forget_other_exports(store)
+    if not store.window:
+        forget_other_exports(store)
+        return
+    for path in stock.blocks:  # what is in them is in the file
+        path.unlink(missing_ok=True)

@@ -10,7 +10,7 @@ from solver.numerics.ladder import LADDER, STACK
 
 from ..data.dataset import not_run
 from ..inputs.definition import Definition, StudyError
-from ..store.parts import PART, is_large
+from ..store.windows import PART, is_large
 from ..store.writer import AT_ONCE
 from ..terminal import rounded
 from .cases import compute, parcel
@@ -63,7 +63,8 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     here = blocks < MANY or count == 1  # whether the calling thread computes too
     large, threads = is_large(definition), core_takes(definition)
     processes = 0 if threads else others_beside(count, blocks, here)
-    memory = PROCESS + WORKER * processes + PER_CASE * cases * (not large) + 3 * min(size, AT_ONCE)
+    keyed = min(cases, 2 * PART * cases // size) if large else cases  # of two windows in work, or of all
+    memory = PROCESS + WORKER * processes + PER_CASE * keyed + 3 * min(size, PART if large else AT_ONCE)
     memory += (AHEAD + WORKING) * count * block
     base, judged = (definition.grid.values[name][1] for name in ("base", "model_check"))
     # whether some case may need the operator of the exact layer: as its base, or for the error of the thin layer
@@ -71,8 +72,8 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     nodes = max(LADDER[-1], int(definition.grid.values["nodes"][1].max()))
     matrices = nodes**2 * min(definition.block, cases), nodes * (3 * STACK if exact else STACK)
     memory += count * (SOLVING + 8 * MATRICES * min(matrices)) + (processes + (here or threads)) * TABLES * exact
-    if large:
-        disk = HEAD * (size // PART + 1) + ROOM * size * missing / cases
+    if large:  # the results, and the blocks of two windows in work
+        disk = HEAD * (size // PART + 1) + ROOM * size * missing / cases + 2 * min(PART, size * missing / cases)
         return Estimate(cases, present, seconds, memory, size, disk)
     # the blocks of the missing cases, and the record of the cases in the results file
     stored = KEY * cases + missing * (KEY + sum(array.nbytes for array in not_run(definition, 1).values()))

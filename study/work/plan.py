@@ -2,7 +2,6 @@
 
 import tempfile
 from dataclasses import dataclass, replace
-from math import inf
 from numbers import Integral
 from pathlib import Path
 from typing import TextIO
@@ -12,17 +11,18 @@ import numpy as np
 from solver import NUMERICS_VERSION
 
 from ..data.dataset import status_words
-from ..data.si import axes_of
 from ..files.access import Unusable
 from ..files.atomic import make_folder, target
-from ..files.examine import Condition, Identity, examine, statuses
+from ..files.examine import Condition, statuses
 from ..inputs.definition import LARGE, Definition, StudyError
 from ..inputs.identity import law_versions
 from ..inputs.reading import same_tables
 from ..inputs.vocabulary import NOT_RUN, suggest
-from ..store.blocks import Store, lost_cases
+from ..store.blocks import lost_cases
 from ..store.edits import owner_of
-from ..terminal import on_one_line, program, shown
+from ..store.state import State, belongs, of_what
+from ..store.windows import Store, Window
+from ..terminal import counted, on_one_line, program, shown
 from .cost import describe, estimate
 from .progress import screen_of
 
@@ -101,70 +101,69 @@ class Order:
         """Whether other runs compute other parts at the same time."""
         return self.part[1] > 1
 
-    def done(self, condition: Condition) -> bool:
-        """Whether an examined results file is that of this study, has its title, and holds no case to be tried again.
+    def lacking(self, state: State) -> list[Window]:
+        """The windows whose results are to be written: they are not there, or hold cases to be tried again.
 
-        A file with another title counts as that of this study if its blocks are not there to write it anew.
+        A single file with another title is written anew if its blocks are there.
         """
-        edited = condition.title != (self.definition.title or self.definition.name)
-        if not belongs(self.definition, condition) or (edited and self.store.record(condition.digest).exists()):
-            return False
-        return not (self.retry and np.isin(statuses(self.store.path), self.retry).any())
+        definition, windows = self.definition, []
+        for window, condition in zip(state.windows, state.conditions, strict=True):
+            edited = state.is_one and condition.title != (definition.title or definition.name)
+            missing = not belongs(definition, condition) or (edited and self.store.record(condition.digest).exists())
+            if missing or (self.retry and np.isin(statuses(window.path), self.retry).any()):
+                windows.append(window)
+        return windows
 
-    def report(self, counts: dict[int, int] | None = None, **what) -> Report:
+    def done(self, state: State) -> bool:
+        """Whether there is nothing to do."""
+        return not state.others and not self.lacking(state)
+
+    def report(self, state: State, counts: dict[int, int] | None = None, **what) -> Report:
         """A report; without `counts`, that there was nothing to do."""
         counts = counts or {}
-        report = Report(self.store.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN))
+        report = Report(state.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN))
         return replace(report, **what)
 
 
-def look(store: Store, most: float = inf) -> Condition:
-    """`examine` the results file of a study. One of the same study with other cases is foreign: another program has
-    changed it, or it is a part of the results."""
-    definition, condition = store.definition, examine(store.path, most=most)
-    if not belongs(definition, condition):
-        return condition
-    state = examine(store.path, Identity(definition.digest, axes_of(definition)), 0)
-    if state.kind != "misplaced":
-        return condition
-    return replace(condition, kind="foreign", reason=f"another program has changed it: {state.reason}")
+def check_replaceable(order: Order, state: State) -> None:
+    """Raise StudyError if results of another study or another version of the numerics would be lost, unless these may
+    be replaced.
 
-
-def belongs(definition: Definition, condition: Condition) -> bool:
-    """Whether an undamaged results file is that of this very study."""
-    return condition.good and condition.digest == definition.digest
-
-
-def of_what(condition: Condition, definition: Definition) -> str:
-    """To what the results in an undamaged file belong that are not those of this study, see `owner_of`."""
-    same = condition.numerics == NUMERICS_VERSION
-    return owner_of(condition, definition) if same else "another version of the numerics"
-
-
-def check_replaceable(order: Order, condition: Condition) -> None:
-    """Raise StudyError if replacing the results file would lose cases that are not in this study.
-
-    A file that roughcoat has not written is never replaced.
+    A file that roughcoat has not written is never replaced, and of many files none that is no file is put away.
     """
-    store, definition = order.store, order.definition
-    if condition.kind in ("foreign", "unreadable"):
-        raise Unusable(condition.path, condition.kind, f"{condition.reason}; move it away, or use --results DIR")
-    nothing = condition.kind == "missing" or not condition.digest  # nothing in it can be read
-    same_file = order.renew and same_tables(condition.text, definition.text)
-    if order.force or nothing or same_file or condition.digest == definition.digest:
-        return
-    way = f"{program()} run --force {definition.name}" if order.renew else "--force"
+    rivals = state.rivals()
+    stay = [file for file in state.wrong if state.is_one or file.kind == "unreadable" or not file.path.is_file()]
+    for file in (*stay, *rivals):
+        if file.kind in ("foreign", "unreadable"):
+            raise Unusable(file.path, file.kind, f"{file.reason}; move it away, or use --results DIR")
+    same_file = order.renew and all(same_tables(file.text, order.definition.text) for file in rivals)
+    if rivals and not order.force and not same_file:
+        way = f"{program()} run --force {order.definition.name}" if order.renew else "--force"
+        refusal = _refusal(order, rivals[0], way) if state.is_one else _refusal_of_many(order, state, rivals, way)
+        if refusal:
+            raise StudyError([refusal])
+
+
+def _refusal(order: Order, condition: Condition, way: str) -> str:
+    """Why a file of other results must not be replaced; "" if all its cases are in this study."""
     made = f'; it was made by "{on_one_line(condition.command, 80)}"' if condition.command else ""
     if condition.numerics != NUMERICS_VERSION:
         owner = f"version {condition.numerics} of the numerics, this is {NUMERICS_VERSION}"
         choice = f"{way} computes them again, --results DIR elsewhere"
-        raise StudyError([f"{condition.path}: holds results of {owner}: {choice}{made}"])
-    lost = lost_cases(store, condition.digest)
-    if lost is None or lost[0]:
-        owner = owner_of(condition, definition)
-        what = f"{lost[0]} of its {lost[1]} cases are not in this one" if lost else "which cases cannot be told"
-        choice = f"{way} replaces them, --results DIR writes elsewhere"
-        raise StudyError([f"{condition.path}: holds results of {owner}, {what}: {choice}{made}"])
+        return f"{condition.path}: holds results of {owner}: {choice}{made}"
+    lost = lost_cases(order.store, condition.digest)
+    if lost and not lost[0]:
+        return ""
+    owner = owner_of(condition, order.definition)
+    what = f"{lost[0]} of its {lost[1]} cases are not in this one" if lost else "which cases cannot be told"
+    choice = f"{way} replaces them, --results DIR writes elsewhere"
+    return f"{condition.path}: holds results of {owner}, {what}: {choice}{made}"
+
+
+def _refusal_of_many(order: Order, state: State, rivals: list[Condition], way: str) -> str:
+    """Why files of other results must not be removed."""
+    what = f"holds {counted(len(rivals), 'part')} of {of_what(rivals[0], order.definition)}"
+    return f"{state.path}: {what}: {way} removes them, --results DIR writes elsewhere"
 
 
 def status_values(words: list[str]) -> tuple[int, ...]:
@@ -191,11 +190,6 @@ def check_writable(path: Path) -> None:
     except UnicodeEncodeError:  # Python has lone surrogates for bytes of a path that are not UTF-8
         wrong = f"{path.absolute()}: the path of results must be UTF-8: netCDF can open no other"
         raise StudyError([wrong]) from None
-
-
-def anything_there(store: Store) -> bool:
-    """Whether there may be cases on disk."""
-    return store.path.exists() or any(store.folder.glob("*.block"))
 
 
 def check_size(order: Order) -> None:

@@ -11,7 +11,7 @@ from study.__main__ import main
 from study.files import access, netcdf
 from study.files.examine import examine
 from study.files.results_file import write
-from study.store.blocks import Store
+from study.store.windows import Store
 from study.work import cases
 
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import study
-from study.store.blocks import Store, add, inventory
+from study.store.blocks import add, inventory
+from study.store.windows import Store
 from study.work import cases
 from study.work.cases import parcel
 

@@ -8,8 +8,10 @@ from same import assert_same_numbers
 import study
 from study.__main__ import main
 from study.files.lock import held
+from study.store import windows
 from study.store.block_file import Damaged, read_block
-from study.store.blocks import Store, forget_other_exports, gather, inventory, lost_cases, note_export
+from study.store.blocks import forget_other_exports, gather, inventory, lost_cases, note_export
+from study.store.windows import Store
 from study.work import plan
 
 FEWER = {"P = {start = 1e-6, stop = 1e-4, num = 23}": "P = [1e-6, 1e-4]"}
@@ -125,3 +127,24 @@ def test_the_record_of_an_export_says_which_of_its_cases_would_be_lost(file):
     assert lost_cases(some, first) is None and lost_cases(two, second) == (0, 3)
     two.record(second).write_bytes(b"damaged")
     assert lost_cases(two, second) is None
+
+
+def test_of_a_large_study_blocks_that_no_part_needs_are_removed(file, monkeypatch):
+    """They are of parts that are there, since a run was killed before it removed them, and of another study."""
+    monkeypatch.setattr(windows, "CASES", 10)
+    monkeypatch.setattr(windows, "usual_block", lambda grid: 12)
+    monkeypatch.setattr(windows, "BLOCKS", 1)
+    opened = load(file)
+    first, second = windows.windows_of(Store(opened.definition, opened.results))
+    opened.run(part=(2, 2))
+    folder = opened.results / ".line.blocks"
+    names = [f"{window.prefix}0123.block" for window in (first, second)]
+    names += ["000000000000-0123456789abcdef-0123.block", "0123.block"]
+    for name in names:
+        (folder / name).touch()
+    kept = f"{opened.results / 'line'}: the study is kept in parts, which stay; "
+    kept += f"it is so large that no block is looked for in {folder}"
+    assert opened.clean() == [kept, f"{folder}: removed 2 blocks that no part needs"] and opened.clean() == [kept]
+    assert [path.name for path in blocks(opened)] == [names[0], names[3]]
+    with held(Store(opened.definition, opened.results).lock), pytest.raises(ValueError, match="study is going on"):
+        opened.clean()

@@ -19,9 +19,10 @@ from study.files.netcdf import File
 from study.files.parts_folder import FIRST
 from study.files.results_file import numbers_digest
 from study.files.seal import seal
-from study.store import parts
+from study.store import windows
 from study.store.block_file import read_block, write_block
-from study.store.blocks import Store, gather, inventory, lost_cases
+from study.store.blocks import gather, inventory, lost_cases
+from study.store.windows import Store
 
 __all__ = ["small"]  # the fixture: parts of twenty and ten cases, by turns
 TOML = """
@@ -183,8 +184,8 @@ def test_a_file_of_another_program_besides_is_named_and_never_removed(folder, ca
 
 
 def test_nothing_is_written_where_nothing_is_to_do(folder, monkeypatch):
-    monkeypatch.setattr("study.work.large.check_writable", lambda path: 1 / 0)
-    monkeypatch.setattr("study.work.large.held", lambda *_, **__: 1 / 0)
+    monkeypatch.setattr("study.work.run.check_writable", lambda path: 1 / 0)
+    monkeypatch.setattr("study.work.run.held", lambda *_, **__: 1 / 0)
     assert study.load("mine.toml").run().counts == {}
 
 
@@ -204,7 +205,7 @@ def test_the_digest_of_a_folder_changes_with_its_parts(folder):
 @pytest.fixture
 def line(tmp_path, monkeypatch):
     """A study whose results are one file."""
-    monkeypatch.setattr(parts, "CASES", 1000)
+    monkeypatch.setattr(windows, "CASES", 1000)
     monkeypatch.chdir(tmp_path)
     for name, modulus in (("mine", "2 GPa"), ("other", "3 GPa")):
         text = TOML.replace("2 GPa", modulus, 1) + "[numerics]\nblock = 20\n"

@@ -1,4 +1,5 @@
-"""Large studies in parts: the same numbers, what a stop costs, and what is never replaced. Large is 40 cases here."""
+"""Large studies in many windows, the parts: the same numbers, what a stop costs, what is never replaced. Large is 40
+cases here."""
 
 import os
 import subprocess
@@ -11,10 +12,14 @@ from children import PATIENCE, PROCESSES, wait_for
 from conftest import ROOT
 
 import study
+from study.files import lock
 from study.files.access import Unusable
+from study.files.results_file import numbers_digest
 from study.inputs.reading import from_tables
-from study.store import blocks, parts
+from study.store import blocks, windows, writer
+from study.store.windows import Store
 from study.work import cases
+from study.work import run as running
 from study.work.cases import compute, parcel
 
 AXES = {"P": [1e-5, 3e-5, 2e-5], "h": [0.01, 0.02, 0.03, 0.05, 0.07], "bonding": ["frictionless", "bonded"]}
@@ -35,10 +40,11 @@ UNITS = {
 
 @pytest.fixture(autouse=True)
 def small(monkeypatch):
-    """Parts of twenty and ten cases, by turns."""
-    monkeypatch.setattr(parts, "CASES", 40)
-    monkeypatch.setattr(parts, "usual_block", lambda grid: 20)
-    monkeypatch.setattr(parts, "BLOCKS", 1)
+    """Parts of twenty and ten cases, by turns, each whole before its blocks are put on the disk."""
+    monkeypatch.setattr(running, "BRIEF", float("inf"))
+    monkeypatch.setattr(windows, "CASES", 40)
+    monkeypatch.setattr(windows, "usual_block", lambda grid: 20)
+    monkeypatch.setattr(windows, "BLOCKS", 1)
 
 
 def written(folder, tables=PLAIN, **axes) -> study.Study:
@@ -48,6 +54,10 @@ def written(folder, tables=PLAIN, **axes) -> study.Study:
 
 def files(folder, pattern="*.nc") -> list[str]:
     return sorted(path.name for path in (folder / "big").glob(pattern))
+
+
+def on_disk(folder) -> list:
+    return list(folder.rglob("*.block"))
 
 
 @pytest.mark.parametrize("tables", [PLAIN, UNITS], ids=["plain", "units"])
@@ -61,7 +71,7 @@ def test_parts_hold_what_one_file_would_hold(tmp_path, monkeypatch, tables):
     found = large.open()
     assert all(found[name].chunks for name in found.data_vars), "lazily"
     found.load()
-    monkeypatch.setattr(parts, "CASES", 60)
+    monkeypatch.setattr(windows, "CASES", 60)
     one = written(tmp_path / "one", tables)
     one.run()
     expected = one.open()
@@ -137,14 +147,16 @@ def test_parts_of_another_definition_are_replaced_by_force_alone(tmp_path):
     assert edited.run(force=True).complete and not {*files(tmp_path)} & {*before}
 
 
-def test_a_block_that_fails_costs_its_part_only(tmp_path, monkeypatch):
+def test_a_block_that_fails_costs_that_block_only(tmp_path, monkeypatch):
     real = cases.compute
     monkeypatch.setattr(cases, "compute", lambda task: real(task) if task.first != 20 else 1 / 0)
     large = written(tmp_path)
     report = large.run(workers=1)
     assert list(report.failures.values()) == ["cases 20 to 26: ZeroDivisionError: division by zero"]
-    assert not report.complete and report.computed == 50 and report.counts == {0: 50, 127: 10}
-    monkeypatch.undo()
+    assert not report.complete and report.computed == 53 and report.counts == {0: 53, 127: 7}
+    assert large.status()["counts"] == {0: 53, 127: 7} and large.dry_run().present == 53
+    monkeypatch.setattr(cases, "compute", real)
+    assert large.run(workers=1).computed == 7 and large.verify().kind == "sound" and not on_disk(tmp_path)
 
 
 def test_shares_of_a_batch_system_and_cases_that_are_tried_again(tmp_path, monkeypatch):
@@ -163,13 +175,112 @@ def test_shares_of_a_batch_system_and_cases_that_are_tried_again(tmp_path, monke
     assert large.run(retry=(3,)).counts == {0: 60}
 
 
+def test_windows_that_take_long_have_their_blocks_on_the_disk(tmp_path, monkeypatch):
+    """Until they are whole; the results are the same."""
+    written(tmp_path / "brief").run(workers=1)
+    monkeypatch.setattr(running, "BRIEF", 0)
+    most, real = [], running.add
+    monkeypatch.setattr(running, "add", lambda *given: (real(*given), most.append(len(on_disk(tmp_path)))))
+    written(tmp_path / "long").run(workers=1)
+    assert max(most) == 3 and not on_disk(tmp_path), "twenty cases in blocks of seven"
+    assert files(tmp_path / "brief") == files(tmp_path / "long")
+    digests = [numbers_digest(tmp_path / word / "big") for word in ("brief", "long")]
+    assert digests[0] == digests[1]
+
+
+@pytest.mark.parametrize("first", [27, 44], ids=["within a window", "of the last but one"])
+def test_a_run_goes_on_with_blocks_of_another_size(tmp_path, monkeypatch, first):
+    """What is on the disk is found by the keys of the cases."""
+    monkeypatch.setattr(running, "BRIEF", 0)
+    real = cases.compute
+    monkeypatch.setattr(cases, "compute", lambda task: real(task) if task.first < first else 1 / 0)
+    large = written(tmp_path)
+    there = large.run(workers=1).computed
+    assert there == first and large.status()["counts"] == {0: there, 127: 60 - there}
+    monkeypatch.setattr(cases, "compute", real)
+    report = written(tmp_path, PLAIN | {"numerics": {"block": 3}}).run(workers=1)
+    assert report.computed == 60 - there and report.complete
+    assert large.verify().kind == "sound" and not on_disk(tmp_path)
+
+
+def test_a_damaged_block_of_a_window_is_computed_again(tmp_path, monkeypatch, caplog):
+    monkeypatch.setattr(running, "BRIEF", 0)
+    real = cases.compute
+    monkeypatch.setattr(cases, "compute", lambda task: real(task) if task.first < 14 else 1 / 0)
+    large = written(tmp_path)
+    assert large.run(workers=1).counts == {0: 14, 127: 46}
+    path = on_disk(tmp_path)[0]
+    path.write_bytes(path.read_bytes()[:-1])
+    monkeypatch.setattr(cases, "compute", real)
+    assert large.run(workers=1).computed == 53 and f"{path}: is no whole block" in caplog.text
+    assert large.verify().kind == "sound" and not on_disk(tmp_path)
+
+
+def test_what_appears_in_the_place_of_a_part_stays(tmp_path, monkeypatch):
+    real = cases.compute
+    path = windows.windows_of(Store(written(tmp_path).definition, tmp_path))[3].path
+
+    def compute(task):
+        if task.first == 57:
+            path.write_text("precious")
+        return real(task)
+
+    monkeypatch.setattr(cases, "compute", compute)
+    with pytest.raises(study.StudyError, match="has appeared or changed while its results were computed, and stays"):
+        written(tmp_path).run(workers=1)
+    assert path.read_text(encoding="utf-8") == "precious" and len(files(tmp_path)) == 4
+    path.unlink()
+    monkeypatch.setattr(cases, "compute", real)
+    assert written(tmp_path).run(workers=1).computed == 10
+
+
+def test_a_window_of_which_all_is_on_the_disk_is_written(tmp_path, monkeypatch):
+    """A run was killed between its last block and its results."""
+    monkeypatch.setattr(running, "BRIEF", 0)
+    large, real = written(tmp_path), writer.put
+    monkeypatch.setattr(writer, "put", lambda *_: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        large.run(workers=1)
+    monkeypatch.setattr(writer, "put", real)
+    assert large.status()["counts"] == {0: 20, 127: 40} and not files(tmp_path)
+    assert large.run(workers=1).computed == 40 and large.verify().kind == "sound" and not on_disk(tmp_path)
+
+
+def test_without_locks_the_second_run_ends_well_too(tmp_path, monkeypatch):
+    """One that has written a window removes its blocks, also those of the other."""
+    monkeypatch.setattr(running, "BRIEF", 0)
+    monkeypatch.setattr(lock, "fcntl", None)
+    large, real = written(tmp_path), running.add
+
+    def add(*given):
+        real(*given)
+        monkeypatch.setattr(running, "add", real)
+        assert written(tmp_path).run(workers=1).computed == 53
+
+    monkeypatch.setattr(running, "add", add)
+    report = large.run(workers=1)
+    assert report.complete and report.computed == 60 and not on_disk(tmp_path)
+    assert large.verify().kind == "sound"
+
+
+def test_an_edit_that_makes_a_study_small_takes_the_blocks_of_windows(tmp_path, monkeypatch):
+    real = cases.compute
+    monkeypatch.setattr(cases, "compute", lambda task: real(task) if task.first < 14 else 1 / 0)
+    written(tmp_path).run(workers=1)
+    monkeypatch.setattr(cases, "compute", real)
+    few = written(tmp_path, P=[1e-5])
+    assert few.dry_run().present == few.status()["cases"] - few.status()["counts"][127] == 10
+    assert few.run(workers=1).computed == 10 and few.status()["counts"] == {0: 20}
+
+
 KILLED = """
 import time, sys
 sys.path[:0] = {path!r}
-from study.work import cases
+from study.work import cases, run
 import test_parts
-from study.store import parts
-parts.CASES, parts.usual_block, parts.BLOCKS = 40, (lambda grid: 20), 1
+from study.store import windows
+run.BRIEF = {brief}
+windows.CASES, windows.usual_block, windows.BLOCKS = 40, (lambda grid: 20), 1
 real = cases.compute
 cases.compute = lambda task: (time.sleep(60 * (task.first > 30)), real(task))[1]
 test_parts.written(__import__("pathlib").Path({folder!r})).run(workers=1)
@@ -177,22 +288,25 @@ test_parts.written(__import__("pathlib").Path({folder!r})).run(workers=1)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
-def test_a_killed_run_loses_the_part_in_work_only(tmp_path):
+@pytest.mark.parametrize(("brief", "there"), [(1e9, 30), (0, 37)], ids=["the window", "the block"])
+def test_a_killed_run_loses_what_is_in_work_only(tmp_path, brief, there):
+    """The window, while it is in memory alone; else the block."""
     path = [str(ROOT), *sys.path]
-    process = subprocess.Popen([sys.executable, "-c", KILLED.format(path=path, folder=str(tmp_path))], cwd=tmp_path)
-    wait_for(lambda: len(files(tmp_path)) == 2)
+    script = KILLED.format(path=path, folder=str(tmp_path), brief=brief)
+    process = subprocess.Popen([sys.executable, "-c", script], cwd=tmp_path)
+    wait_for(lambda: len(files(tmp_path)) == 2 and len(on_disk(tmp_path)) == (there > 30))
     process.kill()
     process.wait(PATIENCE)
     large = written(tmp_path)
-    assert large.status()["counts"] == {0: 30, 127: 30} and large.run().computed == 30
-    assert large.verify().kind == "sound" and not list(tmp_path.rglob("*.tmp"))
+    assert large.status()["counts"] == {0: there, 127: 60 - there} and large.run().computed == 60 - there
+    assert large.verify().kind == "sound" and not list(tmp_path.rglob("*.tmp")) and not on_disk(tmp_path)
 
 
 def peak_of_a_run(folder, points: int, answers) -> None:
     """Peak memory of a run in parts whose solver gives every block the same numbers."""
     import resource
 
-    parts.CASES, parts.PART = 1000, 2_000_000
+    windows.CASES, windows.PART = 1000, 2_000_000
     model, axes = {"micro": "smooth", "base": "half_space"}, {"P": {"start": 1e-6, "stop": 1e-4, "num": points}}
     tables = {"model": model, "axes": axes | {"m": {"start": 0.0, "stop": 1.0, "num": 500}}}
     large = study.Study(from_tables(tables | {"output": {"profiles": False}}, "large", "", "large"), folder)

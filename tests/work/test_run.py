@@ -16,7 +16,7 @@ from same import assert_same_numbers
 import study
 from study.data.dataset import DatasetParts
 from study.inputs.reading import from_tables
-from study.store.blocks import Store
+from study.store.windows import Store
 from study.work import cases
 from study.work import run as running
 

@@ -10,7 +10,8 @@ from study.files import lock
 from study.files.lock import held
 from study.store import blocks
 from study.store.block_file import read_block
-from study.store.blocks import Store, put
+from study.store.blocks import put
+from study.store.windows import Store
 from study.work import cases
 from study.work import run as running
 

@@ -27,7 +27,8 @@ import xarray as xr
 import study
 from study.files import seal
 from study.files.examine import examine
-from study.store.blocks import Store, inventory
+from study.store.blocks import inventory
+from study.store.windows import Store
 
 CONTACT = '[model]\nmicro = "smooth"\nbase = "half_space"\n{model}\n[axes]\n{axes}\n[numerics]\nblock = {block}\n'
 STUDIES = {

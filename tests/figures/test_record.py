@@ -37,7 +37,7 @@ def listed(line):
 def register() -> None:
     columns = tuple(map(registry.column, ("P | .6e", "a | .6e")))
     registry.FIGURES["shown"] = registry.Figure(("line",), shown, (3, 2), (1, 1), "")
-    registry.TABLES["listed"] = registry.Table(("line",), listed, "", columns)
+    registry.TABLES["listed"] = registry.DataTable(("line",), listed, "", columns)
 
 
 @pytest.fixture(autouse=True)

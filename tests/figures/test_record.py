@@ -14,7 +14,7 @@ from line_study import TEXT
 
 import study
 from study.__main__ import main
-from study.figures import drawable, record, registry
+from study.figures import record, registry
 
 FILES = {"figures": ("shown.csv", "shown.pdf", "shown.png"), "tables": ("listed.txt", "listed.csv", "listed.tex")}
 COMMANDS = {"figures": ["plot", "--run", "shown"], "tables": ["table", "--run", "listed"]}
@@ -120,22 +120,22 @@ def test_small_results_are_read_once_until_the_file_is_another(monkeypatch):
         return xr.Dataset({"a": ("case", [float(word) for word in path.read_text().split()])})
 
     def opened():
-        dataset = drawable.opened(path)
+        dataset = registry.opened(path)
         values = dataset["a"].values.tolist()
         dataset["a"] = 2 * dataset["a"]
         return values
 
     path = Path("line.nc")
-    monkeypatch.setattr(drawable, "open_results", open_results)
+    monkeypatch.setattr(registry, "open_results", open_results)
     path.write_text("1 2 3")
     assert opened() == opened() == [1, 2, 3] and len(read) == 1
     path.write_text("4 5")
     assert opened() == opened() == [4, 5] and len(read) == 2
     path.write_text("6")
-    monkeypatch.setattr(drawable, "SMALL", 0)
+    monkeypatch.setattr(registry, "SMALL", 0)
     assert opened() == opened() == [6] and len(read) == 4
     path.write_text("7 8 9 10")
-    monkeypatch.setattr(drawable, "SMALL", 1_000)
+    monkeypatch.setattr(registry, "SMALL", 1_000)
     assert opened() == opened() == [7, 8, 9, 10] and len(read) == 5
 
 

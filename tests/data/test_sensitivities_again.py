@@ -84,6 +84,30 @@ def test_of_a_results_file(tmp_path, monkeypatch, text):
         np.testing.assert_array_equal(variable, wanted[name].transpose(*variable.dims), err_msg=name)
 
 
+SHARED = {"P": 1e-5, "micro": "smooth", "x": 2, "workers": 1, "rtol": 1e-4, "Y1": 1e-3, "max_iterations": 50}
+ONE = SHARED | {"h": 0.02, "n": 0.5, "nu1": 0.4, "nu2": 0.2}
+PICARD = {"micro": "power_law", "Nbar": 1e5, "Ra": 1e-3, "nodes": 16, "scheme": "picard", "k": 2.0}
+LAYERS = [{"h": 0.02, "n": [0.5, 0.8], "nu": 0.4, "profile": "linear", "bonding": "bonded"}, {"h": 0.02, "n": 0.7}]
+
+
+@pytest.mark.parametrize(
+    ("inputs", "more"),
+    [
+        (ONE, []),
+        (ONE | {"bonding": "bonded"}, ["nu1", "nu2"]),
+        (ONE | PICARD, ["Nbar", "Ra", "B", "beta"]),
+        (
+            SHARED | {"base": "thin_stack", "layers": LAYERS, "sublayers": 2},
+            ["nu1", "nu2", "layers.1.n_bottom", "layers.2.h", "layers.2.n", "layers.2.nu"],
+        ),
+    ],
+    ids=["frictionless", "bonded", "rough", "graded"],
+)
+def test_inputs_are_numbers_on_which_an_answer_depends(inputs, more):
+    """No settings, no words, no strengths, and no Poisson ratio of a layer without friction."""
+    assert study.sensitivities(quiet(**inputs)).input.values.tolist() == ["P", "h", "n", "m", *more]
+
+
 def test_cases_without_a_layer():
     """The inputs of the layer are NaN there; the case is as if it stood alone, and the layer does not act."""
     shared = {"R": "5 mm", "E2": "210 GPa", "E_punch": "70 GPa", "micro": "smooth", "P": "1 N", "x": 2, "workers": 1}

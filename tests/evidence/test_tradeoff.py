@@ -97,6 +97,14 @@ def test_newton_is_as_accurate_as_asked_and_the_papers_way_of_second_order(on_th
     assert (here["time"] > 0).all()
 
 
+@pytest.mark.parametrize("name", ["paper k = 5", "picard k = 20", "newton, nodes"])
+def test_more_nodes_bring_a_way_nearer(name):
+    way, (cases, reference) = WAYS[name], with_reference(SETS["paper, layer"](3, 1))
+    few, more = (way.run(cases, setting) for setting in (way.settings[0], way.settings[2]))
+    assert np.isin([few.status, more.status], tradeoff.ENDED).all()
+    assert errors(more, reference).max() < 0.1 * errors(few, reference).max() < 2e-3
+
+
 def test_the_models_differ_as_they_do(found):
     """MODEL: power law within a few per cent of the law it is fitted to; thin layer some 10 % off at h/a = 0.5."""
     median = found["median"].isel(step=0)

@@ -8,6 +8,7 @@ from itertools import product
 from pathlib import Path
 
 import pytest
+import xarray as xr
 from children import joined, started
 from line_study import TEXT
 
@@ -37,7 +38,7 @@ def listed(line):
 def register() -> None:
     columns = tuple(map(registry.column, ("P | .6e", "a | .6e")))
     registry.FIGURES["shown"] = registry.Figure(("line",), shown, (3, 2), (1, 1), "")
-    registry.TABLES["listed"] = registry.Table(("line",), listed, "", columns)
+    registry.TABLES["listed"] = registry.DataTable(("line",), listed, "", columns)
 
 
 @pytest.fixture(autouse=True)
@@ -108,6 +109,34 @@ def test_other_numbers_are_drawn_though_the_files_are_younger(kind):
     Path("studies/line.toml").write_text(TEXT.replace("1e-4, num = 23", "1e-4, num = 45"), encoding="utf-8")
     assert again(kind) and not again(kind)
     assert all(contents(kind)[name] != before[name] for name in FILES[kind])
+
+
+def test_small_results_are_read_once_until_the_file_is_another(monkeypatch):
+    """Each figure has a copy. Large ones are read for each figure."""
+    read = []
+
+    def open_results(path):
+        read.append(path)
+        return xr.Dataset({"a": ("case", [float(word) for word in path.read_text().split()])})
+
+    def opened():
+        dataset = registry.opened(path)
+        values = dataset["a"].values.tolist()
+        dataset["a"] = 2 * dataset["a"]
+        return values
+
+    path = Path("line.nc")
+    monkeypatch.setattr(registry, "open_results", open_results)
+    path.write_text("1 2 3")
+    assert opened() == opened() == [1, 2, 3] and len(read) == 1
+    path.write_text("4 5")
+    assert opened() == opened() == [4, 5] and len(read) == 2
+    path.write_text("6")
+    monkeypatch.setattr(registry, "SMALL", 0)
+    assert opened() == opened() == [6] and len(read) == 4
+    path.write_text("7 8 9 10")
+    monkeypatch.setattr(registry, "SMALL", 1_000)
+    assert opened() == opened() == [7, 8, 9, 10] and len(read) == 5
 
 
 def cut_off(path: Path) -> None:

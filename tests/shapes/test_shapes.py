@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 from solver import Problem
-from solver.shapes import SHAPES, named, shape_of, table
+from solver.shapes import SHAPES, lines, named, shape_of, table
 
 NUMBERS = {"half_angle": 60.0, "flat_radius": 0.1, "tip_radius": 0.3, "edge_radius": 0.2}
 NUMBERS |= {"shape_power": 3.0, "shape_coefficient": 0.7}
@@ -104,6 +104,37 @@ def test_a_table_of_any_convex_profile(tmp_path):
     for a in RADII:
         test_each_is_what_its_slope_says(word, in_um, a)
     assert table.identity(word) != word
+
+
+def word_of(path, r):
+    """The word of a table of r³ + r/10 with rows at r, which is known from then on."""
+    path.write_text("\n".join(f"{x:.17g}, {x**3 + 0.1 * x:.17g}" for x in r), encoding="utf-8")
+    named(f"table:{path}")
+    return f"table:{path}"
+
+
+@pytest.mark.parametrize("rows", [23, 24, 100])
+def test_a_long_table_has_series_that_are_the_sum_over_its_lines(tmp_path, rows):
+    """Without them it would be as right, and slow. A table has one more knot than rows."""
+    random = np.random.default_rng(5)
+    r = np.append(0.0, np.cumsum(random.uniform(0.5, 1.5, rows - 1)))
+    shape = made(word_of(tmp_path / "tip.csv", 0.5 * r / r[-1]))
+    assert (shape.rows.series is not None) == (rows + 1 > lines.FEW)
+    summed = shape._replace(rows=shape.rows._replace(series=None))
+    t = np.append(shape.rows.r, random.uniform(0, 0.5, 300))[None]
+    for name in ("lifted", "lifted_slope"):
+        exact = getattr(summed, name)(t)
+        np.testing.assert_allclose(getattr(shape, name)(t), exact, rtol=0, atol=1e-12 * np.abs(exact).max())
+
+
+def test_a_table_whose_series_would_be_off_has_none(tmp_path):
+    """Rows that lie close together, beside others far apart."""
+    word = word_of(tmp_path / "tip.csv", np.append(np.linspace(0, 1e-3, 30), RADII))
+    shape, (_, a, *_) = made(word), RADII
+    assert shape.rows.series is None
+    kinks = [np.arcsin(kink / a) for kink in shape.kinks()[0] if kink < a]
+    wanted = quad(lambda z: a * at(shape.slope, a * np.sin(z)), 0, np.pi / 2, points=kinks, epsabs=0, epsrel=1e-12)
+    np.testing.assert_allclose(at(shape.lifted, a), wanted[0], rtol=1e-12)
 
 
 @pytest.mark.parametrize(

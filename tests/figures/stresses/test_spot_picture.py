@@ -20,8 +20,12 @@ def contact():
     return study.solve(**GIVEN)
 
 
-def test_lines_and_sections_are_those_below_the_spot(contact):
-    _, shown = of_central_spot(contact, 0.0)
+@pytest.fixture(scope="module")
+def shown(contact):
+    return of_central_spot(contact, 0.0)[1]
+
+
+def test_lines_and_sections_are_those_below_the_spot(contact, shown):
     a, largest, middle = contact.a.item(), study.extremes(contact), len(shown.r) // 2
     b = np.sqrt(contact.lam0.item() / np.pi) * PITCH * H / a
     assert shown.edge == pytest.approx(b, rel=1e-9) and shown.h == pytest.approx(H / a, rel=1e-12)
@@ -36,6 +40,19 @@ def test_lines_and_sections_are_those_below_the_spot(contact):
     assert shown.layer.mises[:, middle].max() == pytest.approx(largest.mises1_spot.item(), rel=1e-3)
     assert shown.body.mises[:, middle].max() == pytest.approx(largest.mises2_spot.item(), rel=1e-3)
     assert shown.largest["mises1"] == shown.layer.mises.max()
+
+
+def test_layer_and_body_stretch_alike_along_a_bond(shown):
+    middle = len(shown.r) // 2  # there the stress around the axis is that along r
+    sz, sides = shown.interface["sz_above"], (("sr_above", 0.25, 10 * (1 - 0.25**2)), ("sr_below", 0.3, 1 - 0.3**2))
+    layer, body = (((1 - nu) * shown.interface[side] - nu * sz)[middle] / E for side, nu, E in sides)
+    assert layer == pytest.approx(body, rel=1e-9)
+
+
+def test_a_rigid_base_has_no_stresses():
+    _, shown = of_central_spot(study.solve(**GIVEN | {"n": 0.0, "P": 1e-6}), 0.0)
+    assert shown.body is None and set(shown.interface) == {"trz_above", "sz_above", "sr_above"}
+    assert shown.largest["mises1"] == shown.layer.mises.max() and "mises2" not in shown.largest
 
 
 def test_the_figure_says_what_it_shows(contact):

@@ -65,6 +65,21 @@ def test_nanite_finds_the_gel_that_hertz_takes_for_a_stiff_one(model, curve):
     assert hertz > 4 * 5e3, "the base under the gel makes Hertz's modulus several times too large"
 
 
+def test_nanite_moves_the_modulus_and_the_offsets_within_what_the_model_has(model):
+    """Lengths, the ratio and the modulus of a body are not below 0; an offset may be anything."""
+    parameters = model.module.get_parameter_defaults()
+    assert list(parameters) == model.module.parameter_keys
+    assert [name for name in parameters if parameters[name].vary] == ["E", "contact_point", "baseline"]
+    bounds = {name: (parameter.min, parameter.max) for name, parameter in parameters.items()}
+    assert bounds.pop("nu") == (0, 0.5)
+    assert bounds.pop("h") == (1e-12, np.inf)  # above 0: of no layer at all there is no force
+    assert bounds.pop("E") == bounds.pop("R") == (0, np.inf)
+    assert set(bounds.values()) == {(-np.inf, np.inf)}
+    values = parameters.valuesdict()
+    assert values["contact_point"] == values["baseline"] == 0
+    assert values["E"] > 0 and 0.4 < values["nu"] < 0.5 and 1e-7 < values["h"] < values["R"] < 1e-4  # a bead on a gel
+
+
 @pytest.mark.filterwarnings("ignore")
 def test_nanite_fits_again_only_with_parameters_of_their_own(model, curve):
     """What docs/afm.md says: one object that is edited gets the old modulus, as nanite compares it with itself."""

@@ -52,6 +52,7 @@ def test_a_contact_that_keeps_to_the_assumptions_is_said_to():
     depths = np.linspace(-0.2, 1.0, 60) * 1e-7
     text = str(study.summary(fit(depths, gel(depths=depths)[0])))
     assert "At the deepest point none of the assumptions that are checked is violated" in text
+    assert text.count("\n\n") == 2, "below what was given, and below the heading"
 
 
 def test_gaps_equal_depths_and_disorder_change_nothing_and_are_said():
@@ -196,3 +197,11 @@ def test_the_figure_draws_over_gaps_and_has_units():
     assert below.get_ylabel() == "residual, nN" and above.get_ylabel().endswith(", nN")
     drawn = next(line for line in above.lines if line.get_linestyle() == "-")
     assert len(drawn.get_xdata()) == 39 and np.isfinite(drawn.get_ydata()).all()
+
+
+def test_each_curve_of_a_figure_has_room():
+    """In inches; alone it has the width of a column."""
+    depths = np.linspace(-0.2, 1.0, 40) * 1e-7
+    fitted = fit(depths, gel(depths=depths)[0] * np.array([[1.0], [2.0], [3.0]]))
+    assert study.plot(fitted, curve=1).get_figwidth() == 3.4
+    assert study.plot(fitted).get_figwidth() >= 3 * 2.9

@@ -128,6 +128,18 @@ def test_the_truth_comes_back(name):
     assert_allclose(fit.residual, 0, rtol=0, atol=2e-5 * P.max())
 
 
+@pytest.mark.parametrize("start", [-5e-6, 1e-4])
+def test_where_the_depths_begin_does_not_matter(start):
+    """Positions of an instrument are not near 0, by many times the range of the curve."""
+    truth = {"E2": 5e3, "w_adhesion": 4e-4}
+    P = loads(DEPTHS, **BARE, E2="5 kPa", w_adhesion="0.4 mJ/m^2")
+    fit = fitted(DEPTHS + start, P, list(truth), **BARE, E2="8 kPa", w_adhesion="1 mJ/m^2", intervals="fisher")
+    assert status(fit) == ["converged"]
+    for name, value in truth.items():
+        assert_allclose(fit[name], value, rtol=1e-4)
+    assert_allclose(fit.D0, start, rtol=0, atol=1e-11)
+
+
 def test_a_half_angle_without_adhesion():
     P = solved("D", "P", DEPTHS, **{name: value for name, value in CONE.items() if value}, E1="5 kPa")
     fit = fitted(DEPTHS, P, {"half_angle": ("55 deg", "80 deg")}, **CONE, E1="5 kPa", intervals="fisher")

@@ -127,6 +127,9 @@ def test_a_part_of_the_depth():
         (("1 um",), "must be (low, high)"),
         (("2 um", "1 um"), "depth = (2 um, 1 um): the low end must be below the high one"),
         (("-2 um", "-1 um"), "and that above 0"),
+        (("0 nm", np.inf), "depth = (0 nm, inf): the low end must be below the high one"),
+        ((-np.inf, "1 um"), "depth = (-inf, 1 um): the low end must be below the high one"),
+        ((np.nan, "1 um"), "depth = (nan, 1 um): the low end must be below the high one"),
         (("0 nN", "1 nN"), "is a force: must be a length"),
     ],
 )

@@ -69,3 +69,22 @@ def test_each_axis_has_its_step():
     assert scan.steps == pytest.approx((2e-6, 0.5e-6)) and scan.sizes == pytest.approx((46e-6, 19.5e-6))
     tall = roughness.measure(roughness.height_map(np.tile(Z, (4, 1)), dx=0.5, dy=0.2, **MAP))
     assert tall.resolution.endswith("40 × 96 points 500 nm × 200 nm apart, 19.5 µm × 19 µm")
+
+
+@pytest.mark.parametrize("end", range(4))
+def test_a_crop_may_end_a_step_outside_the_scan(tmp_path, end):
+    """Of its own axis: ends are rounded, and nothing is there to be kept."""
+    np.savetxt(tmp_path / "map.txt", Z)
+    step, outwards = (0.1, 0.2)[end // 2], (-1, 1)[end % 2]
+    crop = [0.0, 3.9, 0.0, 4.6]
+
+    def of_steps(count):
+        return {
+            "crop": [*crop[:end], crop[end] + count * outwards * step, *crop[end + 1 :]],
+            "dx": 0.1,
+            "dy": 0.2,
+        } | MAP
+
+    assert roughness.read(tmp_path / "map.txt", **of_steps(0.9)).z.shape == Z.shape
+    said = message(roughness.read, tmp_path / "map.txt", **of_steps(1.2))
+    assert f" um in {'xy'[end // 2]}: must rise and lie in the scan" in said

@@ -193,20 +193,20 @@ def test_one_that_comes_too_late_changes_nothing(opened, tmp_path, number):
 
 AT_EXIT = """
 import atexit, os, runpy, signal, sys
-from study.commands import ending
+from study.commands import signals
 
 class Last:
     def __del__(self, write=os.write):
         write(2, b"torn down")
 
-number, real = int(sys.argv.pop(1)), ending.listen
+number, real = int(sys.argv.pop(1)), signals.listen
 
 def start():
     real()
     if number:
         atexit.register(signal.raise_signal, number)
 
-ending.listen, last = start, Last()
+signals.listen, last = start, Last()
 runpy.run_module("study", run_name="__main__", alter_sys=True)
 """
 

@@ -8,9 +8,9 @@ from .compiled import newton as compiled
 from .contact import picard as approximations
 from .contact.answer import answer
 from .flat import solve_flat
+from .known import register_scheme
 from .numerics.ladder import start_nodes
 from .numerics.mesh import mesh_of
-from .parameters import PARAMETERS
 from .scaling import as_cases
 from .solution import Solution
 
@@ -32,7 +32,7 @@ def scheme(function):
     if other.__module__ != function.__module__:
         raise ValueError(f"scheme {function.__name__}: {other.__module__} has one of this name: take another name")
     SCHEMES[function.__name__] = function
-    PARAMETERS["scheme"] = PARAMETERS["scheme"]._replace(choices=tuple(SCHEMES))
+    register_scheme(function.__name__)
     return function
 
 

@@ -6,7 +6,6 @@ from itertools import product
 import numpy as np
 
 from ..contact import smooth
-from ..laws import LAWS
 from ..scaling import (
     as_cases,
     dimensionless,
@@ -74,7 +73,7 @@ def with_model_error(problem, solution):
 def error_of_law(problem):
     """(B,): the relative error of the tables of the micro laws themselves, which asperities that feel the body do not
     have."""
-    tabulated = sum(law.error * (problem.micro == name) for name, law in LAWS.items())
+    tabulated = sum(law.error * (problem.micro == name) for name, law in problem.known.laws.items())
     return np.where(problem.feels_layer(), 0.0, tabulated)
 
 

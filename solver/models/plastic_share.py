@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from ..laws import LAWS
 from ..parameters import one_of
 from ..scaling import dimensionless, law_of, of_one_law
 from .range_of_law import RADII
@@ -16,7 +15,7 @@ _POINTS = 4
 
 def has_yield(problem):
     """(B,) bool: the cases whose micro law has spots that yield."""
-    return one_of(problem.micro, [name for name, law in LAWS.items() if law.yielded])
+    return one_of(problem.micro, [name for name, law in problem.known.laws.items() if law.yielded])
 
 
 def plastic_share(problem, lam):

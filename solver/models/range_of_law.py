@@ -3,7 +3,6 @@
 import numpy as np
 
 from ..kernels.two_layers import layer_modulus
-from ..laws import LAWS
 from ..laws.cell.family import MOST
 from ..laws.cell.law import end
 from ..scaling import dimensionless, law_of, of_one_law
@@ -75,7 +74,7 @@ def edge_error(problem, solution):
 def _laws(problem):
     """The laws of the problem that have a range."""
     present = set(problem.micro.tolist())
-    return [law for law in LAWS.values() if law.name in present and (law.least > 0 or law.most < np.inf)]
+    return [law for law in problem.known.laws.values() if law.name in present and (law.least > 0 or law.most < np.inf)]
 
 
 def _of_law(problem, solution, law):

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..contact.results import pointed
 from ..numerics.ladder import STACK
-from ..parameters import is_ratio, uses
+from ..parameters import is_ratio
 from ..problem import Problem
 from ..scaling import as_cases, dimensionless
 from ..solution import Solution
@@ -128,7 +128,7 @@ def _acts(problem, name):
         return True
     values = getattr(problem, name)
     there = np.isfinite(values) & (is_ratio(name) | (values != 0))
-    return bool(np.any(there & uses(name, lambda key: getattr(problem, key))))
+    return bool(np.any(there & problem.known.uses(name, lambda key: getattr(problem, key))))
 
 
 def _of_solved(scaled, solution, inputs, x):

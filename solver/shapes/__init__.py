@@ -1,75 +1,22 @@
-"""Shapes of indenters, one a file, and the registry of them; the protocol is in :mod:`.shape`.
+"""Shapes of indenters, one a file; the protocol is in :mod:`.shape`.
 
 docs/extending.md says how to add one.
 """
 
-from typing import Any
+from types import MappingProxyType
 
-import numpy as np
-
-from ..parameters import PARAMETERS, Register
-from . import blunt_cone, cone, flat, frustum, power, rounded_flat, sphere, table
+from . import blunt_cone, cone, flat, frustum, power, rounded_flat, sphere
 from .shape import Kind, Shape
 
-__all__ = ["PARABOLOID", "SHAPES", "Kind", "Shape", "named", "register", "shape_of", "shaped"]
+__all__ = ["PARABOLOID", "SHAPES", "Kind", "Shape", "shape_of", "shaped"]
 
 #: The shape of the paper, which stands in :mod:`..punches.paraboloid` as well: the default.
 PARABOLOID = "paraboloid"
 
 
-def register(kind: Kind) -> Kind:
-    """Make a shape known by its name, and its parameters like any other.
-
-    Parameters
-    ----------
-    kind : :class:`~.shape.Kind`
-
-    Returns
-    -------
-    Kind : the same
-
-    Raises
-    ------
-    ValueError : the name is that of a shape of this package; a parameter has the name of something else, or that of
-        one of another shape with other bounds
-
-    Examples
-    --------
-    docs/extending.md has a shape in one file.
-    """
-    if SHAPES.get(kind.name, kind) in BUILT_IN and kind not in BUILT_IN or kind.name == PARABOLOID:
-        raise ValueError(f"shape {kind.name}: is one of this package: take another name")
-    with SHAPES.lock:
-        _declare(SHAPES | {kind.name: kind})
-        SHAPES[kind.name] = kind
-    return kind
-
-
-def _declare(shapes):
-    """Put the parameters of `shapes` (name -> Kind), which are returned, into the table of parameters, and their names
-    into the choices of `shape`. Raises ValueError, and changes nothing, where a parameter cannot have its name."""
-    declared: dict[str, Any] = {}
-    for kind in shapes.values():
-        for name, row in kind.parameters.items():
-            there, words = declared.get(name, (row, ()))
-            if row != there or name in PARAMETERS and PARAMETERS[name].needed_by[0] != "shape":
-                raise ValueError(f"shape {kind.name}: the parameter {name} is that of something else")
-            declared[name] = there, (*words, kind.name)
-    PARAMETERS.update({name: row._replace(needed_by=("shape", words)) for name, (row, words) in declared.items()})
-    PARAMETERS["shape"] = PARAMETERS["shape"]._replace(choices=(PARABOLOID, *shapes))
-    return shapes
-
-
-def named(shapes: Any) -> None:
-    """Read the tables that are named among the words of shapes, and register them; ValueError."""
-    for word in set(np.ravel(shapes).tolist()):
-        if isinstance(word, str) and word.startswith(table.PREFIX) and word not in SHAPES:
-            register(table.read(word))
-
-
 def shape_of(problem) -> Shape:
     """The :class:`~.shape.Shape` of the cases of a problem in units R = 1, which have one `shape`, no paraboloid."""
-    kind = SHAPES[str(problem.shape[0])]
+    kind = problem.known.shapes[str(problem.shape[0])]
     return kind.of(**{name: getattr(problem, name) for name in kind.parameters}, size=len(problem))
 
 
@@ -82,5 +29,5 @@ BUILT_IN = (
     *(sphere.KIND, cone.KIND, *cone.PYRAMIDS, power.KIND, frustum.KIND, blunt_cone.KIND, flat.KIND),
     rounded_flat.KIND,
 )
-#: Name -> :class:`~.shape.Kind` of all shapes but the paraboloid.
-SHAPES = Register(_declare({kind.name: kind for kind in BUILT_IN}))
+#: Name -> :class:`~.shape.Kind` of all shapes of this package except the paraboloid.
+SHAPES = MappingProxyType({kind.name: kind for kind in BUILT_IN})

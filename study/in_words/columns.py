@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import xarray_later as xr
 from ..data.dataset import decode
-from ..inputs.laws import smooth_laws
+from ..inputs.lexicon import lexicon_in
 from .numbers import given_text, result_text
 from .strength import closest
 from .text import MOST_CASES, OF_ASPERITIES, SHOWN
@@ -23,7 +23,8 @@ def columns(contacts: xr.Dataset) -> str:
     dims = list(contacts["status"].dims)
     cases = contacts.stack({"case": dims}, create_index=False)
     shown = [cases.isel(case=i) for i in range(min(cases.sizes["case"], MOST_CASES))]
-    smooth = all(case["micro"].values in smooth_laws() for case in shown)
+    laws = lexicon_in(contacts).smooth_laws()
+    smooth = all(case["micro"].values in laws for case in shown)
     names = [name for name in SHOWN if name not in dims and not (smooth and name in OF_ASPERITIES)]
     rows = [[*dims, *names, "status", "strength", "validity"], *(_row(case, dims, names) for case in shown)]
     left = [-1] * (not any(row[-1] for row in rows[1:])) + [-2] * all(row[-2] == "-" for row in rows[1:])

@@ -6,12 +6,14 @@ from typing import Any
 
 import numpy as np
 
+from solver.parameters import among
+
 from ..specimen.foreign import plain
 from ..terminal import counted, shown
 from .grid import Grid, along
 from .punch.asperities import many_bodies
 from .request import MOST_MESSAGES
-from .vocabulary import among, finite, names
+from .vocabulary import finite, names
 
 POINTS = 33  # of a profile, unless the study says it
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a mistake, so `run` wants --yes

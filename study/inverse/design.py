@@ -10,7 +10,7 @@ import xarray as xr
 from ..carried import with_coordinates
 from ..in_words import beside_rules, doubts
 from ..inputs.definition import StudyError
-from ..inputs.vocabulary import NOT_RUN, ROWS
+from ..inputs.vocabulary import NOT_RUN
 from ..specimen.foreign import plain
 from ..work.progress import screen_of
 from .design_answer import STATUSES, Answer, answered, searched, solutions, solved
@@ -88,7 +88,7 @@ def design(
 def _variables(want: Wanted, answer: Answer, contacts: xr.Dataset) -> dict[str, xr.Variable]:
     """What a design has beside its contacts."""
     name, dims = want.name, contacts["status"].dims
-    unit = ROWS[name].unit if want.definition.scene else ""
+    unit = want.definition.grid.lexicon.all_rows[name].unit if want.definition.scene else ""
     about = {"units": unit} if unit not in ("", "1") else {}
     about |= {key: contacts[name].attrs[key] for key in ("scale",) if key in contacts[name].attrs}
     x, change = want.x_of(answer.t), answer.change

@@ -26,7 +26,7 @@ OURS = {"roughcoat", "solver", "study", "studies"}
 ROOMS = {
     "solver": (
         *("threads", "closed_forms", "numerics", "status", "parameters", "layers", "shapes", "punches", "kernels"),
-        *("laws", "body", "problem", "solution", "contact", "compiled", "scaling", "estimate"),
+        *("laws", "known", "body", "problem", "solution", "contact", "compiled", "scaling"),
         *("flat", "schemes", "smooth_contact", "models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (
@@ -200,8 +200,8 @@ def test_only_blocks_and_dataset_and_tables_know_the_solver():
     """The seam between solver and study stays narrow: the vocabulary knows the table of parameters alone."""
     users = {path.stem: {full for full in imported(path) if full.split(".")[0] == "solver"} for path in STUDY}
     assert users["vocabulary"] == {"solver.parameters"}
-    own = {"solver.parameters", "solver.laws", "solver.laws.own_table", "solver.laws.fit"}
-    assert users["laws"] == own, "those that others have registered, tables in files, fits"
+    own = {"solver.parameters", "solver.laws", "solver.laws.fit"}
+    assert users["laws"] == own, "those of the words of a study, and fits"
     assert not any(users[name] for name in ("grid", "request", "draft", "run", "api", "units", "progress"))
 
 
@@ -258,7 +258,7 @@ def test_roughcoat_gives_what_study_gives():
 def test_solve_names_every_parameter_with_its_default_and_its_choices():
     """The signature is what editors show; the docstring has a line for each name, the vocabulary the truth."""
     import study
-    from solver.parameters import PARAMETERS as OWN
+    from solver.known import PARAMETERS as OWN
     from study.inputs.vocabulary import BODIES, PARAMETERS, SCENE
 
     known = inspect.signature(study.solve).parameters

@@ -9,8 +9,6 @@ import xarray as xr
 from numpy.testing import assert_allclose
 
 import study
-from solver import shapes
-from solver.parameters import PARAMETERS
 from study.inputs.identity import case_keys
 from study.inputs.reading import from_call
 from study.rules.punch import SLOPE
@@ -28,8 +26,8 @@ def quiet():
 
 @pytest.fixture
 def tip(tmp_path):
-    """Write a table of a tip; gives its word. It is forgotten at the end."""
-    words, rows = [], dict(PARAMETERS)
+    """Write a table of a tip; gives its word."""
+    words = []
 
     def write(text):
         path = tmp_path / f"tip{len(words)}.csv"
@@ -37,12 +35,7 @@ def tip(tmp_path):
         words.append(f"table:{path}")
         return words[-1]
 
-    yield write
-    for word in words:
-        shapes.SHAPES.pop(word, None)
-        shapes.table.TABLES.pop(word, None)
-    PARAMETERS.clear()
-    PARAMETERS.update(rows)
+    return write
 
 
 def test_words_of_a_shape_are_read_as_people_write_them():

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.shapes import PARABOLOID, SHAPES
+from solver.shapes import PARABOLOID
 from solver.shapes.cone import KIND, PYRAMIDS
 
 from ...arrays import xarray_later as xr
+from ...inputs.lexicon import lexicon_in
 from ...inputs.vocabulary import names
 from ...specimen.quantities import readable
 from ..numbers import in_its_unit
@@ -35,7 +36,7 @@ def of_shape(case: xr.Dataset) -> list[str]:
     shape = shape_of(case)
     if shape == PARABOLOID:
         return []
-    kind = SHAPES.get(shape)
+    kind = lexicon_in(case).known.shapes.get(shape)
     said = [f"Shape: {kind.words if kind else shape}{_angle_of(shape)}."]
     if np.isposinf(case["p0"]):
         said.append("The tip is sharp: p(0) is infinite, and so any material gives way in the centre.")

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from solver import Status, solve
-from solver.laws import LAWS
 from solver.parameters import one_of
 from solver.scaling import dimensionless, law_of
 
 from ...again import Again
 from ...arrays import xarray_later as xr
 from ...inputs.definition import StudyError
+from ...inputs.lexicon import lexicon_in
 from ...rules.rule import of_cases
 
 #: The load is lowered to this part; pressures that are larger there by less than _SAME of the largest are the same.
@@ -24,7 +24,7 @@ _RADII = np.sin(np.linspace(0, np.pi / 2, 25))
 
 def falling(contacts: xr.Dataset) -> list[str]:
     """A sentence on contacts whose asperities yield, and whose pressure somewhere was larger at 0.9 of the load."""
-    laws = [name for name, law in LAWS.items() if law.yielded]
+    laws = [name for name, law in lexicon_in(contacts).known.laws.items() if law.yielded]
     yielding = one_of(contacts["micro"].values.astype(str), laws)
     if not yielding.any():
         return []

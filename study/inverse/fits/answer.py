@@ -28,7 +28,7 @@ def answered(
 ) -> xr.Dataset:
     model, C = question.model, len(X)
     names = (*model.unknowns, *question.shifts)
-    k, unit = len(names), ROWS[model.y].unit
+    k, unit, by_name = len(names), ROWS[model.y].unit, model.scene.lexicon.all_rows
     value, low, high, spread = (np.full((C, k), np.nan) for _ in range(4))
     covariance, drawn = np.full((C, k, k), np.nan), np.full(X.shape, np.nan)
     status = status.astype(np.int8)
@@ -48,8 +48,8 @@ def answered(
         drawn[curve, there[curve]] = answer["fit"][i][: there[curve].sum()]
     variables: dict[str, Any] = {}
     for j, name in enumerate(names):
-        si = ROWS[name].unit if name in ROWS else {"D0": "m", "P0": unit, "tilt": "N/m"}[name]
-        words = ROWS[name].long_name if name in ROWS else NAMES_OF_SHIFTS[name]
+        si = by_name[name].unit if name in by_name else {"D0": "m", "P0": unit, "tilt": "N/m"}[name]
+        words = by_name[name].long_name if name in by_name else NAMES_OF_SHIFTS[name]
         if not plan:
             variables[name] = ("curve", value[:, j], {"units": si, "long_name": words})
         ends_of = (("low", low), ("high", high)) if question.intervals and not plan else ()
@@ -101,7 +101,7 @@ def _of_points(question: Asked, rows: dict, status: np.ndarray, count: np.ndarra
             values[key][curve] = answer[short][i]
         parts[curve] = model.of_coordinate(name, answer["parts"][i])
     about = {
-        "units": ROWS[name].unit,
+        "units": model.scene.lexicon.all_rows[name].unit,
         "long_name": f"{name} by parts of the depth, the other unknowns as fitted to all",
     }
     variables: dict[str, tuple] = {key: ("curve", array, {"long_name": words[key]}) for key, array in values.items()}
@@ -190,10 +190,10 @@ def _contacts(question: Asked, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
     """Contacts of the unknown inputs `value` (M, k) at x (M,), over `curve`."""
     model, scene = question.model, question.model.scene
     values = model.within({name: value[:, i] for i, name in enumerate(model.unknowns)})
-    columns: dict[str, tuple] = {name: (values[name], ROWS[name].unit) for name in model.unknowns}
-    columns |= {
-        name: (float(v), ROWS[name].unit) for name, v in scene.values.items() if name not in columns and name != model.x
-    }
+    by_name = scene.lexicon.all_rows
+    columns: dict[str, tuple] = {name: (values[name], by_name[name].unit) for name in model.unknowns}
+    others = [name for name in scene.values if name not in columns and name != model.x]
+    columns |= {name: (float(scene.values[name]), by_name[name].unit) for name in others}
     columns[model.x] = (x, ROWS[model.x].unit)
     arrays = {
         name: xr.DataArray(v, dims=("curve",) if np.ndim(v) else (), attrs={"units": unit})
@@ -210,7 +210,8 @@ def _contacts(question: Asked, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
         "D",
         *(ratio for _, _, ratio in moduli_of(scene.values)),
     }
-    arrays |= {name: scene.parameters[name] for name in others if ROWS[name].unit == "1"}
+    arrays |= {name: scene.parameters[name] for name in others if by_name[name].unit == "1"}
+    arrays["micro"] = scene.lexicon.law_or_name(arrays.get("micro", "disc_cell"))
     if "R1" in arrays:
         del arrays["R"]
     with warnings.catch_warnings():

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from .contact.start import guess_pressure, guess_radius
-from .laws import BUILT_IN
-from .parameters import STACKED
-from .scaling import as_cases, dimensionless, refused
+from ..contact.start import guess_pressure, guess_radius
+from ..laws import BUILT_IN
+from ..parameters import STACKED
+from ..scaling import as_cases, dimensionless, refused
 
 _QUANTITIES = ("a", "D", "p0", "p_max", "lam0", "A0")
 

@@ -145,6 +145,13 @@ def encoding_of(lexicon: Lexicon, values: Mapping[str, Any]) -> dict:
     return {} if own.is_package else {KNOWN: own}
 
 
+def with_known(dataset: Any, lexicon: Lexicon, values: Mapping[str, Any]) -> Any:
+    """The dataset itself, of results that were solved with the lexicon; `values` as of :func:`encoding_of`."""
+    if "micro" in dataset.variables:
+        dataset.variables["micro"].encoding |= encoding_of(lexicon, values)
+    return dataset
+
+
 def lexicon_in(contact: Any) -> Lexicon:
     """The lexicon of a dataset, of one contact, or of variables by name: what it was solved with.
 

@@ -137,6 +137,19 @@ def test_a_table_is_read_anew_and_its_numbers_are_in_the_key(tip):
         keys(tip("0,0\n1,1\n2,1.5\n"))
 
 
+def test_results_of_a_study_have_the_table_of_its_file(tip, tmp_path):
+    """Opened by the study; a file alone says nothing of what is in the table."""
+    word = tip("0,0\n1,1\n2,3\n")
+    text = f'[model]\nP = 1e-4\nshape = "{word}"\nbase = "half_space"\nmicro = "smooth"\n'
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    mine = study.load(tmp_path / "mine.toml", tmp_path / "results")
+    mine.run()
+    Path(word.removeprefix("table:")).unlink()
+    assert study.sensitivities(mine.open()).a_sensitivity.notnull().all()
+    with pytest.raises(study.StudyError, match="no shape of this name is registered here"):
+        study.sensitivities(study.open_results(tmp_path / "results/mine.nc"))
+
+
 def test_results_do_not_choose_which_files_are_opened(tip):
     found = study.solve(P=1e-4, shape=tip("0,0\n1,1\n2,3\n"), **ALONE)
     found["shape"] = "table:/etc/passwd"

@@ -13,6 +13,7 @@ from .files.access import Unusable
 from .files.examine import Condition, statuses
 from .files.results_file import LAZY, opened
 from .inputs.definition import Definition, StudyError
+from .inputs.lexicon import with_known
 from .inputs.places import study_file
 from .inputs.reading import read
 from .inputs.vocabulary import NOT_RUN
@@ -188,6 +189,11 @@ class Study:
         ------
         StudyError : there are none, none of this definition, or they are damaged
         """
+        grid = self.definition.grid  # its laws and tables are those of the results
+        values = {name: array for name, (_, array) in grid.values.items()}
+        return with_known(self._opened(partial), grid.lexicon, values)
+
+    def _opened(self, partial: bool) -> xr.Dataset:
         if self._is_in_parts:
             return open_large(self._store)
         path, found = self._store.path, look(self._store, LAZY)

@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..layers import numbers_of, table
+from ..layers import numbers_of
 from ..parameters import CONTROL, is_ratio
 from ..rough.equation import Cases, groups
 from ..rough.punch import punch_of
 from ..scaling import as_cases
-from ..shapes import PARABOLOID, SHAPES, shape_of
+from ..shapes import PARABOLOID, shape_of
 
 #: An input is moved up and down by this part of itself, a Poisson ratio by this number. The curvature then adds 1e-8
 #: times a third derivative, and rounding 1e-12.
@@ -27,7 +27,7 @@ _NO_INPUTS = {"accuracy", "k", "rtol", "R", "E2"}
 
 def inputs_of(problem):
     """Names of all inputs, the control first: numbers that have an interval."""
-    rows = table(numbers_of(problem.parameters))
+    rows = problem.known.table(numbers_of(problem.parameters))
     numbers = [name for name, row in rows.items() if row.interval and not row.whole and name not in _NO_INPUTS]
     return (problem.control, *numbers)
 
@@ -45,7 +45,7 @@ def moved(problem, inputs, step=STEP):
         values[i] += sign * step * (1.0 if is_ratio(name) else values[i])
         arrays[key] = values.ravel()
     value = arrays.pop("value")
-    return type(problem)(problem.control, value, rows.parameters | arrays)
+    return type(problem)(problem.control, value, rows.parameters | arrays, problem.known)
 
 
 def slope_of(values, k, step=STEP):
@@ -109,7 +109,7 @@ def _of_punch(part, eta, k):
     if part.shape[0] == PARABOLOID:
         return np.zeros((k, len(eta))), lambda s: 0.0
     nearer = {}
-    for name in SHAPES[str(part.shape[0])].parameters:
+    for name in part.known.shapes[str(part.shape[0])].parameters:
         values = getattr(part, name)
         if values.dtype.kind == "f":
             both = values.reshape(k, 2, len(eta))

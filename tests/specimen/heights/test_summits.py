@@ -51,4 +51,4 @@ def test_summits_between_two_lags_need_both(first):
     beside it, and lag 2, where it has none."""
     z = np.cos(np.add.outer(np.arange(40.0), 2 * np.arange(40.0)) / 4)
     z[first::2] = np.nan
-    assert summits.counted_summits(z, (1.0, 1.5)) is None
+    assert scan_peaks.counted_summits(z, (1.0, 1.5)) is None

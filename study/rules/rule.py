@@ -131,7 +131,7 @@ def numbers(variables: Mapping) -> Mapping:
 
 
 def slope(v):
-    """f\x27(a) of the shapes of the punches; NaN of a shape that is not known."""
+    """f'(a) of the shapes of the punches; NaN of a shape that is not known."""
     if "shape" not in v:
         return v["a"]
     slopes = np.full(np.broadcast(v["a"], v["shape"]).shape, np.nan)

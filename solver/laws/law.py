@@ -83,8 +83,8 @@ class Law:
         `curve` and `edge`, which takes more time
     from_displacement : (g, *own) -> y with g(y) = g >= 0; NaN where g is larger than the law's limit
     guess : (q, *own) -> y with q(y) = q, roughly
-    on_body : (kernel, m, h, E, **parameters) -> :class:`Bound` of a law of asperities that feel the coated body itself,
-        not the half-space of its layer's material: `kernel`, a :class:`~solver.kernels.kernel.Kernel` of B cases, m and
+    on_body : (kernel, m, h, E, **parameters) -> what `bind` returns, of a law of asperities that feel the coated body
+        itself, not the half-space of its layer's material: `kernel`, that of B cases (solver/kernels/kernel.py), m and
         h (B,), thickness of the first layer; E (B,), as that of `scales`. None: the law does not know the body
     cell : the lattice of the cell of a spot on the body, "square", "hex" or "disc", or "summit" of spots of their own
         loads; None where `on_body` is

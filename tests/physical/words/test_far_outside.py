@@ -166,7 +166,9 @@ def test_the_estimate_of_what_is_refused_is_unknown():
 def test_a_large_grid_is_looked_at_here_and_there(unsolved, monkeypatch):
     sizes = []
     real = early._exceeded
-    monkeypatch.setattr(early, "_exceeded", lambda given: (sizes.append(len(given["micro"])), real(given))[1])
+    monkeypatch.setattr(
+        early, "_exceeded", lambda given, known: (sizes.append(len(given["micro"])), real(given, known))[1]
+    )
     loads = [f"{load} N" for load in np.linspace(1, 5, 250)]
     assert len(said_before(**FILM | {"P": loads})) == 1 and said_before(**LINING | {"P": loads}) == []
     assert all(50 < size <= early.MOST for size in sizes) and len(sizes) == 2

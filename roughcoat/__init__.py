@@ -2,11 +2,13 @@
 
 It gives what the package `study` gives, which comes with it, and takes that one, whatever a user has in the working
 folder: no study.py, study/, solver.py or solver/ there is imported. After `import roughcoat` the names `study` and
-`solver` are those of roughcoat's packages, in the processes too that it starts.
+`solver` are those of roughcoat's packages, in the processes too that it starts. `study` is imported when a name of it
+is asked for.
 """
 
 import os
 import sys
+from importlib import import_module
 from importlib.machinery import ModuleSpec, PathFinder
 from typing import TYPE_CHECKING, Any
 
@@ -17,31 +19,36 @@ if TYPE_CHECKING:
 _BESIDE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # the folder, or zip file, of the packages
 
 
-class _OwnStudy:
-    """A finder of modules that takes `study` from beside this package. Python asks it first."""
+class _OwnPackages:
+    """A finder of modules that takes `study` and `solver` from beside this package. Python asks it first."""
 
     @staticmethod
     def find_spec(name: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
-        return PathFinder.find_spec(name, [_BESIDE]) if name == "study" else None
+        return PathFinder.find_spec(name, [_BESIDE]) if name in ("study", "solver") else None
 
 
-sys.meta_path.insert(0, _OwnStudy)
+def _refuse_others() -> None:
+    """Raise ImportError if the program has imported another study or solver before."""
+    for name in ("study", "solver"):
+        other = sys.modules.get(name)
+        place = next(iter(getattr(other, "__path__", ())), getattr(other, "__file__", None) or "")
+        if other and os.path.realpath(place) != os.path.realpath(os.path.join(_BESIDE, name)):
+            wrong = f"has been imported as {name}, which is a package of roughcoat as well: give it another name"
+            raise ImportError(f"{getattr(other, '__file__', None) or place}: {wrong}", name=name, path=place)
 
-import study  # noqa: E402
 
-_taken = next(iter(getattr(study, "__path__", ())), study.__file__ or "")
-if os.path.realpath(_taken) != os.path.realpath(os.path.join(_BESIDE, "study")):
-    _wrong = "has been imported as study, which is a package of roughcoat as well: give it another name"
-    raise ImportError(f"{_taken}: {_wrong}", name="study", path=_taken)
-
-__all__ = study.__all__
+_refuse_others()
+sys.meta_path.insert(0, _OwnPackages)
 
 
 def __getattr__(name: str) -> Any:
-    if name not in dir(study):
+    if name.startswith("__") and name not in ("__all__", "__version__"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    study = import_module("study")
+    if name != "__all__" and name not in dir(study):
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(study, name)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *dir(study)})
+    return sorted({*globals(), *dir(import_module("study"))})

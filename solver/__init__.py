@@ -5,7 +5,8 @@ limits are in docs/model.md. It needs numpy, scipy, and threadpoolctl, which kee
 """
 
 from . import closed_forms, fields
-from .laws import Curve, Law, register
+from .known import register
+from .laws import Curve, Law
 from .laws import disc_cell as micro
 from .laws.fit import Fit, fit_power_law
 from .parameters import Parameter

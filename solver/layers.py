@@ -11,18 +11,10 @@ import numpy as np
 
 from .bases import is_exact, is_stack
 from .numerics import profiles
-from .parameters import FIRST, LAYER, MOST, PARAMETERS, Parameter, full_name, numbers_of, row
+from .parameters import FIRST, LAYER, MOST, full_name, numbers_of, row
 from .parameters import NAME_OF_LAYER as _NAME
 
-__all__ = ["LAYER", "MOST", "expanded", "full_name", "numbers_of", "row", "table"]
-
-
-def table(count: int) -> dict[str, Parameter]:
-    """The table of parameters of stacks of `count` layers; 0 : without those of stacks."""
-    if not count:
-        return PARAMETERS
-    names = [full_name(number, field) for number in range(1, count + 1) for field in LAYER]
-    return PARAMETERS | {name: PARAMETERS[name] for name in (*names, "sublayers")}
+__all__ = ["LAYER", "MOST", "expanded", "full_name", "numbers_of", "row"]
 
 
 def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
@@ -60,20 +52,11 @@ def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
     if beside and "layers" in parameters:
         raise ValueError(f"{beside[0]} is given beside layers: each of the layers has its own")
     stack = _of_list(parameters.get("layers", [])) | {_short(name): value for name, value in named.items()}
-    read_tables(stack)
     count = numbers_of(f"layers.{name}" if name[0].isdigit() else name for name in named) or 1
     count = max(count, len(parameters.get("layers", [])))
     if count > MOST:
         raise ValueError(f"layers: {count} layers: at most {MOST}")
     return _with_base(others) | _on_base(stack, parameters.get("rigid_base", False))
-
-
-def read_tables(stack: dict[str, Any]) -> None:
-    """Read the tables of profiles that are named among the parameters and not known yet; ValueError."""
-    for name, value in stack.items():
-        for word in set(np.ravel(value).tolist()) if name.endswith(".profile") else ():
-            if isinstance(word, str) and word.startswith(profiles.PREFIX) and word not in profiles.TABLES:
-                profiles.read(word)
 
 
 def _short(name):

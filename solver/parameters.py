@@ -1,7 +1,7 @@
 """What describes a case: the one table of bounds, defaults and choices, and of which cases need and use a parameter."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterable
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -9,7 +9,6 @@ import numpy as np
 
 from .bases import BASES, STACKS, WITH_LAYERS
 from .numerics import profiles
-from .numerics.kept import shared_lock
 
 BONDINGS = ("frictionless", "bonded")
 #: How the model error of a thin layer asked for by name is estimated: free of cost, or by solving the exact layer.
@@ -57,21 +56,16 @@ class Parameter(NamedTuple):
     long_name: str = ""
 
 
-class Register(dict):
-    """Rows by name. Threads may go through the rows while another thread registers one: they see those of the moment.
+class NamedRows(dict):
+    """Rows by name, which nothing changes.
 
-    Attributes
-    ----------
     further : a function: the row of a name that follows from the name itself, such as "layers.2.h", or None. Such a row
         can be looked up, and is not among the rows that are listed
-    lock : to be held while something is registered, so that two that come at once both get in
     """
 
-    further: Callable = staticmethod(lambda name: None)
-
-    def __init__(self, rows):
+    def __init__(self, rows, further=lambda name: None):
         super().__init__(rows)
-        self.lock = shared_lock()
+        self.further = further
 
     def __missing__(self, name):
         row = self.further(name)
@@ -87,20 +81,10 @@ class Register(dict):
         row = self.further(name) if row is None else row
         return default if row is None else row
 
-    def _now(self) -> dict:
-        return dict(list(super().items()))  # one step: no other thread comes between
+    def _refuse(self, *_, **__):
+        raise TypeError("this table is the same for all calls: its rows cannot be changed")
 
-    def __iter__(self) -> Iterator:
-        return iter(list(super().keys()))
-
-    def keys(self):
-        return self._now().keys()
-
-    def values(self):
-        return self._now().values()
-
-    def items(self):
-        return self._now().items()
+    __setitem__ = __delitem__ = __ior__ = update = setdefault = pop = popitem = clear = _refuse
 
 
 #: The conditions that a case has a layer, and that it is bonded.
@@ -122,11 +106,11 @@ CONTROL = {
     "D": Parameter(interval="[1e-18, 1e3]", powers=(0, 1)),
 }
 
-#: All other parameters; their meanings and units are in :class:`~solver.problem.Problem`. A law declares its own:
-#: `laws.register` adds them here, and the name of the law to the choices of `micro`; so does `shapes.register`.
-#: `schemes` adds those of `scheme`. Rows of the layers of a stack, "layers.2.h", follow from their names: `row`.
+#: The parameters that no law and no shape declares; their meanings and units are in :class:`~solver.problem.Problem`.
+#: :class:`~solver.known.Known` has the whole table: with the parameters of its laws and shapes, the choices of `micro`,
+#: `shape` and `scheme`, and the rows of the layers of a stack, "layers.2.h", which follow from their names: `row`.
 #: Keys of cases leave defaults out (study/inputs/identity.py): whoever changes a default changes `NUMERICS_VERSION`.
-PARAMETERS = Register(
+COMMON = NamedRows(
     {
         "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED, powers=(0, 1)),
         "n": Parameter(interval="[1e-9, 1e9]", also=(0,), needed_by=LAYERED),  # 0: a rigid base
@@ -149,7 +133,7 @@ PARAMETERS = Register(
         "z0": Parameter(interval="[1e-15, 1e3]", powers=(0, 1), instead=""),
         "branch": Parameter("stable", BRANCHES),
         "k_machine": Parameter(interval="[0, inf]", powers=(1, 1), instead=""),
-        "scheme": Parameter("newton"),
+        "scheme": Parameter("newton", ("newton", "picard")),
         "k": Parameter(1.0, interval="[0, 1e6]", used_by=("scheme", ("picard",))),
         "rtol": Parameter(1e-6, interval="[1e-15, 1)"),
         "nodes": Parameter(0, whole=True, interval="[4, 256]", also=(0,)),
@@ -209,12 +193,13 @@ def numbers_of(names) -> int:
     return max((int(match[1]) for match in matches if match), default=int(bool(names)))
 
 
-def row(name: object) -> Parameter | None:
+def row(name: object, tables: Iterable[str] = ()) -> Parameter | None:
     """The row of a parameter of a layer, or of `sublayers`, in the table of parameters.
 
     Parameters
     ----------
     name : of the parameter
+    tables : words "table:FILE" of the profiles that are read
 
     Returns
     -------
@@ -223,7 +208,7 @@ def row(name: object) -> Parameter | None:
     if not isinstance(name, str) or not name.startswith(("layers.", "sublayers")):
         return None
     if name.endswith(".profile") and name in _ROWS:
-        return _ROWS[name]._replace(choices=(*profiles.WORDS, *list(profiles.TABLES)))
+        return _ROWS[name]._replace(choices=(*profiles.WORDS, *tables))
     return _ROWS.get(name)
 
 
@@ -240,7 +225,6 @@ _ROWS = {
     for field in LAYER
     if (name := full_name(number, field)).startswith("layers.")
 } | {"sublayers": _SUBLAYERS}
-PARAMETERS.further = row
 
 
 def is_ratio(name):
@@ -268,9 +252,8 @@ def among(condition, values):
     return met
 
 
-def uses(name, values):
-    """(...) bool: the cases whose answer depends on a parameter; `values` as above."""
-    parameter = PARAMETERS[name] if name in PARAMETERS else CONTROL[name]
+def uses(parameter, values):
+    """(...) bool: the cases whose answer depends on a :class:`Parameter`; `values` as above."""
     return among(parameter.needed_by, values) & among(parameter.used_by, values)
 
 

@@ -1,14 +1,17 @@
 """What is asked: arrays over a batch of cases."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import laws, layers, shapes
+from . import layers
 from .bases import FELT, is_bare, is_stack
-from .parameters import CONTROL, PARAMETERS, Parameter, allowed, among, one_of
+from .known import Known, default, names_of
+from .laws import Law
+from .parameters import COMMON, CONTROL, Parameter, allowed, among, one_of
 
 #: A pitch that differs from h by less than rounding is not above it, whatever the units.
 _ABOVE = 1 - 1e-9
@@ -76,34 +79,42 @@ class Problem:
     nodes = 0 : number of nodes; 0: chosen by `rtol`
     max_iterations = 0 : most steps on a mesh, or approximations at one radius; 0: the limit of the scheme
     R, E2 = 1 : radius of the punch, and reduced modulus E2* of the half-space, both > 0, in any units
+    known : what the words of the parameters stand for, a :class:`~solver.known.Known`
     """
 
     control: str
     value: np.ndarray
     parameters: dict[str, np.ndarray]
+    known: Known
 
     def __repr__(self):
         control = f"{self.control} = {self.value.min():g} ... {self.value.max():g}" if len(self) else self.control
         kinds = [", ".join(sorted(set(values.tolist()))) for values in (self.base, self.micro)]
         return f"Problem({len(self)} cases, {control}, base: {kinds[0]}, micro: {kinds[1]})"
 
-    def __setstate__(self, state):
-        """A process that gets the batch knows its tables."""
-        self.__dict__.update(state)
-        layers.read_tables(self.parameters)
-        shapes.named(self.parameters.get("shape", ()))
+    def __getstate__(self):
+        """Laws and tables that no case has stay at home, with their parameters."""
+        known = self.known.only(self.parameters)
+        kept = {name: values for name, values in self.parameters.items() if name in known.parameters}
+        return {"control": self.control, "value": self.value, "parameters": kept, "known": known}
 
     def __getattr__(self, name):
-        """A parameter; NaN if its law was registered after this batch was made."""
+        """A parameter; NaN of one that is known, and that this batch was made without."""
         if name in (parameters := self.__dict__.get("parameters", {})):
             return parameters[name]
-        if name not in PARAMETERS:
+        if "known" not in self.__dict__ or name not in self.known.parameters:
             raise AttributeError(f"Problem has no {name}")
         return np.full(len(self), np.nan)
 
     @classmethod
     def of(
-        cls, *, P: ArrayLike | None = None, a: ArrayLike | None = None, D: ArrayLike | None = None, **parameters: Any
+        cls,
+        *,
+        P: ArrayLike | None = None,
+        a: ArrayLike | None = None,
+        D: ArrayLike | None = None,
+        known: Known | None = None,
+        **parameters: Any,
     ) -> "Problem":
         """Broadcast scalars and (B,) arrays to a batch.
 
@@ -113,6 +124,8 @@ class Problem:
         Parameters
         ----------
         P, a, D : load, radius of the nominal contact area, indentation depth; exactly one of them
+        known : laws, shapes and tables of profiles by the names that the parameters use; left out, what this package
+            has and the program has registered. Laws that are given as objects, and tables, are known besides
         parameters : as in the docstring of the class
 
         Returns
@@ -137,23 +150,23 @@ class Problem:
         if len(controls) != 1:
             raise ValueError(f"give exactly one of P, a, D (got {', '.join(controls) or 'none'})")
         ((control, value),) = controls.items()
-        parameters = layers.expanded(parameters)
-        shapes.named(parameters.get("shape", ()))
-        parameters["micro"] = laws.named(parameters.get("micro", PARAMETERS["micro"].default))
-        laws.load(parameters, parameters["micro"])
-        table = layers.table(layers.numbers_of(parameters))
+        parameters = {"micro": COMMON["micro"].default} | layers.expanded(parameters)
+        known = (known or default()).with_profiles(parameters).with_tips(parameters.get("shape", ()))
+        known = known.with_laws_of(parameters["micro"], parameters)
+        parameters["micro"] = names_of(parameters["micro"])
+        table = known.table(layers.numbers_of(parameters))
         unknown = sorted(set(parameters) - set(table))
         if unknown:
             raise TypeError(f"unknown parameter {unknown[0]}")
         defaults = {name: np.nan if row.default is None else row.default for name, row in table.items()}
-        arrays = {name: _array(name, v) for name, v in ({"value": value} | defaults | parameters).items()}
+        arrays = {name: _array(name, v, table) for name, v in ({"value": value} | defaults | parameters).items()}
         shape = np.broadcast_shapes((1,), *(v.shape for v in arrays.values()))
         if len(shape) != 1:
             raise ValueError(f"parameters broadcast to shape {shape}: give scalars and one-dimensional arrays")
         if missing := "; ".join(_missing(parameters, arrays, table)):
             raise ValueError(missing)
         arrays = {name: np.broadcast_to(v, shape) for name, v in arrays.items()}
-        return cls(control, arrays.pop("value"), arrays)
+        return cls(control, arrays.pop("value"), arrays, known)
 
     def __len__(self):
         return len(self.value)
@@ -169,7 +182,8 @@ class Problem:
         -------
         Problem
         """
-        return Problem(self.control, self.value[index], {name: v[index] for name, v in self.parameters.items()})
+        parameters = {name: v[index] for name, v in self.parameters.items()}
+        return Problem(self.control, self.value[index], parameters, self.known)
 
     def but(self, **parameters: Any) -> "Problem":
         """The batch with other values of some parameters.
@@ -183,7 +197,7 @@ class Problem:
         Problem
         """
         new = {name: np.broadcast_to(v, len(self)) for name, v in parameters.items()}
-        return Problem(self.control, self.value, self.parameters | new)
+        return Problem(self.control, self.value, self.parameters | new, self.known)
 
     @property
     def nu(self) -> np.ndarray:
@@ -197,7 +211,7 @@ class Problem:
         -------
         numpy.ndarray : (B,) bool: the case has asperities
         """
-        return np.all([self.micro != name for name, law in laws.LAWS.items() if not law.rough], axis=0)
+        return np.all([self.micro != name for name, law in self.known.laws.items() if not law.rough], axis=0)
 
     def can_feel(self) -> np.ndarray:
         """Which cases have asperities that can feel what lies below the surface.
@@ -206,7 +220,7 @@ class Problem:
         -------
         numpy.ndarray : (B,) bool: the base is an exact layer or stack, or "auto", and the micro law takes its kernel
         """
-        return can_feel(self.base, self.micro)
+        return can_feel(self.base, self.micro, self.known.laws)
 
     def feels_layer(self) -> np.ndarray:
         """Which cases have asperities that feel what lies below the surface.
@@ -215,7 +229,7 @@ class Problem:
         -------
         numpy.ndarray : (B,) bool: they can, and `asperities_on` is "layer", or it is "auto" and their pitch is above h
         """
-        return feels(self.base, self.micro, self.asperities_on, self.Nbar, self.h)
+        return feels(self.base, self.micro, self.asperities_on, self.Nbar, self.h, self.known.laws)
 
     def may_pull(self) -> np.ndarray:
         """Which cases may have a control that is 0 or negative.
@@ -246,7 +260,7 @@ class Problem:
         bad = ~(allowed(CONTROL[self.control], self.value) | self.may_pull() & (np.abs(self.value) <= _PULL))
         bad |= (self.asperities_on == "layer") & ~self.can_feel()
         having = {}
-        for name, own in layers.table(layers.numbers_of(self.parameters)).items():
+        for name, own in self.known.table(layers.numbers_of(self.parameters)).items():
             if own.interval:
                 if own.needed_by not in having:
                     having[own.needed_by] = among(own.needed_by, lambda name: getattr(self, name))
@@ -255,9 +269,9 @@ class Problem:
                 values = getattr(self, name)
                 left_out = np.isnan(values) & (own.instead is not None)
                 bad |= having[own.needed_by] & ~(allowed(own, values) | left_out)
-        for law in (law for law in laws.LAWS.values() if law.allows):
-            index = np.flatnonzero(self.micro == law.name)
-            if len(index):
+        for law in self.known.laws.values():
+            index = np.flatnonzero(self.micro == law.name) if law.allows else ()
+            if law.allows and len(index):
                 bad[index] |= ~law.allows(**{name: getattr(self, name)[index] for name in law.arguments})
         return bad
 
@@ -277,38 +291,47 @@ def far_apart(Nbar: ArrayLike, h: ArrayLike) -> np.ndarray:
         return np.asarray(Nbar) * np.asarray(h) ** 2 < _ABOVE
 
 
-def can_feel(base: ArrayLike, micro: ArrayLike) -> np.ndarray:
+def can_feel(base: ArrayLike, micro: ArrayLike, laws: Mapping[str, Law]) -> np.ndarray:
     """Whether asperities can feel what lies below the surface.
 
     Parameters
     ----------
     base, micro : words; they broadcast
+    laws : name -> law of the words of `micro`
 
     Returns
     -------
     numpy.ndarray of bool : the base is an exact layer or stack, or "auto", and the micro law takes its kernel
     """
-    return one_of(base, FELT) & one_of(micro, [name for name, law in laws.LAWS.items() if law.on_body])
+    return one_of(base, FELT) & one_of(micro, [name for name, law in laws.items() if law.on_body])
 
 
-def feels(base: ArrayLike, micro: ArrayLike, asperities_on: ArrayLike, Nbar: ArrayLike, h: ArrayLike) -> np.ndarray:
+def feels(
+    base: ArrayLike,
+    micro: ArrayLike,
+    asperities_on: ArrayLike,
+    Nbar: ArrayLike,
+    h: ArrayLike,
+    laws: Mapping[str, Law],
+) -> np.ndarray:
     """Whether asperities feel what lies below the surface.
 
     Parameters
     ----------
     base, micro, asperities_on : words
     Nbar, h : of any one unit of length; all broadcast
+    laws : name -> law of the words of `micro`
 
     Returns
     -------
     numpy.ndarray of bool : they can, and `asperities_on` is "layer", or it is "auto" and their pitch is above h
     """
     words = np.asarray(asperities_on)
-    return can_feel(base, micro) & ((words == "layer") | (words == "auto") & far_apart(Nbar, h))
+    return can_feel(base, micro, laws) & ((words == "layer") | (words == "auto") & far_apart(Nbar, h))
 
 
-def _array(name, value):
-    parameter = PARAMETERS.get(name, Parameter())
+def _array(name, value, table):
+    parameter = table.get(name, Parameter())
     if parameter.choices:
         array = np.asarray(value, dtype=str)
         unknown = sorted(set(array.ravel()) - set(parameter.choices))

@@ -11,9 +11,9 @@ from .body.graded import graded_first
 from .body.half_space import STIFF, local_compliance
 from .body.stacked import stack, thin_stack
 from .kernels.two_layers import TwoLayers, layer_modulus, thin_layer_coefficients
-from .laws import LAWS, try_out
+from .laws import try_out
 from .numerics.batch import alike
-from .parameters import CONTROL, PARAMETERS, allowed
+from .parameters import COMMON, CONTROL, allowed
 from .rough.equation import Cases
 from .solution import PULLS
 from .status import Status
@@ -43,8 +43,8 @@ def dimensionless(problem):
     n = np.where(is_bare(problem.base), 1.0, problem.n)
     if without_units(problem):
         return replace(problem, parameters=problem.parameters | {"n": n})
-    with_unit = {name: values for name, values in problem.parameters.items() if any(PARAMETERS[name].powers)}
-    own = {name: number(values, PARAMETERS[name].powers) for name, values in with_unit.items()}
+    powers = {name: problem.known.parameters[name].powers for name in problem.parameters}
+    own = {name: number(problem.parameters[name], pair) for name, pair in powers.items() if any(pair)}
     one = np.ones(len(problem))
     own |= {"n": n, "R": one, "E2": one}
     value = number(problem.value, CONTROL[problem.control].powers)
@@ -91,7 +91,7 @@ def with_a_stiff_base(problem):
 
 def refused(problem, scaled):
     """(B,) bool: cases that cannot be solved as they are given; `scaled` is the problem in units R = E2* = 1."""
-    units = [~allowed(PARAMETERS[name], getattr(problem, name)) for name in ("R", "E2")]
+    units = [~allowed(COMMON[name], getattr(problem, name)) for name in ("R", "E2")]
     return scaled.invalid() | units[0] | units[1]
 
 
@@ -139,7 +139,7 @@ def law_of(part, body=None):
 
     part : cases of one law on one base, and of one of :func:`kinds_of_laws`; body : theirs, if it is at hand
     """
-    law, felt = LAWS[str(part.micro[0])], felt_body(part, body)
+    law, felt = part.known.laws[str(part.micro[0])], felt_body(part, body)
     values = {name: getattr(part, name) for name in law.arguments}
     if felt:
         return law.on_body(felt.kernel, felt.m, felt.h, felt.E, **values)

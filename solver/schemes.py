@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from .compiled import newton as compiled
+from .known import register_scheme
 from .numerics.ladder import start_nodes
 from .numerics.mesh import mesh_of
-from .parameters import PARAMETERS
 from .rough import picard as approximations
 from .rough.answer import answer
 from .scaling import as_cases
@@ -31,7 +31,7 @@ def scheme(function):
     if other.__module__ != function.__module__:
         raise ValueError(f"scheme {function.__name__}: {other.__module__} has one of this name: take another name")
     SCHEMES[function.__name__] = function
-    PARAMETERS["scheme"] = PARAMETERS["scheme"]._replace(choices=tuple(SCHEMES))
+    register_scheme(function.__name__)
     return function
 
 

@@ -10,7 +10,6 @@ from solver.scaling import dimensionless, with_rigid_punch
 
 from .inputs.definition import StudyError
 from .inputs.reading import from_call
-from .inputs.vocabulary import PARAMETERS
 from .specimen.heights.form import without_form
 from .specimen.scan import Scan
 
@@ -84,9 +83,9 @@ def _asked(parameters: dict[str, Any]) -> tuple[Any, Problem]:
     if definition.grid.sizes:
         several = ", ".join(definition.grid.sizes)
         raise StudyError([f"effective_work: {several} has several values: one surface at a time"])
-    names = {name: value for name, value in scene.parameters.items() if name in PARAMETERS}
+    names = {name: value for name, value in scene.parameters.items() if name in scene.lexicon.parameters}
     names["base"] = {"auto": "layered"}.get(word := names.get("base", "layered"), word)
-    rigid = with_rigid_punch(Problem.of(**names))
+    rigid = with_rigid_punch(Problem.of(known=scene.lexicon.known, **names))
     return scene, dimensionless(rigid).but(E2=rigid.E2)
 
 

@@ -10,23 +10,22 @@ import numpy as np
 
 from solver import Problem
 from solver.bases import is_bare
-from solver.laws import LAWS
 from solver.laws.elastic_plastic import TABOR
-from solver.shapes import PARABOLOID, SHAPES
+from solver.shapes import PARABOLOID
 
 from .arrays import xarray_later as xr
 from .data.dataset import STRENGTHS
 from .data.one_case import is_contact
 from .data.si import OF_USERS
 from .inputs.definition import StudyError
-from .inputs.laws import recall
+from .inputs.lexicon import Lexicon, lexicon_in
 from .inputs.punch.shapes import MICROMETRE, in_metres
 from .inputs.punch.stresses import DECIDE, without_stresses
 from .inputs.scene.layers import moduli_of
 from .inputs.scene.names import is_ratio
 from .inputs.scene.scales import make_dimensionless
 from .inputs.scene.scene import Scene, over
-from .inputs.vocabulary import CONTROLS, NUMERICS, ROWS, SCENE, VOCABULARY, parameters_of, scene_of
+from .inputs.vocabulary import CONTROLS, NUMERICS, SCENE, scene_of
 from .rules.rule import has_units
 from .rules.strength import first, softer
 from .specimen.materials import Material, Strength, known_strength
@@ -53,14 +52,14 @@ class Again(NamedTuple):
 
         who : the name of the public function, for messages
         """
-        inputs = _checked(contact, who)
+        inputs, lexicon = _checked(contact, who), lexicon_in(contact)
         dims, shape = contact["status"].dims, contact["status"].shape
-        scene = _scene(inputs, contact.attrs.get("scale", "R")) if "R" in inputs else None
+        scene = _scene(inputs, contact.attrs.get("scale", "R"), lexicon) if "R" in inputs else None
         numbers = scene.parameters if scene else inputs
+        names = [name for name in lexicon.parameters_of(numbers) if name in numbers]
         try:
-            problem = Problem.of(
-                **{name: of_all_cases(numbers[name], dims, shape) for name in parameters_of(numbers) if name in numbers}
-            )
+            columns = {name: of_all_cases(numbers[name], dims, shape) for name in names}
+            problem = Problem.of(known=lexicon.known, **columns)
         except ValueError as error:
             raise StudyError([f"{who}: {error}"]) from None
         return cls(problem, numbers, scene, dims, shape)
@@ -68,8 +67,8 @@ class Again(NamedTuple):
 
 def no_stresses(again: Again, *, largest: bool = True) -> str:
     """Why some contacts have no stresses, or no `largest` ones; "" where all have them."""
-    values = (getattr(again.problem, name) for name in DECIDE)
-    return without_stresses(*values, largest=largest)
+    base, *others = (getattr(again.problem, name) for name in DECIDE)
+    return without_stresses(base, again.problem.rough(), *others, largest=largest)
 
 
 def refuse_without_stresses(again: Again, who: str, *, largest: bool = True) -> None:
@@ -83,22 +82,23 @@ def _checked(contact: xr.Dataset, who: str) -> dict[str, Any]:
     """The inputs of the cases: numbers and texts, or DataArrays without coordinates. Raises StudyError."""
     if not is_contact(contact) or "status" not in contact:
         raise StudyError([f"{who} takes a dataset of study.solve or of a results file, with its status"])
-    recall(contact.attrs.get("micro_laws", ""))
+    lexicon = lexicon_in(contact)
     coords = [str(name) for name in contact.coords]
     settings = {name: contact.attrs[name] for name in NUMERICS if name in contact.attrs}
-    coordinates = [name for name in (*CONTROLS, *scene_of(coords), *parameters_of(coords)) if name in coords]
+    coordinates = [name for name in (*CONTROLS, *scene_of(coords), *lexicon.parameters_of(coords)) if name in coords]
     wrong = [f"has no coordinate {name}" for name in ("base", "micro") if name not in coordinates]
     wrong += ["must have one of P, a and D as a coordinate"] * (len({*coordinates} & {*CONTROLS}) != 1)
     if wrong:
         raise StudyError([f"{who}: the dataset {wrong[0]}: its cases cannot be solved again"])
-    units = {ROWS[name].unit == contact[name].attrs.get("units") for name in coordinates if ROWS[name].unit != "1"}
+    units_of = {name: lexicon.all_rows[name].unit for name in coordinates}
+    units = {unit == contact[name].attrs.get("units") for name, unit in units_of.items() if unit != "1"}
     if units == {True, False} or has_units(contact) != ("R" in coordinates and "E2" in coordinates):
         raise StudyError([f"{who} needs all in SI units, as study.solve gives them, or all without units"])
-    unknown = {*np.unique(contact["micro"].values.astype(str)).tolist()} - {*LAWS}
+    unknown = {*np.unique(contact["micro"].values.astype(str)).tolist()} - {*lexicon.known.laws}
     if unknown:
         raise StudyError([f"micro = {shown(min(unknown))}: no law of this name is registered here"])
     words = contact["shape"].values.astype(str) if "shape" in contact.coords else PARABOLOID
-    unknown = {*np.unique(words).tolist()} - {*SHAPES}
+    unknown = {*np.unique(words).tolist()} - {*lexicon.known.shapes}
     if unknown:  # whoever sends a results file must not choose which files are opened
         raise StudyError([f"shape = {shown(min(unknown))}: no shape of this name is registered here"])
     return settings | {name: _without_coordinates(contact[name]) for name in coordinates}
@@ -109,19 +109,19 @@ def _without_coordinates(array: xr.DataArray) -> Any:
     return xr.DataArray(values, dims=array.dims) if array.dims else values.item()
 
 
-def _scene(inputs: dict[str, Any], scale: Any) -> Scene:
+def _scene(inputs: dict[str, Any], scale: Any, lexicon: Lexicon) -> Scene:
     """The scene of inputs in SI units. What follows from others is computed again.
 
     scale : the input that is the unit of length
     """
     follows = {ratio for modulus, ratio in (("E1", "n"), ("E_punch", "m")) if modulus in inputs}
     follows |= {ratio for _, _, ratio in moduli_of(inputs)}
-    in_si = [name for name in inputs if name in SCENE or is_ratio(name) or VOCABULARY[name].powers != (0, 0)]
+    in_si = [name for name in inputs if name in SCENE or is_ratio(name) or lexicon.rows[name].powers != (0, 0)]
     others = {name: value for name, value in inputs.items() if name not in {*in_si, *follows}}
-    metres = in_metres(others.get("shape", ""))
+    metres = in_metres(others.get("shape", ""), lexicon)
     values = {name: inputs[name] for name in in_si if not (name == "table_unit" and np.any(metres))}
     scale = scale if scale in values and scale != "R" or scale == MICROMETRE else ""
-    scene = Scene(values=values, parameters=others, scale=scale, metres=metres)
+    scene = Scene(values=values, parameters=others, scale=scale, metres=metres, lexicon=lexicon)
     make_dimensionless(scene)
     return scene
 

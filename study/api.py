@@ -11,6 +11,7 @@ import xarray as xr
 from .data.provenance import command_line
 from .files.examine import Condition
 from .inputs.definition import Definition
+from .inputs.lexicon import with_known
 from .inputs.places import study_file
 from .inputs.reading import read
 from .store.clean import clean
@@ -148,8 +149,11 @@ class Study:
         ------
         StudyError : there are none, none of this definition, or they are damaged
         """
+        grid = self.definition.grid  # its laws and tables are those of the results
+        values = {name: array for name, (_, array) in grid.values.items()}
         state = glance(self._store)
-        return state.partial() if partial and state.is_one and not state.is_complete else state.opened()
+        partly = partial and state.is_one and not state.is_complete
+        return with_known(state.partial() if partly else state.opened(), grid.lexicon, values)
 
     def plot(self, x: str, y: str, hue: str = "", **where: Any) -> "Figure":
         """A figure of the results: see `study.plot`.

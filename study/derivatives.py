@@ -9,18 +9,17 @@ import numpy as np
 
 from solver import Problem, solve
 from solver import sensitivities as derivatives
-from solver.layers import numbers_of, table
-from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
-from solver.parameters import uses
+from solver.layers import numbers_of
 
 from .again import Again, of_all_cases
 from .arrays import xarray_later as xr
 from .inputs.definition import StudyError
+from .inputs.lexicon import lexicon_of
 from .inputs.scene.changes import SCALES, changes
 from .inputs.scene.layers import moduli_of
 from .inputs.scene.names import is_ratio
 from .inputs.scene.scene import Scene
-from .inputs.vocabulary import VOCABULARY, bodies_of, parameters_of
+from .inputs.vocabulary import VOCABULARY, bodies_of
 
 #: Results that have sensitivities.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
@@ -74,7 +73,7 @@ def _by_inputs(contact: xr.Dataset, again: Again, x: Any) -> tuple[dict, dict]:
     NaN in cases that have not converged.
     """
     problem, numbers, scene, dims, shape = again
-    used = [name for name in table(numbers_of(numbers)) if name in numbers and _counts(problem, name)]
+    used = [name for name in problem.known.table(numbers_of(numbers)) if name in numbers and _counts(problem, name)]
     solution = solve(problem, x)
     solved = derivatives(problem, solution, x, inputs=(problem.control, *used))
     logs = {name: dict(zip(solved.inputs, values.T, strict=True)) for name, values in solved.logs.items()}
@@ -138,10 +137,10 @@ def correlated(contact: xr.Dataset) -> bool:
 
 def _counts(problem: Problem, name: str) -> bool:
     """Whether an input is a number on which the answer of some case depends, and no setting."""
-    parameter = SOLVER_PARAMETERS[name]
-    setting = VOCABULARY[name].role == "numerics" if name in VOCABULARY else False
+    parameter, rows = problem.known.parameters[name], lexicon_of(problem.known).rows
+    setting = rows[name].role == "numerics" if name in rows else False
     counts = parameter.interval and not parameter.whole and not setting
-    return bool(counts and np.any(uses(name, lambda key: getattr(problem, key))))
+    return bool(counts and np.any(problem.known.uses(name, lambda key: getattr(problem, key))))
 
 
 def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[str, np.ndarray]]:
@@ -150,7 +149,7 @@ def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[
     unit = {"R"} if "R1" in values or scene.scale else set()
     names = [name for name in values if np.any(np.isfinite(values[name])) and name not in unit]
     follow = {"n", "m", "table_unit", *(ratio for _, _, ratio in moduli_of(values))}
-    given = [name for name in parameters_of(scene.parameters) if name in scene.parameters]
+    given = [name for name in scene.lexicon.parameters_of(scene.parameters) if name in scene.parameters]
     pure_numbers = [name for name in given if name not in {*values, *follow}]
     pure_numbers += ["n"] * ("E1" not in values) + ["m"] * ("E_punch" not in values)
     ones = np.ones(int(np.prod(shape)))

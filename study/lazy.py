@@ -10,15 +10,12 @@ import numpy as np
 import xarray as xr
 from dask.array.core import normalize_chunks
 
-from solver import laws
-from solver.laws import Law
-
 from .data.dataset import labelled, not_run, parts
 from .data.si import dataset_of
 from .inputs.definition import Definition, StudyError
 from .inputs.grid import cut_out
 from .terminal import shown
-from .work.cases import compute, laws_of_users, parcel
+from .work.cases import compute, parcel
 from .work.engine import blocks_of_grid
 
 
@@ -27,12 +24,10 @@ class Chunks(NamedTuple):
 
     definition : of the whole grid
     ends : dimension of the grid -> where its chunks end, with 0 before them
-    laws : micro laws that another process may not have registered
     """
 
     definition: Definition
     ends: dict[str, np.ndarray]
-    laws: tuple[Law, ...]
 
     def within(self, number: int) -> Definition:
         """The definition of the cases in the chunk of a number."""
@@ -57,7 +52,7 @@ def lazily(definition: Definition, chunks: Any, command: str) -> xr.Dataset:
     dims = definition.in_results({dim: dim for dim in definition.grid.sizes})
     lengths = _lengths(chunks, definition)
     ends = {dim: np.cumsum([0, *along]) for dim, along in zip(dims.values(), lengths, strict=True)}
-    each = Chunks(definition, ends, tuple(laws_of_users(definition.grid.values["micro"][1])))
+    each = Chunks(definition, ends)
     shape = tuple(map(len, lengths))
     numbers = dask.array.from_array(np.arange(prod(shape)).reshape(shape), chunks=1)
     # The grid is an item of dask of its own, which goes to a worker once and not with every chunk: an array of one
@@ -122,8 +117,6 @@ def _called(call: np.ndarray, number: np.ndarray) -> np.ndarray:
 
 def _solved(each: Chunks, number: np.ndarray) -> np.ndarray:
     """The results of a chunk, name -> values, as the only element of an array of the shape of its number."""
-    for law in each.laws:
-        laws.register(law)
     here = each.within(number.item())
     blocks = [compute(parcel(here, index)) for index in blocks_of_grid(here)]
     arrays = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}

@@ -19,6 +19,7 @@ from .derivatives import sensitivities as derivatives_of
 from .in_words import FarOutside, beside_rules, doubts, far_outside
 from .inputs.checks import unloading
 from .inputs.definition import POINTS, Definition, StudyError
+from .inputs.lexicon import PACKAGE
 from .inputs.punch.stresses import none_in
 from .inputs.reading import from_call
 from .inputs.scene.hints import Parameters
@@ -204,7 +205,7 @@ def signature() -> inspect.Signature:
     """
     kept, named = inspect.signature(solve).parameters.values(), []
     for name, hint in Parameters.__annotations__.items():
-        default = VOCABULARY[name].parameter.default if name in VOCABULARY else None
+        default = PACKAGE.parameter(name).default if name in VOCABULARY else None
         hint = getattr(hint, "__forward_arg__", hint)
         named.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=hint))
     return inspect.Signature([*named, *kept], return_annotation="xr.Dataset")

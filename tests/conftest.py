@@ -21,11 +21,10 @@ from left_out import left_out
 from line_study import computed, file, quiet  # noqa: F401
 from screens import impatient, stderr  # noqa: F401
 
-from solver import laws
+from solver import known
 from solver.compiled.library import VARIABLE, available
 from study import open_results
 from study.files.lock import held
-from study.inputs.laws import update_vocabulary
 from study.work import engine
 
 collect_ignore = ["shared/hold.py"]  # importing it changes `study`: it is for processes of their own
@@ -64,15 +63,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         items[:] = [item for item in items if item not in out]
 
 
-@pytest.fixture(autouse=True)
-def laws_as_they_were() -> Iterator[None]:
-    """After each test only the laws of this package are known."""
+@pytest.fixture
+def forgetful() -> Iterator[None]:
+    """What the test registers is forgotten after it."""
+    before = known.default()
     yield
-    for name in set(laws.LAWS) - {law.name for law in laws.BUILT_IN}:
-        del laws.LAWS[name]
-        laws._declare(laws.LAWS)
-        update_vocabulary()
-    update_vocabulary()
+    known._default.known = before
 
 
 @pytest.fixture

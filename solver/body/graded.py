@@ -4,7 +4,6 @@ import numpy as np
 
 from ..bases import is_exact_stack
 from ..layers import full_name, numbers_of
-from ..numerics.profiles import TABLES
 
 #: The sublayers are thinner and thinner over this many octaves of the depth: in a graded layer at the surface, which
 #: waves of all lengths feel, and in a deeper one.
@@ -39,14 +38,16 @@ def contrast(problem):
         part = problem.take(index)
         word, bottom = getattr(part, full_name(1, "profile")), getattr(part, full_name(1, "n_bottom"))
         logs[index] = np.abs(np.log(np.where(np.isnan(bottom), 1.0, bottom / (part.n + (part.n == 0)))))
-        for name in set(word.tolist()) & set(TABLES):
-            logs[index[word == name]] = np.log(TABLES[name].n.max() / TABLES[name].n.min())
+        tables = problem.known.profiles
+        for name in set(word.tolist()) & set(tables):
+            logs[index[word == name]] = np.log(tables[name].n.max() / tables[name].n.min())
     return logs
 
 
-def refined(layers, sublayers, octaves=_OCTAVES):
+def refined(layers, sublayers, tables, octaves=_OCTAVES):
     """The `layers` of :func:`.stacked.layers_of` with each that is graded in some case cut into uniform ones, of the
-    modulus in their middle. sublayers : (B,), one number for all cases; octaves : of the first layer.
+    modulus in their middle. sublayers : (B,), one number for all cases; tables : word -> table of a profile; octaves :
+    of the first layer.
 
     They are the thinner the nearer they are to the top of the layer, as many in each octave of the depth: short waves
     then find the gradient as well resolved as long ones.
@@ -54,8 +55,9 @@ def refined(layers, sublayers, octaves=_OCTAVES):
     graded = (layers["profile"] != "uniform").any(axis=0)
     if not graded.any():
         return layers
+    count = int(sublayers[0]) or _USUAL
     pieces = [
-        _cut(layers, j, int(sublayers[0]) or _USUAL, _DEEPER if j else octaves) if graded[j] else _as_it_is(layers, j)
+        _cut(layers, j, count, _DEEPER if j else octaves, tables) if graded[j] else _as_it_is(layers, j)
         for j in range(len(graded))
     ]
     return {name: np.concatenate([piece[name] for piece in pieces], axis=1) for name in pieces[0]}
@@ -65,24 +67,24 @@ def _as_it_is(layers, j):
     return {name: layers[name][:, j : j + 1] for name in ("h", "n", "nu", "bonding", "cn", "ct")}
 
 
-def _cut(layers, j, count, octaves):
+def _cut(layers, j, count, octaves, tables):
     """Layer j as uniform ones."""
     part, profile = _as_it_is(layers, j), layers["profile"][:, j : j + 1]
     bottoms = {name: layers[f"{name}_bottom"][:, j : j + 1] for name in ("n", "nu")}
     bottoms = {name: np.where(np.isnan(v) | (profile == "uniform"), part[name], v) for name, v in bottoms.items()}
     ends = _depths(profile, part["n"], bottoms["n"], cuts(count, octaves))
     middle, last = (ends[:, 1:] + ends[:, :-1]) / 2, np.arange(ends.shape[1] - 1) == ends.shape[1] - 2
-    n = _moduli(profile, part["n"], bottoms["n"], middle)
+    n = _moduli(profile, part["n"], bottoms["n"], middle, tables)
     sublayers = {"h": part["h"] * np.diff(ends, axis=1), "n": n, "nu": _linear(part, bottoms, "nu", middle)}
     springs = {name: np.where(last, part[name], 0.0) for name in ("cn", "ct")}
     return sublayers | springs | {"bonding": np.where(last, part["bonding"], "bonded")}
 
 
-def _moduli(profile, top, bottom, z):
+def _moduli(profile, top, bottom, z, tables):
     """E*/E2* (B, N) at depths z over the thickness. A table is taken over its first modulus."""
     n = np.where(profile == "exponential", top * (bottom / top) ** z, top + (bottom - top) * z)
-    for word in set(profile.ravel().tolist()) & set(TABLES):
-        rows, table = profile[:, 0] == word, TABLES[word]
+    for word in set(profile.ravel().tolist()) & set(tables):
+        rows, table = profile[:, 0] == word, tables[word]
         n[rows] = top[rows] * np.interp(z[rows], table.z, table.n) / table.n[0]
     return n
 

@@ -26,7 +26,7 @@ def layers_of(problem):
 def kernel_of(problem, **octaves):
     """The :class:`~..kernels.stack.Stack` of cases, and the thickness (B,) of its first layer in R. A graded layer is
     as many uniform ones as `sublayers` says; `octaves` : of the first, if they are not the usual ones."""
-    layers = refined(layers_of(problem), problem.sublayers, **octaves)
+    layers = refined(layers_of(problem), problem.sublayers, problem.known.profiles, **octaves)
     h, unit = layers["h"], layers["n"][:, :1] / layers["h"][:, :1]
     slips = layers["bonding"] == "frictionless"
     arrays = layers["n"], layers["nu"], h / h[:, :1], slips, layers["cn"] * unit, layers["ct"] * unit

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from ..kernels.two_layers import TwoLayers, layer_modulus
 from ..numerics.mesh import mesh_of
 from ..numerics.threads import one_blas_thread
-from ..parameters import BONDINGS, PARAMETERS, allowed
+from ..parameters import BONDINGS, COMMON, allowed
 from . import normal, sliding
 from .field import integrals
 from .pressure import Pressure
@@ -105,8 +105,8 @@ def _layers(h, n, nu1, nu2, bonding):
     """:class:`TwoLayers` of one case; ValueError for a number out of bounds."""
     for name, value in {"h": h, "n": n, "nu1": nu1, "nu2": nu2}.items():
         good = np.ndim(value) == 0 and np.isfinite(value)
-        if not good or (value <= 0 if name == "h" else not allowed(PARAMETERS[name], value)):
-            bounds = "> 0" if name == "h" else f"in {PARAMETERS[name].interval}" + " or 0" * (name == "n")
+        if not good or (value <= 0 if name == "h" else not allowed(COMMON[name], value)):
+            bounds = "> 0" if name == "h" else f"in {COMMON[name].interval}" + " or 0" * (name == "n")
             raise ValueError(f"{name} = {value}: must be a finite number {bounds}")
     if bonding not in BONDINGS:
         raise ValueError(f'bonding = "{bonding}": must be one of {", ".join(BONDINGS)}')

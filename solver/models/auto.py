@@ -11,7 +11,6 @@ import numpy as np
 
 from ..kernels.closed_form import decaying_part, whole
 from ..kernels.two_layers import layer_modulus
-from ..laws import LAWS
 from ..laws.disc_cell import SMOOTH
 from ..numerics.quadrature import gauss_legendre
 from ..rough.start import guess_radius
@@ -88,7 +87,7 @@ def _on_model(model, part, x):
     """:class:`Solution` of the cases `part` on a cheap model, with their asperities."""
     thin = model in (Model.THIN_LAYER, Model.SMOOTH_THIN_LAYER)
     base = part.but(base="thin_layer") if thin else part.but(base="half_space", E2=layer_modulus(part.n), nu2=part.nu1)
-    if model not in _SMOOTH or not LAWS[str(part.micro[0])].rough:
+    if model not in _SMOOTH or not part.known.laws[str(part.micro[0])].rough:
         return solve_named(base, x)
     s, _ = area_rule()
     radii = np.concatenate([x, np.sqrt((1 - s) * (1 + s))])

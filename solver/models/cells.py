@@ -81,10 +81,11 @@ def _of_felt(part, solution):
     factor, power = _ANGULAR.get(name, _HEX)
     lam = np.fmax.reduce(solution.lam, axis=1, initial=0.0)
     error = factor * (2 * lam) ** power + _CUT * contrast(part)
-    if not LAWS[name].smears:
+    law = part.known.laws[name]
+    if not law.smears:
         return error
     error = error + _of_disc(part, lam, solution)
-    return error if LAWS[name].touching is None else error + LAWS[name].error + _of_heights(part, solution)
+    return error if law.touching is None else error + law.error + _of_heights(part, solution)
 
 
 def _of_heights(part, solution):
@@ -116,7 +117,7 @@ def _of_disc(part, lam, solution):
 def _of_half_space(part, solution):
     """The error (B,) of asperities on a half-space though their pitch is above h, in units R = E2* = 1."""
     part = part.but(asperities_on="half_space")
-    if LAWS[str(part.micro[0])].on_body is None:
+    if part.known.laws[str(part.micro[0])].on_body is None:
         part = part.but(micro=_DISC)
     on_body = law_of(part.but(asperities_on="layer"))
     return _difference(law_of(part), on_body, np.minimum(solution.p0, end(on_body)), solution.D)

@@ -6,7 +6,6 @@ import numpy as np
 
 from .. import ways
 from ..bases import is_thin_layer, on_springs
-from ..laws import LAWS
 from ..numerics.batch import alike
 from ..scaling import dimensionless, restore, with_a_stiff_base, with_rigid_punch, without_springs
 from ..solution import Model, Solution
@@ -59,7 +58,7 @@ def with_model_error(problem, solution):
 def error_of_law(problem):
     """(B,): the relative error of the tables of the micro laws themselves, which asperities that feel the body do not
     have."""
-    tabulated = sum(law.error * (problem.micro == name) for name, law in LAWS.items())
+    tabulated = sum(law.error * (problem.micro == name) for name, law in problem.known.laws.items())
     return np.where(problem.feels_layer(), 0.0, tabulated)
 
 

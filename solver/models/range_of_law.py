@@ -4,7 +4,6 @@ import numpy as np
 
 from ..bases import is_bare
 from ..kernels.two_layers import layer_modulus
-from ..laws import LAWS
 from ..laws.cell.family import MOST
 from ..laws.cell.law import end
 from ..parameters import one_of
@@ -27,7 +26,7 @@ _GUESSED, _STEEPNESS = 0.4, 1.2
 
 def has_yield(problem):
     """(B,) bool: the cases whose micro law has spots that yield."""
-    return one_of(problem.micro, [name for name, law in LAWS.items() if law.yielded])
+    return one_of(problem.micro, [name for name, law in problem.known.laws.items() if law.yielded])
 
 
 def radii_of(problem, all_of_them=False):
@@ -82,7 +81,7 @@ def edge_error(problem, solution):
 def _laws(problem):
     """The laws of the problem that have a range."""
     present = set(problem.micro.tolist())
-    return [law for law in LAWS.values() if law.name in present and (law.least > 0 or law.most < np.inf)]
+    return [law for law in problem.known.laws.values() if law.name in present and (law.least > 0 or law.most < np.inf)]
 
 
 def _of_law(problem, solution, law):

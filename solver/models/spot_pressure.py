@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..bases import is_exact_stack, named
-from ..laws import LAWS, elastic_plastic
+from ..laws import elastic_plastic
 from ..laws.cell.members import members, peaks_of
 from ..laws.cell.peak import NARROW, U
 from ..laws.cell.summits import SUMMIT
@@ -28,7 +28,7 @@ def pressure_in_spots(problem, solution, lam0):
     made = np.where(felt, [solution.p_max, np.zeros(len(problem))], np.nan)
     p0, p_max = solution.p0 / problem.E2, solution.p_max / problem.E2
     for index, part, body in _of_one_law(problem, felt & _may_be_hard(problem)):
-        law = LAWS[str(part.micro[0])]
+        law = part.known.laws[str(part.micro[0])]
         b = largest_radius(part, body, lam0[index], p0[index])
         for rows, member in _wide_spots(part, body, b):
             here, some, own = index[rows], part.take(rows), b[rows]
@@ -73,7 +73,7 @@ def _of_one_law(problem, some):
 def largest_radius(part, body, lam0, p0):
     """Radius (B,) of the largest spot in the centre, in l, of cases of one law in units R = E2* = 1; body : theirs;
     lam0, p0 : (B,), λ and p in the centre."""
-    if LAWS[str(part.micro[0])].cell != SUMMIT:
+    if part.known.laws[str(part.micro[0])].cell != SUMMIT:
         return np.sqrt(lam0 / np.pi)
     bound = law_of(part, body)
     q = (p0 / bound.p_star)[:, None]
@@ -88,7 +88,8 @@ def _wide_spots(part, body, b, hard=_HARD):
     wide = np.flatnonzero(b * pitch > NARROW)
     if not len(wide):
         return
-    different, which = members(LAWS[str(part.micro[0])].cell, pitch[wide], body.kernel.take(wide), body.m[wide])
+    cell = part.known.laws[str(part.micro[0])].cell
+    different, which = members(cell, pitch[wide], body.kernel.take(wide), body.m[wide])
     for j, member in enumerate(different):
         if member.cell.L1(U).max() > hard - 1:
             yield wide[which == j], member

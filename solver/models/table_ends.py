@@ -1,8 +1,9 @@
 """Contacts that would reach beyond the last row of the table of their shape."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from ..problem import Problem
 from ..shapes import shape_of
 from ..shapes.table import PREFIX
 from ..status import Status
@@ -28,6 +29,6 @@ def beyond_table(scaled, solution):
         left = np.flatnonzero(solution.status[index] != Status.CONVERGED)
         if len(left):
             part, control = scaled.take(index[left]), scaled.control
-            last = Problem("a", most[left] * _LAST, part.parameters).but(rtol=_ROUGHLY, w_adhesion=0.0)
+            last = replace(part, control="a", value=most[left] * _LAST).but(rtol=_ROUGHLY, w_adhesion=0.0)
             beyond[index[left]] = part.value > getattr(solve_named(last, np.zeros(0)), control)
     return beyond

@@ -9,7 +9,7 @@ import numpy as np
 
 from .userfile import content
 
-__all__ = ["GRADED", "PREFIX", "TABLES", "WORDS", "Table", "identity", "read"]
+__all__ = ["GRADED", "PREFIX", "WORDS", "Table", "identity", "read"]
 
 #: "uniform" is not graded.
 WORDS = ("uniform", "exponential", "linear")
@@ -27,12 +27,8 @@ class Table(NamedTuple):
     n: np.ndarray
 
 
-#: Word -> :class:`Table` of those that have been read.
-TABLES: dict[str, Table] = {}
-
-
 def read(word):
-    """The :class:`Table` of a word "table:FILE", which is known from then on.
+    """The :class:`Table` of a word "table:FILE".
 
     The file has two columns, z/h from 0 to 1 and E*/E2* > 0; lines that begin with "#" and a line of words are left
     out. ValueError for a file that cannot be used.
@@ -52,8 +48,7 @@ def read(word):
         raise ValueError(f"profile {word}: z/h must grow from 0 to 1, not from {z[0]:g} to {z[-1]:g}")
     if not np.all((n >= _LEAST) & (n <= _MOST)):
         raise ValueError(f"profile {word}: E*/E2* must be in [{_LEAST:g}, {_MOST:g}]")
-    TABLES[word] = Table(z, n)
-    return TABLES[word]
+    return Table(z, n)
 
 
 def is_number(text):
@@ -65,8 +60,9 @@ def is_number(text):
     return True
 
 
-def identity(word):
-    """Text that tells a profile from all others: the word, and of a table its numbers."""
-    if word not in TABLES:
+def identity(word, tables):
+    """Text that tells a profile from all others: the word, and of one of the `tables` (word -> :class:`Table`) its
+    numbers."""
+    if word not in tables:
         return word
-    return f"{PREFIX} {hashlib.sha256(np.concatenate(TABLES[word]).astype('<f8').tobytes()).hexdigest()}"
+    return f"{PREFIX} {hashlib.sha256(np.concatenate(tables[word]).astype('<f8').tobytes()).hexdigest()}"

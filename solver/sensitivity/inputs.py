@@ -5,7 +5,7 @@ All derivatives are by the logarithm of an input; by a Poisson ratio itself.
 
 import numpy as np
 
-from ..layers import numbers_of, table
+from ..layers import numbers_of
 from ..parameters import CONTROL, is_ratio
 
 #: An input is moved up and down by this part of itself, a Poisson ratio by this number. The curvature then adds 1e-8
@@ -17,7 +17,7 @@ _NO_INPUTS = {"accuracy", "k", "rtol", "R", "E2"}
 
 def inputs_of(problem):
     """Names of all inputs, the control first: numbers that have an interval."""
-    rows = table(numbers_of(problem.parameters))
+    rows = problem.known.table(numbers_of(problem.parameters))
     numbers = [name for name, row in rows.items() if row.interval and not row.whole and name not in _NO_INPUTS]
     return (problem.control, *numbers)
 
@@ -37,7 +37,7 @@ def moved_cases(problem, inputs, step=STEP, copies=0):
             value = values
         else:
             arrays[name] = values
-    return type(problem)(problem.control, value, rows.parameters | arrays)
+    return type(problem)(problem.control, value, rows.parameters | arrays, problem.known)
 
 
 def slope_of(values, k, step=STEP):

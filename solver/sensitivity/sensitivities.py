@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from ..numerics.ladder import STACK
 from ..numerics.threads import one_blas_thread
-from ..parameters import is_ratio, uses
+from ..parameters import is_ratio
 from ..problem import Problem
 from ..scaling import dimensionless
 from ..solution import Solution
@@ -120,7 +120,7 @@ def _acts(problem, name):
         return True
     values = getattr(problem, name)
     there = np.isfinite(values) & (is_ratio(name) | (values != 0))
-    return bool(np.any(there & uses(name, lambda key: getattr(problem, key))))
+    return bool(np.any(there & problem.known.uses(name, lambda key: getattr(problem, key))))
 
 
 def _of_solved(scaled, solution, inputs, x):

@@ -1,6 +1,6 @@
 """The paraboloid f = r²/2, in R, for which the model takes a sphere. Its drop is s² at every radius.
 
-What a rough contact asks of a shape (:mod:`...contact.punch`) it has in closed form.
+What a rough contact asks of a shape (:mod:`..rough.punch`) it has in closed form.
 """
 
 from typing import NamedTuple

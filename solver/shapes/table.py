@@ -9,6 +9,7 @@ import csv
 import hashlib
 import io
 import re
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -43,10 +44,6 @@ class Rows(NamedTuple):
     slopes: np.ndarray
     metres: bool
     series: Series | None = None
-
-
-#: Word -> :class:`Rows` of the tables that have been read.
-TABLES: dict[str, Rows] = {}
 
 
 @batch.of_cases
@@ -144,30 +141,30 @@ def _over_lines(rows, t):
     return over_t + bent, over_t + 2 * bent
 
 
-def read(word, again=False):
-    """The :class:`~.shape.Kind` of a word "table:FILE". Its rows are in TABLES from then on.
-
-    again : read the file though its rows are there: it may have changed
+def read(word):
+    """The :class:`~.shape.Kind` of a word "table:FILE".
 
     The file has two columns, r from 0 upwards and f from 0 upwards; a header may have units, "r [um], f [nm]". Lines
     that begin with "#" are left out. ValueError for a file that cannot be used.
     """
-    if again or word not in TABLES:
-        TABLES[word] = _rows(word)
-    return Kind(word, {"table_unit": TABLE_UNIT}, lambda table_unit, size: _bound(word, table_unit), "a measured tip")
+    return Kind(word, {"table_unit": TABLE_UNIT}, partial(_bound, _rows(word)), "a measured tip")
 
 
-def identity(word):
-    """Text that tells a shape from all others: its name, and of a table its numbers."""
-    if word not in TABLES:
-        return word
-    rows = TABLES[word]
+def rows_of(kind):
+    """The :class:`Rows` of a :class:`~.shape.Kind` that :func:`read` gives; None of another."""
+    return kind.of.args[0] if isinstance(kind.of, partial) and kind.of.func is _bound else None
+
+
+def identity(kind):
+    """Text that tells a :class:`~.shape.Kind` from all others: its name, and of a table its numbers."""
+    rows = rows_of(kind)
+    if rows is None:
+        return kind.name
     numbers = np.concatenate([rows.r, rows.slopes, [float(rows.metres)]]).astype("<f8").tobytes()
     return f"{PREFIX} {hashlib.sha256(numbers).hexdigest()}"
 
 
-def _bound(word, table_unit):
-    rows = TABLES[word]
+def _bound(rows, table_unit, size):
     return Table(rows, np.where(np.isnan(table_unit) & (not rows.metres), 1.0, table_unit))
 
 

@@ -1,6 +1,8 @@
 """The largest stress under the asperities of solved contacts: that of a spot and that of the contact as a whole, added
 as tensors on the axis of each spot (docs/stresses.md, Asperities)."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..bases import is_bare
@@ -65,7 +67,7 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0):
 def with_elastic_spots(scaled, a, x):
     """The :class:`~solver.solution.Solution` with profiles at x of contacts of radius a, of spots that stay elastic."""
     at_a = scaled.but(micro=np.where(scaled.micro == "elastic_plastic", "disc_cell", scaled.micro))
-    return solve(type(at_a)("a", a, at_a.parameters), x)
+    return solve(replace(at_a, control="a", value=a), x)
 
 
 def _on_body(loaded, scaled, a, at_radii):

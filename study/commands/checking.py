@@ -4,6 +4,7 @@ import numpy as np
 
 from ..inputs.checks import unloading
 from ..inputs.definition import Definition
+from ..inputs.lexicon import PACKAGE
 from ..inputs.places import study_file
 from ..inputs.reading import read
 from ..inputs.vocabulary import ROWS, VOCABULARY
@@ -20,7 +21,7 @@ def check(_, file: str) -> int:
 def assumed_lines(definition: Definition) -> list[str]:
     """A line about what a study with units does not give, though it counts; otherwise none."""
     names = definition.scene.assumed if definition.scene else ()
-    texts = [f"{name} = {VOCABULARY[name if name in VOCABULARY else 'nu1'].parameter.default}" for name in names]
+    texts = [f"{name} = {PACKAGE.parameter(name if name in VOCABULARY else 'nu1').default}" for name in names]
     texts += ["a rigid punch"] * bool(definition.scene and "E_punch" not in definition.scene.values)
     return ["    assumed, as not given: " + ", ".join(texts)] * bool(texts)
 

@@ -25,6 +25,7 @@ from ..in_words.notes import OF_PULL_OFF
 from ..in_words.sentences import assumed
 from ..in_words.text import columns
 from ..inputs.definition import StudyError
+from ..inputs.lexicon import lexicon_in
 from ..inputs.scene.names import INFINITE
 from ..solving import solve, solve_one
 from ..terminal import answer, say
@@ -144,9 +145,10 @@ def number_or_text(text: str) -> float | str:
 def as_numbers(contact: xr.Dataset) -> dict:
     """Inputs and results of one case for JSON: value, unit, and spread where the inputs have some; flags by name."""
     contact = contact.assign({name: QUANTITIES[name](contact) for name in _DERIVED} | _spreads_of_derived(contact))
+    inputs = all_inputs(contact.variables, lexicon_in(contact))
     shown = {
         name: described(contact, name)
-        for name in dict.fromkeys((*all_inputs(contact.variables), *SHOWN, *OF_PULL_OFF, *_DERIVED))
+        for name in dict.fromkeys((*inputs, *SHOWN, *OF_PULL_OFF, *_DERIVED))
         if name in contact
     }
     yields = "plastic_share" in contact and np.isfinite(contact["plastic_share"])

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..arrays import xarray_later as xr
-from ..inputs.vocabulary import BODIES, ROWS
+from ..inputs.lexicon import lexicon_in
+from ..inputs.vocabulary import BODIES
 from ..specimen.foreign import plain
 
 
@@ -19,10 +20,10 @@ def with_coordinates(dataset: xr.Dataset, parameters: dict) -> tuple[xr.Dataset,
     """
     arrays = {name: plain(value) for name, value in parameters.items() if hasattr(value, "dims")}
     arrays = {name: array for name, array in arrays.items() if len(getattr(array, "coords", ()))}
-    kept, owners, reasons = {}, {}, {}
+    kept, owners, reasons, ours = {}, {}, {}, {*lexicon_in(dataset).all_rows, *BODIES}
     stacked = {dim for array in arrays.values() for dim, index in array.indexes.items() if _is_stacked(dim, index)}
     for owner, name, variable in _candidates(arrays, stacked):
-        if _is_ours(name) or name in dataset.variables:
+        if name.removesuffix("_spread") in ours or name in dataset.variables:
             if "long_name" not in variable.attrs:  # else it is of earlier results
                 reasons[name] = f"{name} of {owner}: the results have something else of this name, rename it"
         elif name not in kept:
@@ -35,7 +36,7 @@ def with_coordinates(dataset: xr.Dataset, parameters: dict) -> tuple[xr.Dataset,
     for name in kept:
         dataset.variables[name].encoding["_FillValue"] = None  # CF wants none of coordinates
     for array in arrays.values():
-        for dim in {*array.dims} & {*array.coords} - stacked - {*ROWS, *BODIES}:
+        for dim in {*array.dims} & {*array.coords} - stacked - ours:
             dataset[dim].attrs |= array[dim].attrs
     return dataset, [f"a coordinate is left out, {text}" for text in reasons.values()]
 
@@ -52,8 +53,3 @@ def _candidates(arrays: dict[str, xr.DataArray], stacked: set) -> Iterator[tuple
 def _is_stacked(dim: str, index) -> bool:
     """Whether the index along a dimension is a MultiIndex, and not one of its levels."""
     return hasattr(index, "levels") and index.name == dim
-
-
-def _is_ours(name: str) -> bool:
-    """Whether it is the name of a parameter, a result, a body, or a spread of one of these."""
-    return name.removesuffix("_spread") in {*ROWS, *BODIES}

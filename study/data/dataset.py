@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver import Model, Status
+from solver.known import Known
 from solver.parameters import one_of
 from solver.status import NO_SOLUTION
 
@@ -15,8 +16,9 @@ from ..arrays.labelled import Labelled, as_xarray
 from ..inputs.definition import Definition
 from ..inputs.grid import along, unflatten
 from ..inputs.identity import law_versions
-from ..inputs.laws import COMMENT
+from ..inputs.lexicon import KNOWN, encoding_of
 from ..inputs.punch.asperities import USED, used
+from ..inputs.punch.laws import COMMENT
 from ..inputs.scene.scene import bare_variable
 from ..inputs.vocabulary import (
     BY_INPUT,
@@ -28,7 +30,6 @@ from ..inputs.vocabulary import (
     WITH_SPREADS,
     attributes,
     names,
-    parameters_of,
 )
 from ..rules.rule import validity_attributes, validity_of, whole
 from ..rules.strength import FROM_HARDNESS, OF_MATERIAL
@@ -96,9 +97,10 @@ class DatasetParts(NamedTuple):
         return self._replace(coords=coords, attributes=self.attributes | attributes)
 
 
-def validity_of_rows(arrays: dict[str, np.ndarray], times: float = 1.0) -> Labelled:
+def validity_of_rows(arrays: dict[str, np.ndarray], known: Known, times: float = 1.0) -> Labelled:
     """`validity_of` of cases in a row: name -> (n,), of their parameters and of what they were solved to."""
     variables = {name: Labelled("case", array) for name, array in arrays.items()}
+    variables["micro"].encoding = {KNOWN: known}
     variables["model_used"].attrs = model_attributes()
     return validity_of(variables, times)
 
@@ -136,11 +138,12 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     grid = definition.grid
     rigid = bool((along(grid, "n") == 0).any())  # if one layer is on a rigid base, all are
     values = grid.values | grid.labels
-    attributed = [name for name in (*parameters_of(values), *names("coordinate")) if name in values]
-    attributes_of = {name: attributes(name, rigid) for name in attributed}
+    attributed = [name for name in (*grid.lexicon.parameters_of(values), *names("coordinate")) if name in values]
+    attributes_of = {name: attributes(name, rigid, grid.lexicon.rows) for name in attributed}
     for name in ("B", "beta") if grid.fitted else ():
         attributes_of[name]["comment"] = COMMENT
     coordinates = {name: Labelled(*pair, attributes_of.get(name, {})) for name, pair in values.items()}
+    coordinates["micro"].encoding = encoding_of(grid.lexicon, {name: array for name, (_, array) in grid.values.items()})
     coordinates["x"] = Labelled(("x",), definition.x, attributes("x"))
     dims = tuple(grid.sizes)
     flats = {name: flat.astype(bool) if name in TRUTHS else flat for name, flat in arrays.items()}

@@ -14,14 +14,16 @@ import numpy as np
 from solver import Model, Problem
 from solver.bases import is_bare
 from solver.kernels.two_layers import layer_modulus
-from solver.laws import LAWS, identity, name_in
+from solver.known import Known
+from solver.laws import identity, name_in
 from solver.problem import feels
 from solver.scaling import law_of, of_one_law
 
 from ..arrays import xarray_later as xr
+from ..inputs.lexicon import lexicon_in
 from ..inputs.punch.asperities import USED
 from ..inputs.scene.scales import without_unit
-from ..inputs.vocabulary import CONTROLS, NUMERICS, ROWS, VOCABULARY, attributes, parameters_of
+from ..inputs.vocabulary import CONTROLS, NUMERICS, ROWS, VOCABULARY, attributes
 from ..rules import rule
 from ..rules.assumptions import (  # noqa: F401 - names of study.derived
     COMPRESSED,
@@ -81,9 +83,10 @@ def quantity(name: str) -> Callable:
     def register(formula: Callable) -> Callable:
         @wraps(formula)
         def computed(dataset: xr.Dataset) -> xr.DataArray:
+            rows = lexicon_in(dataset).rows
             for key, variable in dataset.variables.items():
                 unit = variable.attrs.get("units", "1")
-                if key in VOCABULARY and unit not in ("1", VOCABULARY[key].unit):  # of study.readable
+                if key in rows and unit not in ("1", rows[key].unit):  # of study.readable
                     raise ValueError(f"{key} is in {unit}: {name} follows from results in SI units, or without units")
             return named(formula(dataset), name, rule.has_units(dataset))
 
@@ -123,13 +126,13 @@ def mean_pressure(dataset: xr.Dataset) -> xr.DataArray:
 @quantity("spots")
 def number_of_spots(dataset: xr.Dataset) -> xr.DataArray:
     """Number of contact spots N̄ An; NaN where there is no roughness."""
-    return rule.spots(dataset).where(rule.have("rough", dataset["micro"]))
+    return rule.spots(dataset).where(rule.have("rough", dataset["micro"], lexicon_in(dataset).known))
 
 
 @quantity("b0")
 def spot_radius(dataset: xr.Dataset) -> xr.DataArray:
     """Radius of the central contact spot b = sqrt(λ/(π N̄)), Eq. (11), in R; NaN where there is no roughness."""
-    return rule.spot_radius(dataset).where(rule.have("rough", dataset["micro"]))
+    return rule.spot_radius(dataset).where(rule.have("rough", dataset["micro"], lexicon_in(dataset).known))
 
 
 @quantity("p_ring")
@@ -160,13 +163,14 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     pressures = _profile(dataset, "p_peak")
     unit, R = _scales(dataset, "p_peak")
     E1 = _surface_modulus(dataset) / (1 + dataset.get("m", 0.0))  # of layer and punch in series
-    peaks, felt = xr.full_like(pressures, np.nan), _feel_layer(dataset)
+    peaks, lexicon = xr.full_like(pressures, np.nan), lexicon_in(dataset)
+    felt = _feel_layer(dataset, lexicon.known)
     stated = {name_in(line): line for line in dataset.attrs.get("micro_laws", "").splitlines()}
-    for law in [law for name, law in LAWS.items() if (dataset["micro"] == name).any()]:
-        if stated.get(law.name, identity(law.name)) != identity(law.name):
+    for law in [law for name, law in lexicon.known.laws.items() if (dataset["micro"] == name).any()]:
+        if stated.get(law.name, identity(law)) != identity(law):
             continue
         numbers = {name: dataset.get(name, np.nan) for name in law.parameters}
-        arguments = [without_unit(value, VOCABULARY[name].powers, unit, R) for name, value in numbers.items()]
+        arguments = [without_unit(value, lexicon.rows[name].powers, unit, R) for name, value in numbers.items()]
         nu = xr.where(is_bare(dataset["base"]), dataset.get("nu2", np.nan), dataset.get("nu1", np.nan))
         arguments = [pressures / unit, E1, *arguments, *[nu] * law.poisson]
         at_spots = xr.apply_ufunc(_largest(law), *arguments, dask="parallelized", output_dtypes=[float])
@@ -176,30 +180,33 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     return unit * peaks.max("x", skipna=False)
 
 
-def _feel_layer(dataset: xr.Dataset) -> xr.DataArray:
+def _feel_layer(dataset: xr.Dataset, known: Known) -> xr.DataArray:
     """Where the asperities feel what lies below the surface: as the results say, else as their inputs do."""
     if "asperities_used" in dataset:
         return dataset["asperities_used"] == USED.index("layer")
     names = {"base": "layered", "micro": "", "asperities_on": "auto", "Nbar": np.nan, "h": np.nan}
-    return xr.apply_ufunc(feels, *(dataset.get(name, default) for name, default in names.items()))
+    values = (dataset.get(name, default) for name, default in names.items())
+    return xr.apply_ufunc(partial(feels, laws=known.laws), *values)
 
 
 def _peaks_on_bodies(dataset: xr.Dataset, p: xr.DataArray, unit, R) -> xr.DataArray:
     """p_max in E2* of asperities that feel the body, at nominal pressures p in E2*."""
-    left_out = {*CONTROLS, *NUMERICS, "asperities_on"}
-    names = [name for name in parameters_of(map(str, dataset.variables)) if name in dataset and name not in left_out]
+    left_out, lexicon = {*CONTROLS, *NUMERICS, "asperities_on"}, lexicon_in(dataset)
+    names = lexicon.parameters_of(map(str, dataset.variables))
+    names = [name for name in names if name in dataset and name not in left_out]
     values = [dataset[name] for name in names]
-    values = [v if v.dtype.kind not in "fi" else without_unit(v, VOCABULARY[name].powers, unit, R)
+    values = [v if v.dtype.kind not in "fi" else without_unit(v, lexicon.rows[name].powers, unit, R)
               for name, v in zip(names, values, strict=True)]  # fmt: skip
     dims = [["x"], *[[]] * len(values)]
     options = {"input_core_dims": dims, "output_core_dims": [["x"]], "dask": "parallelized", "output_dtypes": [float]}
-    return xr.apply_ufunc(partial(_at_bodies, names), p, *values, **options)
+    return xr.apply_ufunc(partial(_at_bodies, lexicon.known, names), p, *values, **options)
 
 
-def _at_bodies(names: list[str], p: np.ndarray, *values: np.ndarray) -> np.ndarray:
+def _at_bodies(known: Known, names: list[str], p: np.ndarray, *values: np.ndarray) -> np.ndarray:
     """p_max at p (..., m), of parameters by name (...)."""
     flat = {name: np.broadcast_to(v, p.shape[:-1]).ravel() for name, v in zip(names, values, strict=True)}
-    problem, pressures = Problem.of(a=1.0, **flat, asperities_on="layer"), p.reshape(-1, p.shape[-1])
+    problem = Problem.of(a=1.0, **flat, asperities_on="layer", known=known)
+    pressures = p.reshape(-1, p.shape[-1])
     peaks = np.full(pressures.shape, np.nan)
     index = np.flatnonzero(problem.can_feel())
     for rows in of_one_law(problem.take(index)):
@@ -294,5 +301,5 @@ def named(array: xr.DataArray, name: str, in_si: bool = False) -> xr.DataArray:
     array = array.rename(name)
     array.attrs = attributes(name, rigid="n" in array.coords and bool((array.coords["n"] == 0).any()))
     if in_si and VOCABULARY[name].powers != (0, 0):
-        array.attrs = physical_attributes(name, array.attrs)
+        array.attrs = physical_attributes(VOCABULARY[name], array.attrs)
     return array

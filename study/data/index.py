@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 from xarray.indexes import PandasIndex
 
+from ..inputs.lexicon import default, lexicon_in
 from ..inputs.scene.names import si
-from ..inputs.vocabulary import ROWS
 from ..specimen.quantities import has_unit
 
 
@@ -30,11 +30,11 @@ class UnitIndex(PandasIndex, metaclass=_AsPandasIndex):
 
     def sel(self, labels: dict, method=None, tolerance=None):
         """As that of other indexes of xarray. Raises ValueError for a text without a unit, or of something else."""
-        name, label = next(iter(labels.items()))
+        (name, label), rows = next(iter(labels.items())), default().all_rows
 
         def number(value: Any) -> Any:
             text = isinstance(value, str) or has_unit(value)
-            return si(name, value).value if text and name in ROWS else value
+            return si(name, value, lexicon=default()).value if text and name in rows else value
 
         if isinstance(label, slice):
             label = slice(number(label.start), number(label.stop), label.step)
@@ -55,8 +55,9 @@ class UnitIndex(PandasIndex, metaclass=_AsPandasIndex):
 
 def searchable(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset with a UnitIndex along each dimension whose coordinate has a unit."""
+    rows = lexicon_in(dataset).all_rows
     for name, variable in dataset.variables.items():
         unit = variable.attrs.get("units")
-        if variable.dims == (name,) and name in ROWS and isinstance(unit, str) and unit == ROWS[name].unit != "1":
+        if variable.dims == (name,) and name in rows and isinstance(unit, str) and unit == rows[name].unit != "1":
             dataset = dataset.drop_indexes(name, errors="ignore").set_xindex(name, UnitIndex)
     return dataset

@@ -12,7 +12,7 @@ from ..arrays import xarray_later as xr
 from ..arrays.labelled import Labelled
 from ..inputs.definition import Definition
 from ..inputs.scene.scene import Scene, bare_variable
-from ..inputs.vocabulary import ROWS, VOCABULARY
+from ..inputs.vocabulary import Entry
 from ..specimen.materials import Strength, known_strength
 from .dataset import DatasetParts, labelled
 from .spreads import spreads_of
@@ -53,23 +53,24 @@ def in_units(definition: Definition, parts: DatasetParts) -> DatasetParts:
 def results(definition: Definition, parts: DatasetParts) -> DatasetParts:
     """The parts in SI units, from dimensionless ones: inputs in SI units, results with their spreads."""
     scene, results, coords = definition.scene, {}, {}
+    rows = scene.lexicon.all_rows
     spreads = spreads_of(definition, parts) if parts.by_input else {}
     for name, variable in (parts.variables | parts.coords).items():
         if name in scene.values:
             continue
-        has_powers = name in VOCABULARY and VOCABULARY[name].powers != (0, 0)
-        quantity = _in_si(name, variable, scene.unit, scene.R) if has_powers else variable
+        has_powers = name in scene.lexicon.rows and rows[name].powers != (0, 0)
+        quantity = _in_si(rows[name], variable, scene.unit, scene.R) if has_powers else variable
         if name in spreads:
-            spread = _in_si(name, Labelled(quantity.dims, spreads[name]), scene.unit, scene.R)
+            spread = _in_si(rows[name], Labelled(quantity.dims, spreads[name]), scene.unit, scene.R)
             long_name = f"standard deviation of {name}, from the spreads of the inputs"
-            spread.attrs = {"long_name": long_name} | _units(VOCABULARY[name].unit)
+            spread.attrs = {"long_name": long_name} | _units(rows[name].unit)
             results[f"{name}_spread"] = spread
         (coords if name in parts.coords else results)[name] = quantity
-    coords |= {name: _coordinate(name, value) for name, value in scene.values.items()}
+    coords |= {name: _coordinate(rows[name], value) for name, value in scene.values.items()}
     if scene.scale:
         coords["R"].attrs["long_name"] = f"unit of length: {scene.scale}"
     for name, value in scene.spreads.items():
-        coords[f"{name}_spread"] = _coordinate(name, value, f"standard deviation of {name}, as given")
+        coords[f"{name}_spread"] = _coordinate(rows[name], value, f"standard deviation of {name}, as given")
     for body, (dim, texts) in scene.names.items():
         values = texts if dim else texts[0]
         about = {"long_name": f"material of the {body}"}
@@ -103,9 +104,9 @@ def _renamed(scene: Scene, variables: dict[str, Labelled]) -> dict[str, Labelled
     return {name: Labelled(dims[name], v.data, v.attrs, v.encoding) for name, v in variables.items()}
 
 
-def _coordinate(name: str, value: Any, long_name: str = "") -> Labelled:
-    """SI values of the input `name`, or their spreads, with the unit."""
-    return bare_variable(value, {"long_name": long_name or ROWS[name].long_name} | _units(ROWS[name].unit))
+def _coordinate(row: Entry, value: Any, long_name: str = "") -> Labelled:
+    """SI values of an input, or their spreads, with the unit."""
+    return bare_variable(value, {"long_name": long_name or row.long_name} | _units(row.unit))
 
 
 def _units(unit: str) -> dict[str, str]:
@@ -113,9 +114,9 @@ def _units(unit: str) -> dict[str, str]:
     return {} if unit == "1" else {"units": unit}
 
 
-def _in_si(name: str, variable: Labelled, unit: Any, R: Any) -> Labelled:
-    """A dimensionless variable in the SI unit of its name, its dimensions first."""
-    powers, dims = VOCABULARY[name].powers, variable.dims
+def _in_si(row: Entry, variable: Labelled, unit: Any, R: Any) -> Labelled:
+    """A dimensionless variable in the SI unit of its row, its dimensions first."""
+    powers, dims = row.powers, variable.dims
     if xr.is_array(unit) or xr.is_array(R):
         array = with_unit(*(variable.to_xarray(), powers), *(bare_variable(one).to_xarray() for one in (unit, R)))
         array = array.transpose(*dims, ...)
@@ -123,4 +124,4 @@ def _in_si(name: str, variable: Labelled, unit: Any, R: Any) -> Labelled:
     else:  # the usual case: arithmetic of labelled arrays would take as long as a contact
         data = with_unit(variable.data, powers, unit, R)
     data = data.astype(variable.dtype, copy=False)
-    return Labelled(dims, data, physical_attributes(name, variable.attrs), variable.encoding)
+    return Labelled(dims, data, physical_attributes(row, variable.attrs), variable.encoding)

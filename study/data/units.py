@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from ..arrays import xarray_later as xr
+from ..inputs.lexicon import default, lexicon_in
 from ..inputs.scene.scales import reduced, with_unit
-from ..inputs.vocabulary import PARAMETERS, VOCABULARY, no_parameter
+from ..inputs.vocabulary import Entry, no_parameter
 from ..specimen.foreign import plain
 from ..specimen.quantities import READABLE, has_unit, multiple, quantity
 
@@ -62,10 +63,14 @@ def factor(name: str, R: float, E2_star: float) -> float:
     >>> factor("P", R=0.01, E2_star=2e11)
     20000000.0
     """
+    return _factor(default().rows[name], R, E2_star)
+
+
+def _factor(entry: Entry, R: float, E2_star: float) -> float:
     for word, value in (("R", R), ("E2_star", E2_star)):
         if not (np.isfinite(value) and value > 0):
             raise ValueError(f"{word} = {value}: must be > 0 and finite")
-    return with_unit(1.0, VOCABULARY[name].powers, E2_star, R)
+    return with_unit(1.0, entry.powers, E2_star, R)
 
 
 def _si(name: str, value: Any, unit: str) -> Any:
@@ -98,9 +103,8 @@ def _scales(R: Any, E2_star: Any) -> dict[str, float]:
     return scales
 
 
-def physical_attributes(name: str, attributes: dict) -> dict:
-    """The attributes of a dimensionless variable when its numbers are in SI units."""
-    entry = VOCABULARY[name]
+def physical_attributes(entry: Entry, attributes: dict) -> dict:
+    """The attributes of a dimensionless variable when its numbers are in SI units; `entry` : its row."""
     kept = {key: text for key, text in attributes.items() if key != "scale"}
     return kept | {"long_name": entry.long_name, "units": entry.unit}
 
@@ -132,15 +136,16 @@ def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:
     scales = _scales(R, E2_star)
     if PHYSICAL_SCALE in dataset.attrs:
         raise ValueError(f"the dataset is in physical units already: {dataset.attrs[PHYSICAL_SCALE]}")
+    rows = lexicon_in(dataset).rows
     for name, array in dataset.variables.items():  # contact.a.to_dataset() has lost the attribute of the dataset
-        if name in VOCABULARY and VOCABULARY[name].powers != (0, 0) and "units" in array.attrs:
+        if name in rows and rows[name].powers != (0, 0) and "units" in array.attrs:
             raise ValueError(f"the dataset is in physical units already: {name} has units = {array.attrs['units']!r}")
     changed = {}
     for name, array in dataset.variables.items():
-        if isinstance(name, str) and name in VOCABULARY and VOCABULARY[name].powers != (0, 0):
-            attributes = physical_attributes(name, array.attrs)
+        if isinstance(name, str) and name in rows and rows[name].powers != (0, 0):
+            attributes = physical_attributes(rows[name], array.attrs)
             fill = {key: value for key, value in array.encoding.items() if key == "_FillValue"}
-            changed[name] = array.dims, array.data * factor(name, **scales), attributes, fill
+            changed[name] = array.dims, array.data * _factor(rows[name], **scales), attributes, fill
     scale = f"R = {scales['R']!r} m, E2* = {scales['E2_star']!r} Pa"
     return dataset.assign(changed).assign_attrs({PHYSICAL_SCALE: scale})
 
@@ -212,16 +217,16 @@ def from_physical(*, R: Any, E2_star: Any, **parameters: Any) -> dict:
     >>> from_physical(R="10 mm", E2_star="230 GPa", h="20 um", bonding="bonded")
     {'h': 0.002, 'bonding': 'bonded'}
     """
-    converted, scales = {}, _scales(R, E2_star)
+    converted, scales, lexicon = {}, _scales(R, E2_star), default()
     for name, value in parameters.items():
-        if name not in PARAMETERS:
-            raise ValueError(no_parameter(name, PARAMETERS))
-        if VOCABULARY[name].powers == (0, 0):
+        if name not in lexicon.parameters:
+            raise ValueError(no_parameter(name, lexicon.parameters))
+        if lexicon.rows[name].powers == (0, 0):
             converted[name] = value
         else:
-            number = _si(name, value, VOCABULARY[name].unit)
+            number = _si(name, value, lexicon.rows[name].unit)
             if np.asarray(number).dtype.kind not in "iuf":
-                quantity(name, value, VOCABULARY[name].unit)  # raises: it is no number, nor several
+                quantity(name, value, lexicon.rows[name].unit)  # raises: it is no number, nor several
             array: Any = number if xr.is_array(number) or np.isscalar(number) else np.asarray(number)
-            converted[name] = array / factor(name, **scales)
+            converted[name] = array / _factor(lexicon.rows[name], **scales)
     return converted

@@ -11,7 +11,7 @@ from solver.parameters import ends
 
 from ..data.provenance import package_version
 from ..in_words import margins, pressures
-from ..inputs.vocabulary import VOCABULARY
+from ..inputs.lexicon import PACKAGE
 from ..rules import assumptions, doubts
 from ..specimen import materials
 
@@ -51,7 +51,7 @@ def contents() -> dict:
         "version": package_version("roughcoat"),
         "meshes": {n: mesh(n) for n in NODES},
         "materials": [{key: getattr(entry, key) for key in numbers} | strengths(entry) for entry in entries],
-        "bounds": {name: ends(VOCABULARY[name].parameter.interval)[:2] for name in bounded},
+        "bounds": {name: ends(PACKAGE.parameter(name).interval)[:2] for name in bounded},
         "limits": {name: getattr(module, name) for module, names in _LIMITS.items() for name in names},
         "merging": _MERGING,
     }

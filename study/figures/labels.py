@@ -7,7 +7,8 @@ import numpy as np
 import xarray as xr
 
 from ..in_words.inputs import all_inputs, is_rigid, used_inputs
-from ..inputs.vocabulary import ROWS, VOCABULARY, over_scale
+from ..inputs.lexicon import Lexicon, default, lexicon_in
+from ..inputs.vocabulary import over_scale
 from ..specimen import quantities
 from ..specimen.quantities import READABLE, readable
 
@@ -16,15 +17,19 @@ GREEK = {"α": r"\alpha ", "β": r"\beta ", "λ": r"\lambda ", "ν": r"\nu ", "�
 UNITS = {"B": r"R_a/E_1^{*\beta}"}  # units of parameters whose scale is not made of E2* and R
 
 
-def symbol(name: str) -> str:
-    """The symbol of a name: "$p_{\\max}$", or the name in words."""
-    plain = plain_symbol(name)
+def symbol(name: str, lexicon: Lexicon | None = None) -> str:
+    """The symbol of a name: "$p_{\\max}$", or the name in words. `lexicon` : as of `plain_symbol`."""
+    plain = plain_symbol(name, lexicon)
     return f"${mathtext(plain)}$" if plain else name.replace("_", " ")
 
 
-def plain_symbol(name: str) -> str:
-    """The symbol of a name in the vocabulary or of an input of a physical scene, as plain text; "" if it has none."""
-    return ROWS[name].symbol if name in ROWS else ""
+def plain_symbol(name: str, lexicon: Lexicon | None = None) -> str:
+    """The symbol of a name in the vocabulary or of an input of a physical scene, as plain text; "" if it has none.
+
+    lexicon : of the results that have the name; left out, what the program has registered
+    """
+    rows = (lexicon or default()).all_rows
+    return rows[name].symbol if name in rows else ""
 
 
 def mathtext(plain: str) -> str:
@@ -51,13 +56,14 @@ def multiple(array: xr.DataArray) -> tuple[str, float]:
 def axis_label(name: str, array: xr.DataArray) -> str:
     """The label of an axis: "$h/R$", "$P/(E_2^* R^2)$", "$\\bar N R^2$"; of physical numbers "$P$, mN"."""
     unit, _ = multiple(array)
+    lexicon = lexicon_in(array.coords)
     if unit:
-        return f"{symbol(name)}, {unit}"
+        return f"{symbol(name, lexicon)}, {unit}"
     scale = array.attrs.get("scale")
-    if not scale or not plain_symbol(name):
-        return symbol(name)
+    if not scale or not plain_symbol(name, lexicon):
+        return symbol(name, lexicon)
     units = ("E_1^*" if "E1*" in scale else "E_2^*", "R")  # E1* is the unit on a rigid base
-    return f"${over_scale(mathtext(plain_symbol(name)), VOCABULARY[name].powers, units, TIMES)}$"
+    return f"${over_scale(mathtext(plain_symbol(name, lexicon)), lexicon.rows[name].powers, units, TIMES)}$"
 
 
 def with_units(columns: dict, dataset: xr.Dataset) -> dict:
@@ -74,9 +80,9 @@ def value_text(name: str, array: xr.DataArray, value) -> str:
     if unit in READABLE and unit != "1":
         text = readable(float(value), unit)  # "5e+05 1/mm²"
         text = re.sub(r"(\d)e([+-]\d+)", lambda match: rf"{match[1]}$\times10^{{{int(match[2])}}}$", text)
-        return f"{symbol(name)} = {text}"
+        return f"{symbol(name, lexicon_in(array.coords))} = {text}"
     if unit != "1":  # of study.readable
-        return f"{symbol(name)} = {written(float(value))} {unit}"
+        return f"{symbol(name, lexicon_in(array.coords))} = {written(float(value))} {unit}"
     return f"{axis_label(name, array)} = {written(float(value))}"
 
 
@@ -118,7 +124,8 @@ def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
     contacts = [dataset for dataset in datasets if "base" in dataset.coords]
     texts = ["rigid base"] * (bool(contacts) and all(is_rigid(dataset, "base") for dataset in contacts))
     of_some = {name for dataset in datasets for name in used_inputs(dataset)}
-    for name in all_inputs(of_some):
+    in_order = [name for dataset in datasets for name in all_inputs(of_some, lexicon_in(dataset))]
+    for name in dict.fromkeys(in_order):
         values = _values(datasets, name)
         if name in of_some and len(values) == 1:
             (value,) = values

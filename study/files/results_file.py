@@ -13,7 +13,7 @@ from xarray.conventions import encode_dataset_coordinates
 from ..data.dataset import without_fill_values
 from ..data.index import searchable
 from ..inputs.definition import StudyError
-from ..inputs.laws import recall
+from ..inputs.lexicon import KNOWN, lexicon_in
 from ..terminal import on_one_line
 from .access import Unusable
 from .atomic import replacing
@@ -187,6 +187,6 @@ def for_users(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset without the digest, which would be wrong in a file that a user makes of it. Its laws are known."""
     for name in (ATTRIBUTE, FORMER):
         dataset.attrs.pop(name, None)
-    laws = dataset.attrs.get("micro_laws", "")
-    recall(laws if isinstance(laws, str) else "")
+    if "micro" in dataset.variables and not (known := lexicon_in(dataset).known).is_package:
+        dataset.variables["micro"].encoding[KNOWN] = known
     return searchable(without_fill_values(dataset))

@@ -6,6 +6,7 @@ import numpy as np
 
 from solver import Problem
 from solver.bases import may_be_layered
+from solver.known import Known
 from solver.models.estimate import estimate
 
 from ..data.dataset import validity_of_rows
@@ -36,20 +37,21 @@ def far_outside(definition: Definition) -> list[str]:
     judged.
     """
     grid = definition.grid
-    slow = may_be_layered(along(grid, "base")) & have("rough", along(grid, "micro"))
+    slow = may_be_layered(along(grid, "base")) & have("rough", along(grid, "micro"), grid.lexicon.known)
     slow = slow & (along(grid, "n") < SOFT)
     if not (definition.scene and slow.any()):
         return []
     index = np.arange(grid.size)[:: -(-grid.size // MOST)]
     looked_at = index[np.broadcast_to(slow, grid.shape).ravel()[index]]
-    far = _exceeded(columns(grid, looked_at)) if len(looked_at) else {}
+    far = _exceeded(columns(grid, looked_at), grid.lexicon.known) if len(looked_at) else {}
     found = [RULES[word].sentence for word, where in far.items() if 2 * where.sum() >= len(index)]
     who = "this contact is" if grid.size == 1 else "at least half of these contacts are"
     return [f"{who} {SAID}", *found] if found else []
 
 
-def _exceeded(parameters: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _exceeded(parameters: dict[str, np.ndarray], known: Known) -> dict[str, np.ndarray]:
     """Name of each assumption -> (n,) bool: the contact exceeds its limit FAR times, by an estimate."""
     size = len(parameters["micro"])
     unknown = {"status": np.zeros(size), "model_used": np.full(size, np.nan), "model_error": np.full(size, np.nan)}
-    return broken(validity_of_rows(parameters | unknown | estimate(Problem.of(**parameters)), FAR))
+    estimated = estimate(Problem.of(known=known, **parameters))
+    return broken(validity_of_rows(parameters | unknown | estimated, known, FAR))

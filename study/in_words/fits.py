@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import xarray_later as xr
 from ..data.dataset import decode
+from ..inputs.lexicon import default
 from ..inputs.vocabulary import ROWS, name_in_stack
 from ..rules.rule import RULES
 from ..specimen.quantities import readable
@@ -201,7 +202,8 @@ def _percent(share: float) -> str:
 def _long_name(name: str) -> str:
     if name.startswith("layers.1."):
         return ROWS[name_in_stack(1, name.removeprefix("layers.1."))].long_name.replace("the layer", "layer 1")
-    return NAMES_OF_SHIFTS.get(name) or ROWS[name].long_name
+    row = default().all_rows.get(name)  # None: of a law that is not registered
+    return NAMES_OF_SHIFTS.get(name) or (row.long_name if row else name)
 
 
 def _text(curve: xr.Dataset, name: str) -> str:

@@ -7,13 +7,12 @@ from collections.abc import Iterable
 import numpy as np
 
 from solver.bases import is_bare
-from solver.laws import LAWS
 
 from ..arrays import xarray_later as xr
 from ..data.si import SAME_PIECE
-from ..inputs.laws import smooth_laws
+from ..inputs.lexicon import Lexicon, lexicon_in
 from ..inputs.punch.shapes import in_metres
-from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY, bodies_of, matters, names, parameters_of, scene_of
+from ..inputs.vocabulary import BODIES, CONTROLS, bodies_of, names, parameters_of_layers, scene_of
 from .numbers import given_text, spread_of
 
 _OF_BODIES = [name for body in ("punch", "layer", "body") for name in (body, *BODIES[body][:2])]
@@ -27,21 +26,21 @@ def of_lower_layers(inputs: Iterable[str]) -> list[str]:
     inputs : names of the inputs of contacts, which say how many layers there are
     """
     inputs = [str(name) for name in inputs]
-    names = (*bodies_of(inputs), *scene_of(inputs), *parameters_of(inputs))
+    names = (*bodies_of(inputs), *scene_of(inputs), *parameters_of_layers(inputs))
     names = [name for name in names if name.startswith("layers.")]
     order = ("material", "h", "E1", "E1_bottom", "n", "n_bottom", "nu", "nu_bottom", "profile", "bonding", "cn", "ct")
     places = {name: (int(name.split(".")[1]), order.index(name.split(".")[2])) for name in names}
     return sorted(places, key=lambda name: places[name])
 
 
-def all_inputs(contacts: Iterable[str]) -> list[str]:
+def all_inputs(contacts: Iterable[str], lexicon: Lexicon) -> list[str]:
     """All inputs in order: radii, what the bodies are made of, the control, the layer, the asperities.
 
     contacts : a dataset, or names of its variables: the layers that it has are among the inputs
     """
     between = [name for name in names("material") if name not in (*_OF_BODIES, "base")]
-    of_laws = [name for name, entry in VOCABULARY.items() if entry.role == "roughness" and name != "micro"]
-    of_shapes = [name for name, entry in VOCABULARY.items() if entry.role == "shape"]
+    of_laws = [name for name, entry in lexicon.rows.items() if entry.role == "roughness" and name != "micro"]
+    of_shapes = [name for name, entry in lexicon.rows.items() if entry.role == "shape"]
     of_punch = ["R1", "R2", "R", *of_shapes]
     lower = of_lower_layers(contacts)
     return [*of_punch, *_OF_BODIES, *CONTROLS, *between, *lower, *names("adhesion"), "micro", *of_laws]
@@ -60,30 +59,31 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
         return contacts[name].values
 
     hidden = {"R"} if "R1" in contacts or contacts.attrs.get("scale", "R") not in ("R", "1") else set()
-    hidden |= _of_punch_hidden(contacts)
+    lexicon = lexicon_in(contacts)
+    hidden |= _of_punch_hidden(contacts, lexicon)
     if "E2" in contacts:
         hidden |= {"n", "m", *(name for name in of_lower_layers(contacts.variables) if name.endswith(".n"))}
     hidden |= {"m", "punch", "E_punch", "nu_punch", "Y_punch"} if is_rigid(contacts, "punch") else set()
     hidden |= {"n", "body", "E2", "nu2", "Y2"} if is_rigid(contacts, "base") else set()
     hidden |= {"layer", "E1", "nu1", "Y1"} if is_bare(values("base")).all() else set()
-    hidden |= {"micro"} if np.isin(values("micro"), smooth_laws()).all() else set()
-    unknown_law = not np.isin(values("micro"), list(LAWS)).all()
+    hidden |= {"micro"} if np.isin(values("micro"), lexicon.smooth_laws()).all() else set()
+    unknown_law = not np.isin(values("micro"), list(lexicon.known.laws)).all()
     certain = {ratio for modulus, ratio, _ in bodies_of(contacts.variables).values() if modulus in contacts}
     certain |= set(names("roughness")) if unknown_law else set()
     certain |= {"hardness", "yield_strength"} if "micro" not in hidden else set()  # rules compare with them
     certain |= {name for name in ("Y1", "Y2", "Y_punch") if name in contacts and np.isfinite(values(name)).any()}
     return [
         name
-        for name in all_inputs(contacts.variables)
+        for name in all_inputs(contacts.variables, lexicon)
         if name in contacts.variables
         and name not in hidden
-        and (name not in VOCABULARY or name in certain or matters(name, values))
+        and (name not in lexicon.rows or name in certain or lexicon.matters(name, values))
     ]
 
 
-def _of_punch_hidden(contacts: xr.Dataset) -> set[str]:
+def _of_punch_hidden(contacts: xr.Dataset, lexicon: Lexicon) -> set[str]:
     """Inputs of the shape and of adhesion that say nothing: defaults, and what is there for the solver alone."""
-    hidden = {"table_unit"} if "shape" in contacts and np.any(in_metres(contacts["shape"].values)) else set()
+    hidden = {"table_unit"} if "shape" in contacts and np.any(in_metres(contacts["shape"].values, lexicon)) else set()
     if "w_adhesion" in contacts:
         hidden |= (
             {name for name in names("adhesion") if name != "w_adhesion"}

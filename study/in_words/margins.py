@@ -11,7 +11,6 @@ from solver import Problem, solve
 from solver.bases import is_bare
 from solver.closed_forms import yield_pressure
 from solver.kernels.two_layers import layer_modulus
-from solver.laws import LAWS
 from solver.shapes import ROUND
 from solver.yields import spots
 from solver.yields.below import central_spot
@@ -273,7 +272,7 @@ def _limits(case: xr.Dataset, again: Again, known: dict[str, list]) -> list[_Lim
         limits += [yields(f"the body {below}", "mises2_spot", "body", "")] * felt
     if problem.m[0] > 0:
         limits.append(yields("the punch", _PUNCH, "punch", "Y_punch"))
-    law = LAWS[str(problem.micro[0])]
+    law = problem.known.laws[str(problem.micro[0])]
     if law.rough and not law.yielded:
         of_law = mises if np.isfinite(problem.Ra[0]) else "stress as of a sphere under pmax"
         limits.append(yields("the asperities", _SPOTS, "asperities", "hardness or yield_strength", of_law))

@@ -8,18 +8,18 @@ import numpy as np
 
 from solver import Status, solve
 from solver.bases import is_bare
-from solver.laws import LAWS
 from solver.laws.cell.family import MOST, REACH
 from solver.models.cells import last_fraction
 from solver.models.range_of_law import without_family
 from solver.parameters import one_of
 from solver.scaling import dimensionless, law_of
-from solver.shapes import PARABOLOID, SHAPES
+from solver.shapes import PARABOLOID
 from solver.shapes.cone import KIND, PYRAMIDS
 
 from ..again import Again
 from ..arrays import xarray_later as xr
 from ..inputs.definition import StudyError
+from ..inputs.lexicon import lexicon_in
 from ..inputs.punch.asperities import USED
 from ..inputs.vocabulary import names
 from ..rules.rule import of_cases
@@ -62,7 +62,7 @@ def of_shape(case: xr.Dataset) -> list[str]:
     shape = shape_of(case)
     if shape == PARABOLOID:
         return []
-    kind = SHAPES.get(shape)
+    kind = lexicon_in(case).known.shapes.get(shape)
     said = [f"Shape: {kind.words if kind else shape}{_angle_of(shape)}."]
     if np.isposinf(case["p0"]):
         said.append("The tip is sharp: p(0) is infinite, and so any material gives way in the centre.")
@@ -177,7 +177,7 @@ def ended(contacts: xr.Dataset) -> list[str]:
 
 def falling(contacts: xr.Dataset) -> list[str]:
     """A sentence on contacts whose asperities yield, and whose pressure somewhere was larger at 0.9 of the load."""
-    laws = [name for name, law in LAWS.items() if law.yielded]
+    laws = [name for name, law in lexicon_in(contacts).known.laws.items() if law.yielded]
     yielding = one_of(contacts["micro"].values.astype(str), laws)
     if not yielding.any():
         return []

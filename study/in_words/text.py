@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import xarray_later as xr
 from ..data.dataset import decode
 from ..data.one_case import as_dataset, is_contact
-from ..inputs.laws import smooth_laws
+from ..inputs.lexicon import lexicon_in
 from ..inputs.vocabulary import NOT_RUN, VOCABULARY
 from ..specimen.pictures import curve, with_picture
 from .fits import of_fit
@@ -132,7 +132,7 @@ def _of_design(designed: xr.Dataset) -> Summary:
 
 def _summary_of_case(case: xr.Dataset, dims=()) -> str:
     """The text of one case; inputs along `dims` are not repeated."""
-    rough = case["micro"].values not in smooth_laws()
+    rough = case["micro"].values not in lexicon_in(case).smooth_laws()
     names = [name for name in SHOWN if rough or name not in OF_ASPERITIES]
     names += [name for name in OF_PULL_OFF if name in case]
     names += ["plastic_share"] * bool("plastic_share" in case and np.isfinite(case["plastic_share"]))
@@ -167,7 +167,8 @@ def columns(contacts: xr.Dataset) -> str:
     dims = list(contacts["status"].dims)
     cases = contacts.stack({"case": dims}, create_index=False)
     shown = [cases.isel(case=i) for i in range(min(cases.sizes["case"], MOST_CASES))]
-    smooth = all(case["micro"].values in smooth_laws() for case in shown)
+    laws = lexicon_in(contacts).smooth_laws()
+    smooth = all(case["micro"].values in laws for case in shown)
     names = [name for name in SHOWN if name not in dims and not (smooth and name in OF_ASPERITIES)]
     heading = [*map(str, dims), *names, "status", "strength", "validity"]
     rows: list[list[str]] = [heading, *(_row(case, dims, names) for case in shown)]

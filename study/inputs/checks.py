@@ -7,24 +7,15 @@ import numpy as np
 
 from solver import Problem
 from solver.bases import STACKS
-from solver.laws import LAWS, untried
+from solver.laws import untried
 from solver.parameters import one_of
 from solver.scaling import dimensionless, law_of
 
 from ..terminal import shown
 from .grid import Grid, along, same_labels, twins
-from .laws import smooth_laws
+from .lexicon import Lexicon
 from .request import Request
-from .vocabulary import (
-    BODIES,
-    CONTROLS,
-    PARAMETERS,
-    ROWS,
-    SCENE,
-    VOCABULARY,
-    cases_with,
-    parameters_of,
-)
+from .vocabulary import BODIES, CONTROLS, SCENE
 
 LOADING = 'micro = "elastic_plastic" is for loading. Spots that have yielded stay flat when the load falls, so that \
 these contacts are no unloading (docs/model.md, Microscale).'
@@ -33,7 +24,9 @@ FITTED = ("B", "beta")
 """Parameters that are fitted to Nbar and Ra if the user gives neither (`laws.fitted`)."""
 
 
-def missing_everywhere(names: Collection[str], texts_of: Callable[[str], Iterable], errors: list[str]) -> list[str]:
+def missing_everywhere(
+    lexicon: Lexicon, names: Collection[str], texts_of: Callable[[str], Iterable], errors: list[str]
+) -> list[str]:
     """Messages for parameters without a default that some case needs and that stand nowhere.
 
     names : of the parameters that the user gives
@@ -48,8 +41,8 @@ def missing_everywhere(names: Collection[str], texts_of: Callable[[str], Iterabl
     if stacked and "h" not in names and not any(name.startswith("layers.") and name.endswith(".h") for name in names):
         return [f"layers are missing: base = {shown(stacked[0])} needs them"]
     neither = not {*FITTED} & {*names}  # then both are fitted, and one message is about both
-    for name in parameters_of(names):
-        parameter = VOCABULARY[name].parameter
+    for name in lexicon.parameters_of(names):
+        parameter = lexicon.parameter(name)
         selector, words, *_ = parameter.needed_by
         needed = parameter.default is None and parameter.instead != ""
         if {name, parameter.instead} & {*names} or name in CONTROLS or not needed:
@@ -112,14 +105,14 @@ def dimensions_that_differ(request: Request, values: dict[str, np.ndarray]) -> l
 
 def _taken(request: Request, name: str) -> list[str]:
     """Messages for dimensions of a DataArray whose name is that of something else."""
-    messages = []
+    messages, rows = [], request.lexicon.all_rows
     for dim in request.inputs[name].dims:
         owner = request.inputs.get(dim)
         in_scene = dim in SCENE or dim in BODIES
         if in_scene and not request.physical:  # a study without units has no such parameter
             continue
-        parameter = dim in PARAMETERS or in_scene
-        in_units = request.physical and dim in ROWS and ROWS[dim].unit != "1"
+        parameter = dim in request.lexicon.parameters or in_scene
+        in_units = request.physical and dim in rows and rows[dim].unit != "1"
         if parameter and dim not in request.sections:
             messages.append(f"the dimension {dim} is called like a parameter that is not given: rename it")
         elif owner and owner.dims != (dim,):
@@ -127,7 +120,7 @@ def _taken(request: Request, name: str) -> list[str]:
         elif owner and in_units and owner.array is None:
             way_out = "unless that is a DataArray over itself"
             messages.append(f'{name}: a dimension cannot be called "{dim}" here, {way_out}')
-        elif not parameter and dim in VOCABULARY and dim != "case":
+        elif not parameter and dim in request.lexicon.rows and dim != "case":
             messages.append(f'a dimension cannot be called "{dim}", which is the name of a result')
     return messages
 
@@ -135,13 +128,13 @@ def _taken(request: Request, name: str) -> list[str]:
 def missing_in_cases(grid: Grid) -> list[str]:
     """Messages for parameters that a case needs and lacks, though other cases have them."""
     messages = []
-    for name in parameters_of(grid.values):
-        parameter = VOCABULARY[name].parameter
+    for name in grid.lexicon.parameters_of(grid.values):
+        parameter = grid.lexicon.parameter(name)
         if not {name, parameter.instead} & {*grid.values}:
             continue
         gaps = np.isnan(along(grid, name)) if parameter.default is None and parameter.instead != "" else np.False_
         gaps = gaps & np.isnan(along(grid, parameter.instead)) if parameter.instead else gaps
-        gaps = gaps & cases_with(name, partial(along, grid)) if gaps.any() else gaps
+        gaps = gaps & grid.lexicon.cases_with(name, partial(along, grid)) if gaps.any() else gaps
         if gaps.any():
             selector, words, *_ = parameter.needed_by
             case = np.argwhere(gaps)[0][list(grid.sizes).index("case")]
@@ -154,7 +147,7 @@ def missing_in_cases(grid: Grid) -> list[str]:
 
 def mixed_units(grid: Grid) -> list[str]:
     """A message if layers on a rigid base, whose numbers are in E1*, are among others, whose numbers are in E2*."""
-    n, layered = np.broadcast_arrays(along(grid, "n"), cases_with("n", partial(along, grid)))
+    n, layered = np.broadcast_arrays(along(grid, "n"), grid.lexicon.cases_with("n", partial(along, grid)))
     if not (n == 0).any() or not (n[layered] > 0).any():
         return []
     return [
@@ -168,10 +161,10 @@ def picard_for_nothing(grid: Grid) -> list[str]:
 
     In a grid that has it for rough cases too, each smooth case is refused by its status.
     """
-    asked, smooth = along(grid, "scheme") == "picard", smooth_laws()
+    asked, smooth = along(grid, "scheme") == "picard", grid.lexicon.smooth_laws()
     if not asked.any() or (asked & ~one_of(along(grid, "micro"), smooth)).any():
         return []
-    others = " or ".join(shown(name) for name in VOCABULARY["micro"].parameter.choices if name not in smooth)
+    others = " or ".join(shown(name) for name in grid.lexicon.known.laws if name not in smooth)
     names = " or ".join(map(shown, smooth))
     return [f'scheme = "picard" has no case to solve: micro must be {others} there, not {names}']
 
@@ -180,9 +173,11 @@ def heights_that_yield(grid: Grid) -> list[str]:
     """A message if sigma or cut stands beside asperities that yield, and no other case has a use for it."""
     micro = along(grid, "micro")
     heights = [name for name in ("sigma", "cut") if name in grid.values]
-    if not heights or not (micro == "elastic_plastic").any() or cases_with(heights[0], partial(along, grid)).any():
+    if not heights or not (micro == "elastic_plastic").any():
         return []
-    laws = " or ".join(map(shown, VOCABULARY[heights[0]].parameter.needed_by[1]))
+    if grid.lexicon.cases_with(heights[0], partial(along, grid)).any():
+        return []
+    laws = " or ".join(map(shown, grid.lexicon.parameter(heights[0]).needed_by[1]))
     text = "asperities that yield have one height; random heights, elastic, are micro ="
     return [f'{heights[0]} is given with micro = "elastic_plastic": {text} {laws}']
 
@@ -201,14 +196,14 @@ def unloading(definition) -> list[str]:
 
 def slips_of_laws(grid: Grid) -> list[str]:
     """Messages for micro laws of users that fail at a few cases of the grid, where they are tried."""
-    messages, (dims, micro) = [], grid.values["micro"]
-    for word in sorted(word for word in set(micro.ravel().tolist()) if untried(LAWS[word])):
+    messages, (dims, micro), known = [], grid.values["micro"], grid.lexicon.known
+    for word in sorted(word for word in set(micro.ravel().tolist()) if untried(known.laws[word])):
         places = np.argwhere(micro == word)
         indices = {dim: places[np.linspace(0, len(places) - 1, 3).astype(int), axis] for axis, dim in enumerate(dims)}
         indices = {dim: indices.get(dim, np.linspace(0, size - 1, 3).astype(int)) for dim, size in grid.sizes.items()}
         cases = {name: array[tuple(indices[dim] for dim in over)] for name, (over, array) in grid.values.items()}
         try:
-            law_of(dimensionless(Problem.of(**cases)))
+            law_of(dimensionless(Problem.of(known=known, **cases)))
         except ValueError as error:
             messages.append(str(error))
     return messages

@@ -17,15 +17,15 @@ from .checks import (
     slips_of_laws,
 )
 from .grid import Grid, as_array, equal_values
-from .laws import fitted, law_names, wants_a_fit
+from .lexicon import Lexicon
 from .punch import asperities, shapes, sticking
+from .punch.laws import fitted, wants_a_fit
 from .request import Input, Request
 from .sample import sampled, values_of_axis
 from .scene.names import INFINITE
-from .vocabulary import VOCABULARY, parameters_of
 
-#: Inputs that are names of objects -> a function of their values that makes the objects known.
-_WORDS = {"micro": law_names, "shape": shapes.words_of}
+#: Inputs that are names of objects.
+_WORDS = ("micro", "shape")
 MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x as one more
 
 
@@ -46,22 +46,27 @@ class Draft:
     def __post_init__(self):
         self.errors = self.request.errors
 
+    @property
+    def lexicon(self) -> Lexicon:
+        """What the words of the request stand for."""
+        return self.request.lexicon
+
     def expand(self) -> None:
         """Make ranges and [sample] lists of values."""
         request = self.request
         if request.sample is not None:
             names = [name for name, entry in request.inputs.items() if entry.section == "[sample]"]
-            columns = sampled(request.sample, names, request.physical, self.checked, request.errors)
+            columns = sampled(request, names, self.checked)
             for name in names:
                 request.inputs[name].values = columns.get(name)
         for name, entry in request.inputs.items():
             if entry.dims == (name,) and entry.array is None:
-                entry.values = values_of_axis(name, entry.values, request.physical, request.errors)
+                entry.values = values_of_axis(entry, request)
 
     def read(self, entry: Input) -> None:
         """Read the numbers or words of an input without a unit. A gap in [[cases]] becomes the default, or NaN."""
         name, gaps = entry.name, entry.section == "[[cases]]"
-        default = VOCABULARY[name].parameter.default
+        default = self.lexicon.parameter(name).default
         raw = entry.values if entry.array is None else entry.array.values.ravel().tolist()
         raw = [default if gaps and value is None else value for value in raw]
         array = self.checked(name, raw, gaps=gaps, distinct=entry.dims == (name,))
@@ -75,19 +80,31 @@ class Draft:
         before = len(self.errors)
         if name in _WORDS:
             try:
-                raw = _WORDS[name](raw)
+                raw = self._named(name, raw)
             except ValueError as error:
                 self.errors.append(f"{name}: {error}")
                 return np.empty(len(raw))
         raw = shapes.as_written(raw) if name in shapes.WORDS else raw
         endless = INFINITE.get(name, ())
         raw = [math.inf if isinstance(value, str) and value.lower() in endless else value for value in raw]
-        array = as_array(sticking.row_of(name, self.request.sections), raw, name, self.errors, gaps)
+        array = as_array(sticking.row_of(name, self.request.sections, self.lexicon), raw, name, self.errors, gaps)
         if len(self.errors) > before and len(raw) == 1:
             self.errors[-1] += sticking.hint(name, raw[0], self.request.sections)
         if distinct and len(self.errors) == before:
             self.errors += equal_values(name, array.tolist())
         return array
+
+    def _named(self, name: str, raw: list) -> list:
+        """The values of `micro` or `shape` as names that the lexicon has. Raises ValueError for what cannot be used."""
+        if name == "micro":
+            self.request.learn(raw)
+            return self.lexicon.names_of(raw)
+        words = shapes.as_written(raw)
+        try:
+            self.request.learn_shapes(words)
+        except ValueError as error:
+            raise ValueError(str(error).removeprefix("shape ")) from None
+        return words
 
     def check(self, labels: dict[str, np.ndarray]) -> None:
         """Messages for what is missing, and for dimensions on which two inputs disagree. Fills in the defaults.
@@ -98,20 +115,21 @@ class Draft:
         self.errors += one_control(request.sections)
         arrays = {name: array for name, (dims, array) in values.items() if dims}
         self.errors += dimensions_that_differ(request, labels | arrays)
-        parameters = parameters_of(request.sections)
+        parameters = self.lexicon.parameters_of(request.sections)
         for name in [name for name in parameters if name not in request.sections]:
-            parameter = VOCABULARY[name].parameter  # those of a law or a shape that no case has stay away
+            parameter = self.lexicon.parameter(name)  # those of a law or a shape that no case has stay away
             selector, owners, *_ = parameter.needed_by
             if name.rpartition(".")[2] in ("cn", "ct", "profile") or name == "asperities_on":
                 continue
-            if shapes.left_out(name, request.sections) or sticking.left_out(name, request.sections):
+            if shapes.left_out(name, request.sections, self.lexicon) or sticking.left_out(name, request.sections):
                 continue
             words = values.get(selector, ((), ""))[1]  # "": micro has been refused
             if parameter.default is not None and (selector not in _WORDS or np.any([words == word for word in owners])):
                 values[name] = (), np.array(parameter.default)
         names = {*request.sections, *["n"] * request.physical}  # n follows from moduli
         names |= {name for name in parameters if request.physical and name.endswith(".n")}
-        self.errors += missing_everywhere(names, lambda name: values.get(name, ((), ()))[1], self.errors)
+        words = {name: array for name, (_, array) in values.items()}
+        self.errors += missing_everywhere(self.lexicon, names, lambda name: words.get(name, ()), self.errors)
         if not self.errors:
             rows = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in request.rows]
             self.errors += equal_cases(rows)
@@ -156,5 +174,5 @@ class Draft:
         return grid
 
     def _grid(self) -> Grid:
-        values = {name: self.values[name] for name in parameters_of(self.values) if name in self.values}
-        return Grid(self.sizes, values, self.labels)
+        values = {name: self.values[name] for name in self.lexicon.parameters_of(self.values) if name in self.values}
+        return Grid(self.sizes, values, self.labels, lexicon=self.lexicon)

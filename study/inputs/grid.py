@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
 
 from ..terminal import shown
-from .vocabulary import VOCABULARY, Parameter, are_within, check, finite
+from .lexicon import PACKAGE, Lexicon
+from .vocabulary import Parameter, are_within, check, finite
 
 LONGEST_AXIS = 1_000_000
 SHOWN = 3  # wrong values of one parameter that get a message each; the others are counted
@@ -22,12 +23,14 @@ class Grid:
     values : parameter -> (its dimensions, array over them); NaN in a case that does not need it
     labels : the same for coordinates that are no parameters (`case`, `label`, those of DataArrays)
     fitted : whether B and beta are fitted to Nbar and Ra
+    lexicon : what its words stand for
     """
 
     sizes: dict[str, int]
     values: dict[str, tuple[tuple[str, ...], np.ndarray]]
     labels: dict[str, tuple[tuple[str, ...], np.ndarray]] = field(default_factory=dict)
     fitted: bool = False
+    lexicon: Lexicon = PACKAGE
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -48,7 +51,7 @@ def along(grid: Grid, name: str) -> np.ndarray:
     if name in grid.values:
         dims, array = grid.values[name]
     else:
-        default = VOCABULARY[name].parameter.default
+        default = grid.lexicon.parameter(name).default
         dims, array = (), np.array(np.nan if default is None else default)
     if len(dims) > 1:
         array = array.transpose(sorted(range(len(dims)), key=lambda i: list(grid.sizes).index(dims[i])))
@@ -72,7 +75,7 @@ def cut_out(grid: Grid, window: dict[str, slice]) -> Grid:
         return {name: (dims, array[(*(window[dim] for dim in dims), ...)]) for name, (dims, array) in table.items()}
 
     sizes = {dim: len(range(size)[window[dim]]) for dim, size in grid.sizes.items()}
-    return Grid(sizes, within(grid.values), within(grid.labels), grid.fitted)
+    return replace(grid, sizes=sizes, values=within(grid.values), labels=within(grid.labels))
 
 
 def windows(grid: Grid, most: int, chunk: int) -> Iterator[dict[str, slice]]:

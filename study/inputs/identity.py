@@ -10,7 +10,6 @@ key. Otherwise a case on disk could be found by the key of another.
 
 import hashlib
 import json
-from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -18,12 +17,11 @@ import numpy as np
 from solver import NUMERICS_VERSION
 from solver.laws import identity as law_identity
 from solver.numerics.profiles import identity as profile_identity
-from solver.parameters import uses
 from solver.shapes.table import identity as shape_identity
 
 from .grid import Grid, along
 from .punch.asperities import stand_apart
-from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY, parameters_of_layers
+from .vocabulary import CONTROLS
 
 #: Strengths, with which answers are compared: no case depends on them, but the flags in a results file do.
 STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
@@ -42,12 +40,12 @@ _OF_SHAPES = "4"
 
 def acts(grid: Grid, name: str) -> np.ndarray:
     """Whether the answer depends on a parameter: bool along the dimensions of the grid, some of them of length 1."""
-    return uses(name, partial(along, grid))
+    return grid.lexicon.known.uses(name, partial(along, grid))
 
 
 def counts(grid: Grid, name: str) -> np.ndarray:
     """Whether the value of a parameter counts in a key: it acts, and is not the default. Shape as of `acts`."""
-    value, default = along(grid, name), VOCABULARY[name].parameter.default
+    value, default = along(grid, name), grid.lexicon.parameter(name).default
     changed = ~np.isnan(value) if default is None else value != default
     return changed & acts(grid, name)
 
@@ -55,7 +53,8 @@ def counts(grid: Grid, name: str) -> np.ndarray:
 def law_versions(grid: Grid) -> list[str]:
     """ "NAME VERSION" of each micro law in the grid that does not come with this package."""
     words = set(grid.values["micro"][1].ravel().tolist()) if "micro" in grid.values else ()
-    return sorted(law_identity(word) for word in words if law_identity(word) != word)
+    laws = [grid.lexicon.known.laws[word] for word in words if word in grid.lexicon.known.laws]
+    return sorted(law_identity(law) for law in laws if law.version)
 
 
 def digest_of(definition) -> str:
@@ -67,7 +66,7 @@ def digest_of(definition) -> str:
     grid = definition.grid
     arrays = {**grid.labels, "x": (("x",), definition.x)}
     arrays |= {name: (dims, array) for name, (dims, array) in grid.values.items() if name in grid.sizes}
-    parameters = (*PARAMETERS, *parameters_of_layers(grid.values))
+    parameters = grid.lexicon.parameters_of(grid.values)
     content = {
         "numerics_version": NUMERICS_VERSION,
         "sizes": list(grid.sizes.items()),
@@ -115,11 +114,11 @@ def _digest_of_values(grid: Grid, name: str) -> tuple:
     () if no value counts.
     """
     dims, array = grid.values.get(name, ((), None))
-    if not dims and (array is None or array == VOCABULARY[name].parameter.default):  # quick: most parameters end here
+    if not dims and (array is None or array == grid.lexicon.parameter(name).default):  # quick: most parameters end here
         return ()
     values = along(grid, name)
     if name == "shape" or name.endswith(".profile"):  # of a table its numbers count
-        values = np.array([_identity_of(name)(word) for word in values.ravel().tolist()]).reshape(values.shape)
+        values = np.array([_identity(grid, name, word) for word in values.ravel().tolist()]).reshape(values.shape)
     several = tuple(np.flatnonzero(np.array(values.shape) == 1))
     mask = np.broadcast_to(counts(grid, name).any(axis=several, keepdims=True), values.shape)
     return (values.shape, digest_of_array(mask), digest_of_array(values[mask])) if mask.any() else ()
@@ -139,14 +138,15 @@ def case_keys(grid: Grid, stresses: bool = False) -> np.ndarray:
     `stresses` the keys differ, and Poisson ratios always count. A million keys take a fraction of a second.
     """
     lanes = np.zeros((2, *grid.shape), dtype=np.uint64)
-    for name in (*PARAMETERS, *parameters_of_layers(grid.values)):
+    for name in grid.lexicon.parameters_of(grid.values):
         counted = counts(grid, name)
         if counted.any():
-            lanes += np.where(counted, _hashed(name, along(grid, name)), np.uint64(0))
+            lanes += np.where(counted, _hashed(grid, name, along(grid, name)), np.uint64(0))
     if (far := stand_apart(grid)).any():
-        lanes += np.where(far, _hashed("cells", np.array(_OF_CELLS).reshape((1,) * len(grid.shape))), np.uint64(0))
+        of_cells = np.array(_OF_CELLS).reshape((1,) * len(grid.shape))
+        lanes += np.where(far, _hashed(grid, "cells", of_cells), np.uint64(0))
     for name in RATIOS if stresses else ():
-        lanes += _hashed(f"{name} of stresses {_OF_STRESSES}", along(grid, name))
+        lanes += _hashed(grid, f"{name} of stresses {_OF_STRESSES}", along(grid, name))
     return np.ascontiguousarray(lanes.reshape(2, -1).T)
 
 
@@ -163,20 +163,25 @@ def find(keys: np.ndarray, stored: np.ndarray, rank: np.ndarray) -> np.ndarray:
     return np.where((stored[row] == keys).all(axis=1), row, -1)
 
 
-def _identity_of(name: str) -> Callable[[str], str]:
-    """A function of a word of a parameter: a text that tells what it stands for from all else."""
-    of_name = {"micro": law_identity, "shape": lambda word: f"{shape_identity(word)} {_OF_SHAPES}"}
-    return profile_identity if name.endswith(".profile") else of_name.get(name, str)
+def _identity(grid: Grid, name: str, word: str) -> str:
+    """A text that tells what a word of a parameter stands for from all else."""
+    known = grid.lexicon.known
+    if name.endswith(".profile"):
+        return profile_identity(word, known.profiles)
+    if name == "micro":
+        return law_identity(known.laws[word]) if word in known.laws else word
+    if name == "shape":
+        return f"{shape_identity(known.shapes[word]) if word in known.shapes else word} {_OF_SHAPES}"
+    return word
 
 
-def _hashed(name: str, array: np.ndarray) -> np.ndarray:
+def _hashed(grid: Grid, name: str, array: np.ndarray) -> np.ndarray:
     """(2, *shape) uint64: two hashes of each value of a parameter, which depend on its name."""
     if array.dtype.kind == "U":
-        word = _identity_of(name)
         bits, left = np.zeros(array.shape, np.uint64), np.ones(array.shape, bool)
         while left.any():  # word by word: there are few words, and np.unique of a million takes seconds
             here = array == array.flat[left.argmax()]
-            bits[here] = _digest(word(str(array[here][0])), 8)[0]
+            bits[here] = _digest(_identity(grid, name, str(array[here][0])), 8)[0]
             left &= ~here
     else:
         numbers = array.astype(np.float64) + 0.0

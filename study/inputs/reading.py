@@ -20,8 +20,8 @@ from ..terminal import on_one_line, shown
 from .definition import LARGE, MOST_VALUES, Definition, StudyError, refusal, settings, usual_block
 from .draft import Draft
 from .identity import digest_of, law_versions
-from .laws import results_of
 from .punch import asperities, sticking
+from .punch.laws import results_of
 from .punch.stresses import none_in
 from .request import MOST_MESSAGES, Request
 from .scene.layers import axes_in, in_layers
@@ -104,9 +104,9 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
-    micro = grid.values["micro"][1] if "micro" in grid.values else ()
     some_feel = not errors and bool(asperities.felt(grid).any())
-    results = results_of(micro, "w_adhesion" in grid.values, some_feel)
+    micro = grid.values["micro"][1] if "micro" in grid.values else ()
+    results = results_of(grid.lexicon.known.laws, micro, "w_adhesion" in grid.values, some_feel)
     stresses += names("spot_stress") if stresses and some_feel else ()
     definition = Definition(
         *(name, title, text, grid, x, profiles, dtype, block, ""),

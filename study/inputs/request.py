@@ -8,11 +8,11 @@ from ..specimen.foreign import plain
 from ..specimen.quantities import Quantity, has_unit
 from ..terminal import shown
 from .grid import LONGEST_AXIS, equal_values
-from .laws import is_parameter, law_names, update_vocabulary
+from .lexicon import Lexicon, default, lexicon_for, lexicon_of
 from .punch.shapes import ANGLES, in_degrees
 from .sample import LIMITS
 from .scene.layers import in_call, in_tables
-from .vocabulary import BODIES, NUMERICS, PARAMETERS, SCENE, no_parameter
+from .vocabulary import BODIES, NUMERICS, SCENE, no_parameter
 
 MOST_MESSAGES = 30  # that are shown for a study at a time
 #: Attributes `units` of pure numbers. pint writes "dimensionless".
@@ -86,6 +86,7 @@ class Request:
     correlations : pair of inputs -> correlation of their spreads
     sign : the input, in words, that makes this a study with units; "" if none does. It has a unit, or exists only in
         such studies
+    lexicon : what its words stand for
     """
 
     errors: list[str] = field(default_factory=list)
@@ -97,9 +98,7 @@ class Request:
     same_piece: bool = False
     correlations: Any = field(default_factory=dict)
     sign: str = ""
-
-    def __post_init__(self):
-        update_vocabulary()
+    lexicon: Lexicon = field(default_factory=default)
 
     @property
     def physical(self) -> bool:
@@ -109,10 +108,7 @@ class Request:
     @classmethod
     def in_python(cls, parameters: dict, rows: list[dict], same_piece: Any, correlations: Any) -> "Request":
         """Parameters of a call: DataArrays, 1-D sequences or single values, and rows of cases."""
-        request = cls(correlations=correlations)
-        with suppress(ValueError):  # laws as objects have parameters; what is wrong with one is told when micro is read
-            micro = [table.get("micro") for table in (parameters, *rows)]
-            law_names([law for laws in micro for law in (laws if isinstance(laws, list) else [laws])])
+        request = cls(correlations=correlations, lexicon=lexicon_for((parameters, *rows)))  # laws have parameters
         request._same_piece(same_piece, "")
         parameters, rows = in_call(parameters, rows, request.errors)
         if rows:
@@ -193,9 +189,9 @@ class Request:
         elif name in self.sections:
             other = f"in {section}" if section else "elsewhere"
             self.errors.append(f"{name} is given twice: in {self.sections[name]} and {other}")
-        elif not (name in SCENE or name in BODIES or is_parameter(name)):
+        elif not (name in SCENE or name in BODIES or self._is_parameter(name)):
             place = f"{section} " if section else ""
-            names = [*PARAMETERS, *SCENE, *BODIES, *["label"] * (section == "[[cases]]")]
+            names = [*self.lexicon.parameters, *SCENE, *BODIES, *["label"] * (section == "[[cases]]")]
             later = len(self.errors) >= MOST_MESSAGES  # and not shown
             self.errors.append(f"{name} is not a parameter" if later else no_parameter(name, names, place))
         else:
@@ -203,7 +199,32 @@ class Request:
                 self.errors.append(f"{section} {name} has several values: these belong in [axes]")
                 entry.values = None
             self._turn(entry)
+            self._learn_profiles(entry)
             self.sections[name], self.inputs[name] = section, entry
+
+    def learn(self, micro: list) -> None:
+        """Add to the lexicon what the values of `micro` stand for: laws as objects, tables, laws of installed packages.
+        Raises ValueError for a law that cannot be used."""
+        self.lexicon = lexicon_of(self.lexicon.known.with_laws_of(micro))
+
+    def _learn_profiles(self, entry: Input) -> None:
+        if entry.name.endswith(".profile") and not entry.is_wrong:
+            values = entry.values if entry.array is None else entry.array.values
+            try:
+                self.lexicon = lexicon_of(self.lexicon.known.with_profiles({entry.name: values}))
+            except ValueError as error:
+                self.errors.append(f"layers: {error}")
+
+    def learn_shapes(self, words: list) -> None:
+        """Add the tables among the words of `shape` to the lexicon. Raises ValueError for one that cannot be used."""
+        self.lexicon = lexicon_of(self.lexicon.known.with_tips(words))
+
+    def _is_parameter(self, name: str) -> bool:
+        """Whether this is the name of a parameter. Laws of installed packages are looked at before the answer is no."""
+        if name not in self.lexicon.parameters:
+            with suppress(ValueError):  # a law that cannot be loaded is an error when `micro` names it
+                self.lexicon = lexicon_of(self.lexicon.known.with_laws_of((), [name]))
+        return name in self.lexicon.parameters
 
     def _turn(self, entry: Input) -> None:
         """Make the numbers of an angle degrees."""

@@ -1,7 +1,7 @@
 """Values that follow from a rule in the study file: ranges, and random cases, the same on every machine."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -9,9 +9,10 @@ import numpy as np
 from ..specimen.quantities import Quantity, quantity
 from ..terminal import shown
 from .grid import LONGEST_AXIS, axis_values, check_range, quoted
+from .lexicon import Lexicon
 from .scene.bodies import of_names
 from .scene.names import si
-from .vocabulary import BODIES, ROWS, VOCABULARY, Parameter, check, si_unit
+from .vocabulary import BODIES, Parameter, check, si_unit
 
 KEYS = ("start", "stop", "spacing", "over")  # of a range
 LIMITS = {"size": (1, LONGEST_AXIS), "seed": (0, 2**32 - 1)}
@@ -19,31 +20,36 @@ ANY_NUMBER = Parameter(interval="(-inf, inf)")
 """Bounds of a range of SI numbers in [sample]. The numbers that are drawn are checked later, as all with units are."""
 
 
-def values_of_axis(name: str, raw: Any, physical: bool, errors: list[str]) -> list | None:
-    """The values of a list or a range; those of a range with units are in SI. None if it has a mistake."""
-    before = len(errors)
-    in_si = physical and isinstance(raw, dict) and _is_number(name) and ROWS[name].unit != "1"
-    raw = _in_si(raw, name, ROWS[name].unit, errors) if in_si else raw
+def values_of_axis(entry: Any, request: Any) -> list | None:
+    """The values of a list or a range; those of a range with units are in SI. None if it has a mistake.
+
+    entry : an input of the request
+    """
+    name, raw, errors, lexicon = entry.name, entry.values, request.errors, request.lexicon
+    before, ranged = len(errors), request.physical and isinstance(entry.values, dict)
+    in_si = ranged and _is_number(name, lexicon) and lexicon.all_rows[name].unit != "1"
+    raw = _in_si(raw, name, lexicon.all_rows[name].unit, errors) if in_si else raw
     values = axis_values(raw, name, errors) if len(errors) == before else []
     return (list(map(Quantity, values)) if in_si else values) or None
 
 
-def sampled(table: Any, names: list[str], physical: bool, check_values: Callable, errors: list[str]) -> dict[str, list]:
+def sampled(request: Any, names: list[str], check_values: Callable) -> dict[str, list]:
     """What [sample] draws for the parameters `names`: entries of lists, numbers of ranges; {} if there is a mistake.
 
-    physical : whether the study has units; the numbers of ranges are in SI then
+    request : with the table [sample]; if the study has units, the numbers of ranges are in SI
     check_values : a function of a name and its values that appends messages
     """
-    before, parameters, read = len(errors), {}, dict(table) if isinstance(table, dict) else {}
+    table, physical, errors, lexicon = request.sample, request.physical, request.errors, request.lexicon
+    before, parameters, read, rows = len(errors), {}, dict(table) if isinstance(table, dict) else {}, lexicon.all_rows
     for name in names:
         raw = table[name]
-        parameters[name] = Parameter(choices=("a material",)) if name in BODIES else ROWS[name].parameter
-        if physical and _is_number(name):
-            parameters[name] = parameters[name] if ROWS[name].unit == "1" and name in VOCABULARY else ANY_NUMBER
+        parameters[name] = Parameter(choices=("a material",)) if name in BODIES else lexicon.parameter(name)
+        if physical and _is_number(name, lexicon):
+            parameters[name] = parameters[name] if rows[name].unit == "1" and name in lexicon.rows else ANY_NUMBER
             if isinstance(raw, dict):
-                read[name] = _in_si(raw, f"[sample] {name}", _unit_of_range(name, raw), errors)
+                read[name] = _in_si(raw, f"[sample] {name}", _unit_of_range(name, raw, rows), errors)
         if isinstance(raw, list):  # all of it, since some of its values may not be drawn
-            _check_list(name, raw, physical, check_values, errors)
+            _check_list(name, raw, request, check_values)
     refused = {*read} - {*names, *LIMITS}
     if len(errors) > before or (refused and not names):
         return {}
@@ -52,20 +58,20 @@ def sampled(table: Any, names: list[str], physical: bool, check_values: Callable
     return {n: [*map(Quantity, v)] if n in in_si else v for n, v in draw(read, parameters, errors).items()}
 
 
-def _is_number(name: str) -> bool:
-    return name not in BODIES and not ROWS[name].parameter.choices
+def _is_number(name: str, lexicon: Lexicon) -> bool:
+    return name not in BODIES and not lexicon.parameter(name).choices
 
 
-def _check_list(name: str, raw: list, physical: bool, check_values: Callable, errors: list[str]) -> None:
+def _check_list(name: str, raw: list, request: Any, check_values: Callable) -> None:
     """Messages for the values of a list of [sample]."""
-    if not (physical and _is_number(name)) and name not in BODIES:
+    if not (request.physical and _is_number(name, request.lexicon)) and name not in BODIES:
         check_values(name, raw)
         return
     for i, value in enumerate(raw):
         try:
-            of_names(name, [value]) if name in BODIES else si(name, value, f"{name}[{i}]")
+            of_names(name, [value]) if name in BODIES else si(name, value, f"{name}[{i}]", request.lexicon)
         except (ValueError, LookupError) as error:
-            errors.append(str(error.args[0]))
+            request.errors.append(str(error.args[0]))
 
 
 def _in_si(raw: dict, key: str, unit: str, errors: list[str]) -> dict:
@@ -83,12 +89,12 @@ def _in_si(raw: dict, key: str, unit: str, errors: list[str]) -> dict:
     return {} if wrong or unsure else raw | ends
 
 
-def _unit_of_range(name: str, raw: dict) -> str:
+def _unit_of_range(name: str, raw: dict, rows: Mapping) -> str:
     """The SI unit of the ends of a range of [sample]: with over = "Ra^2" that of the product with Ra²."""
-    i, j = ROWS[name].powers
+    i, j = rows[name].powers
     other, power = divisor(raw)
-    if other in ROWS:
-        i, j = i + power * ROWS[other].powers[0], j + power * ROWS[other].powers[1]
+    if other in rows:
+        i, j = i + power * rows[other].powers[0], j + power * rows[other].powers[1]
     return si_unit((i, j))
 
 

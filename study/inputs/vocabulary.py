@@ -6,16 +6,13 @@ import numbers
 import re
 import tomllib
 from collections import ChainMap
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
 from importlib.resources import files
 
-import numpy as np
-
-from solver.parameters import CONTROL, FIRST, LAYER, MOST, Parameter, Register, among
-from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
+from solver.parameters import FIRST, LAYER, MOST, NamedRows, Parameter
 from solver.parameters import allowed as are_within
 
 from ..terminal import shown
@@ -54,12 +51,6 @@ class Entry:
     equation: str = ""
     interval: str = ""
     written: str = ""
-
-    @property
-    def parameter(self) -> Parameter:
-        """The row of a parameter in the solver's table: bounds, choices, default, which cases need it."""
-        row = CONTROL.get(self.name) or SOLVER_PARAMETERS.get(self.name) or Parameter()
-        return row._replace(interval=self.interval) if self.interval else row
 
     @property
     def unit(self) -> str:
@@ -105,15 +96,6 @@ def entries(tables: dict) -> dict[str, Entry]:
 
 
 _TABLES = tomllib.loads((files(__package__) / "vocabulary.toml").read_text(encoding="utf-8"))
-SCENE = Register(entries({"scene": _TABLES.pop("scene")}))
-"""Inputs of a study with units that the solver does not know. Its parameters follow from them."""
-VOCABULARY = Register(entries(_TABLES))
-ROWS = ChainMap(VOCABULARY, SCENE)
-"""Rows of SCENE and VOCABULARY, among them the parameters of registered laws."""
-#: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
-#: `bodies_of` adds those of a stack below the first.
-BODIES = Register({"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")})
-
 #: What the first layer of a stack has under the name of a case with one layer.
 FIRST_LAYER = FIRST | {"E1": "E1", "material": "layer"}
 #: What a layer may have in a list, and its words.
@@ -160,7 +142,7 @@ def _of_layers() -> tuple[dict[str, Entry], dict[str, Entry], dict[str, tuple]]:
 
 
 def _follows(place: int):
-    """The rows of a table that follow from their names, as `Register.further`."""
+    """The rows of a table that follow from their names, as `NamedRows.further`."""
     return lambda name: _of_layers()[place].get(name) if is_of_layers(name) else None
 
 
@@ -169,7 +151,17 @@ def is_of_layers(name: object) -> bool:
     return isinstance(name, str) and name.startswith(("layers.", "sublayers"))
 
 
-VOCABULARY.further, SCENE.further, BODIES.further = map(_follows, range(3))
+SCENE = NamedRows(entries({"scene": _TABLES.pop("scene")}), _follows(1))
+"""Inputs of a study with units that the solver does not know. Its parameters follow from them."""
+VOCABULARY = NamedRows(entries(_TABLES), _follows(0))
+"""Parameters, results and coordinates. A `Lexicon` has the parameters of laws and shapes of users besides."""
+ROWS = ChainMap(VOCABULARY, SCENE)
+"""Rows of SCENE and VOCABULARY."""
+#: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
+#: `bodies_of` adds those of a stack below the first.
+BODIES = NamedRows(
+    {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")}, _follows(2)
+)
 
 
 def _layers_in(names) -> int:
@@ -177,11 +169,6 @@ def _layers_in(names) -> int:
     words = [name for name in names if is_of_layers(name)]
     numbers = [name.split(".")[1] for name in words if name.startswith("layers.")]
     return min(max((int(number) for number in numbers if number.isdigit()), default=int(bool(words))), MOST)
-
-
-def parameters_of(names) -> list[str]:
-    """Names of all parameters that inputs may have, those of the layers too which are among the `names` of some."""
-    return [*PARAMETERS, *parameters_of_layers(names)]
 
 
 def parameters_of_layers(names) -> tuple[str, ...]:
@@ -212,7 +199,7 @@ _RESULT, _LINE = (_NOT_THERE[section]["says"] for section in ("results", "line")
 
 
 def names(*roles: str) -> tuple[str, ...]:
-    """Names that have one of the roles, in the order of the table; without the parameters of registered laws.
+    """Names that have one of the roles, in the order of the table; without the parameters of laws of users.
 
     Parameters
     ----------
@@ -235,74 +222,30 @@ CONTROLS = names("control")
 NUMERICS = names("numerics")
 OF_PARAMETERS = ("control", "material", "shape", "adhesion", "roughness", "numerics")
 """Roles of parameters."""
-_BUILT_IN = names(*OF_PARAMETERS)
 
 
-class Names(list):
-    """Names of parameters. Those of layers, such as "layers.2.h", are in it and are not listed: see `parameters_of`."""
+class Names(tuple):
+    """Names of parameters. Those of layers, such as "layers.2.h", are in it and are not listed: see
+    `Lexicon.parameters_of`."""
 
     def __contains__(self, name: object) -> bool:
         return super().__contains__(name) or is_of_layers(name) and name in VOCABULARY
 
 
-PARAMETERS = Names(_BUILT_IN)
-"""Names of parameters; `put_rows` adds those of registered laws."""
+PARAMETERS = Names(names(*OF_PARAMETERS))
+"""Names of the parameters of this package."""
 
 
-def put_rows(rows_now: Callable[[], dict[str, Entry]]) -> None:
-    """Make PARAMETERS and VOCABULARY those of this package and what `rows_now` gives, those of laws and shapes.
-
-    Where they are so already nothing is touched: other threads read them.
-    """
-    with VOCABULARY.lock:
-        rows = rows_now()  # within the lock: two threads that register at once leave the rows of both
-        add_rows(rows)
-        wanted = [*_BUILT_IN, *rows]
-        if wanted != PARAMETERS:
-            gone = {*PARAMETERS} - {*wanted}
-            PARAMETERS[:] = wanted
-            for name in gone:  # of a law that has been replaced
-                VOCABULARY.pop(name, None)
-
-
-def add_rows(rows: dict[str, Entry]) -> None:
-    """Add rows of parameters that laws and shapes declare, to PARAMETERS too."""
-    with VOCABULARY.lock:
-        VOCABULARY.update({name: row for name, row in rows.items() if VOCABULARY.get(name) != row})
-        PARAMETERS.extend([name for name in rows if name not in PARAMETERS])
-
-
-def of_package(name: str) -> bool:
-    """Whether the row of a parameter is of this package, whichever law or shape declares it."""
-    return name in _BUILT_IN
-
-
-def cases_with(name: str, values) -> np.ndarray:
-    """bool: the cases that have a parameter.
-
-    values : a function: name of a parameter such as base -> its values
-    """
-    return among(VOCABULARY[name].parameter.needed_by, values)
-
-
-def matters(name: str, values) -> bool:
-    """Whether the answer of some case may depend on a parameter; `values` as in `cases_with`."""
-    parameter = VOCABULARY[name].parameter
-    return all(
-        any(np.any(among(pair, values)) for pair in zip(condition[::2], condition[1::2], strict=True))
-        for condition in (parameter.needed_by, parameter.used_by)
-    )
-
-
-def attributes(name: str, rigid: bool = False) -> dict:
+def attributes(name: str, rigid: bool = False, rows: Mapping[str, Entry] = VOCABULARY) -> dict:
     """CF attributes of a dimensionless variable: long_name, and where they apply symbol, scale, equation.
 
     The long_name ends with what stands on the axis of a plot, "thickness of the layer, h/R". There are no units: CF
     wants none of a pure number, and xarray would write "[1]" behind every label.
 
     rigid : of layers on a rigid base, where E1* is the unit of moduli
+    rows : of a vocabulary that has the name
     """
-    entry = VOCABULARY[name]
+    entry = rows[name]
     words = ", ".join(filter(None, (entry.long_name, entry.ratio)))
     texts = {"long_name": words, "symbol": entry.symbol, "scale": entry.scale, "equation": entry.equation}
     return {key: text.replace("E2*", "E1*") if rigid else text for key, text in texts.items() if text}

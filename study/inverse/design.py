@@ -10,7 +10,7 @@ import xarray as xr
 from ..data.coordinates import with_coordinates
 from ..in_words import beside_rules, doubts
 from ..inputs.definition import StudyError
-from ..inputs.vocabulary import NOT_RUN, ROWS
+from ..inputs.vocabulary import NOT_RUN
 from ..specimen.foreign import plain
 from ..work.progress import screen_of
 from .design_cases import Wanted
@@ -88,7 +88,7 @@ def design(
 def _variables(want: Wanted, outcome: Outcome, contacts: xr.Dataset) -> dict[str, xr.Variable]:
     """The variables of a design beside those of its contacts: the spread and the ends of the input, status, message."""
     name, dims = want.name, contacts["status"].dims
-    unit = ROWS[name].unit if want.definition.scene else ""
+    unit = want.definition.grid.lexicon.all_rows[name].unit if want.definition.scene else ""
     about = {"units": unit} if unit not in ("", "1") else {}
     about |= {key: contacts[name].attrs[key] for key in ("scale",) if key in contacts[name].attrs}
     x, change = want.x_of(outcome.t), outcome.change

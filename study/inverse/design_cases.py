@@ -14,11 +14,11 @@ from solver.status import Status
 from ..data.units import with_unit
 from ..inputs.definition import Definition
 from ..inputs.grid import along, columns
-from ..inputs.laws import DIGITS, fits_to
+from ..inputs.punch.laws import DIGITS, fits_to
 from ..inputs.scene.changes import inputs_of
 from ..inputs.scene.scales import make_dimensionless
 from ..inputs.scene.scene import Scene, over
-from ..inputs.vocabulary import PARAMETERS, VOCABULARY, parameters_of
+from ..inputs.vocabulary import VOCABULARY
 from ..work.cases import compute, parcel
 
 #: A contact that is pulled off has the load of that too.
@@ -84,7 +84,8 @@ class Wanted:
         if values:
             whole = self.definition.scene
             metres = np.broadcast_to(over(whole.metres, tuple(self.definition.grid.sizes)), self.definition.grid.shape)
-            scene = Scene(values=values | {self.name: self.x_of(t)}, parameters=others, scale=whole.scale)
+            values |= {self.name: self.x_of(t)}
+            scene = Scene(values=values, parameters=others, scale=whole.scale, lexicon=whole.lexicon)
             scene.metres = metres.ravel()[index]
             make_dimensionless(scene)
             others, unit, R = scene.parameters, scene.unit, scene.R
@@ -92,8 +93,10 @@ class Wanted:
             others |= {self.name: self.x_of(t)}
         if self._refits:
             others |= _fits(others["Nbar"], others["Ra"])
+        lexicon = self.definition.grid.lexicon
+        names = [key for key in lexicon.parameters_of(others) if key in others]
         with going_on():
-            solution = solve(Problem.of(**{key: others[key] for key in parameters_of(others) if key in others}))
+            solution = solve(Problem.of(known=lexicon.known, **{key: others[key] for key in names}))
         solved = np.isin(solution.status, _WITH_PULL_OFF) if self.target == "P_off" else solution.status == 0
         numbers = np.where(solved, getattr(solution, self.target), np.nan)
         return with_unit(numbers, VOCABULARY[self.target].powers, unit, R)
@@ -113,7 +116,7 @@ class Wanted:
             scene.parameters = dict(scene.parameters)
             make_dimensionless(scene)
             arrays = {key: (getattr(v, "dims", ()), np.asarray(v)) for key, v in scene.parameters.items()}
-            values = grid.values | {key: pair for key, pair in arrays.items() if key in PARAMETERS}
+            values = grid.values | {key: pair for key, pair in arrays.items() if key in grid.lexicon.parameters}
         grid = replace(grid, sizes=grid.sizes | {"solution": x.shape[-1]}, values=values)
         if self._refits:
             products = np.broadcast_arrays(along(grid, "Nbar"), along(grid, "Ra"), x)[:2]

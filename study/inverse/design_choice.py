@@ -8,7 +8,8 @@ import xarray as xr
 
 from ..data.derived import QUANTITIES
 from ..inputs.definition import StudyError
-from ..inputs.vocabulary import ROWS, suggest
+from ..inputs.lexicon import lexicon_in
+from ..inputs.vocabulary import suggest
 from ..specimen.quantities import quantity
 from ..terminal import shown
 
@@ -139,7 +140,8 @@ def _limit(name: str, limit: str, values: xr.DataArray) -> tuple:
         words = f'must be a text that begins with <, <=, > or >=, such as "{example}"'
         words = words if values.dtype.kind in "iuf" else f"{name} is no number"
         raise StudyError([f"feasible: {name} = {shown(limit)}: {words}"])
-    si_unit = ROWS[name].unit if name in ROWS and unit != "1" else unit
+    rows = lexicon_in(values.coords).all_rows
+    si_unit = rows[name].unit if name in rows and unit != "1" else unit
     try:
         number = quantity(name, text.removeprefix(sign).strip(), si_unit)
         size = 1.0 if unit == si_unit else quantity(name, f"1 {unit}", si_unit).value  # of study.readable

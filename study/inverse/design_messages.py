@@ -6,7 +6,7 @@ import xarray as xr
 from ..data.dataset import decode
 from ..derivatives import QUANTITIES, sensitivities
 from ..inputs.scene.names import is_ratio
-from ..inputs.vocabulary import NOT_RUN, ROWS, VOCABULARY
+from ..inputs.vocabulary import NOT_RUN
 from ..specimen.quantities import readable
 from .design_cases import Wanted
 from .design_search import Outcome, solved
@@ -45,9 +45,10 @@ def messages(want: Wanted, outcome: Outcome, contacts: xr.Dataset) -> list[str]:
 
 def _text(want: Wanted, name: str, value: float, spread: float = 0.0) -> str:
     """A number with its unit and ±."""
+    row = want.definition.grid.lexicon.all_rows[name]
     if want.definition.scene:
-        return readable(value, ROWS[name].unit, spread)
-    return f"{value:.5g} {VOCABULARY[name].scale}".rstrip()
+        return readable(value, row.unit, spread)
+    return f"{value:.5g} {row.scale}".rstrip()
 
 
 def _value(want: Wanted, name: str, value: float, spread: float = 0.0) -> str:

@@ -5,11 +5,11 @@ from typing import Any
 
 from ..derivatives import QUANTITIES
 from ..inputs.definition import Definition, StudyError
-from ..inputs.laws import is_parameter
+from ..inputs.lexicon import lexicon_for
 from ..inputs.reading import from_call
 from ..inputs.scene.layers import short
 from ..inputs.scene.names import si
-from ..inputs.vocabulary import NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY, finite, no_parameter, suggest
+from ..inputs.vocabulary import NUMERICS, ROWS, SCENE, VOCABULARY, finite, no_parameter, suggest
 from ..specimen.foreign import plain
 from ..specimen.quantities import has_unit
 from ..terminal import shown
@@ -26,7 +26,7 @@ def read_wanted(
 ) -> Wanted:
     """The design that a call asks for. Raises StudyError for what it cannot have, before anything is computed."""
     target, value = _target(targets)
-    written, bounds = _looked_for(by)
+    written, bounds = _looked_for(by, (parameters, *rows))
     name = short(written)  # as results have it: "h" of "layers.1.h"
     rest = {key: entry for key, entry in parameters.items() if entry is not None}
     twice = any({name, written} & {*table} for table in (rest, *rows))
@@ -57,14 +57,15 @@ def _target(targets: Any) -> tuple[str, Any]:
     return target, plain(value)
 
 
-def _looked_for(by: Any) -> tuple[str, tuple]:
+def _looked_for(by: Any, tables: tuple) -> tuple[str, tuple]:
     if not isinstance(by, dict) or len(by) != 1:
         raise StudyError([f"design: by = {shown(by)}: give exactly one input with two bounds, {_BOUNDS}"])
     ((name, bounds),) = by.items()
     shortened = short(name) if isinstance(name, str) else name
-    if not (shortened in SCENE or is_parameter(shortened)):
-        raise StudyError([f"design: by: {no_parameter(name, [*PARAMETERS, *SCENE])}"])
-    parameter = VOCABULARY[shortened].parameter if shortened in VOCABULARY else None
+    lexicon = lexicon_for(tables, [shortened] if isinstance(name, str) else ())
+    if not (shortened in SCENE or shortened in lexicon.parameters):
+        raise StudyError([f"design: by: {no_parameter(name, [*lexicon.parameters, *SCENE])}"])
+    parameter = lexicon.parameter(shortened) if shortened in lexicon.rows else None
     if name in NUMERICS or (parameter and (not parameter.interval or parameter.whole)):
         raise StudyError([f"design: by: {name} is no number of the contact that can be looked for"])
     bounds = tuple(map(plain, bounds)) if isinstance(bounds, (tuple, list)) else bounds

@@ -193,7 +193,8 @@ def _fits(question: Question, blocks: list, arrays: tuple, there: np.ndarray) ->
         Task(call, question, *(None if A is None else _packed(A, there, filled, points) for A in arrays))
         for _, filled, points in blocks
     ]
-    of_users = laws_of_users(np.array([question.model.scene.parameters.get("micro", "disc_cell")]))
+    scene = question.model.scene
+    of_users = laws_of_users(scene.lexicon.known, np.array([scene.parameters.get("micro", "disc_cell")]))
     try:
         with closing(computed_tasks(fit_task, tasks, can_leave=not of_users)) as results:
             for number, fits in results:

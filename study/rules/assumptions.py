@@ -99,7 +99,7 @@ def n_not_below_one(v, times):
 def spots_merging(v, times):
     """The contact spots merge (λ(0) > {MERGING:g}): the micro law, which spreads the pressure around a spot evenly,
     overestimates what the asperities yield by 10 % or more."""
-    return v["rough"] & have("smears", v["micro"]) & (v["lam0"] > times * MERGING)
+    return v["rough"] & have("smears", v["micro"], v["known"]) & (v["lam0"] > times * MERGING)
 
 
 @rule(32, rf"$a > {STEEP:g}\,R$ or layer strained", "0.9")

@@ -9,7 +9,7 @@ from solver.parameters import one_of
 
 from ..arrays import xarray_later as xr
 from ..arrays.labelled import as_xarray
-from ..inputs.laws import smooth_laws
+from ..inputs.lexicon import lexicon_in
 from ..inputs.vocabulary import BODIES, ROWS
 from ..specimen.quantities import readable
 from ..terminal import rounded
@@ -33,7 +33,7 @@ YIELD, STIFF = 0.03, 1e10
 
 @rule()
 def ra_as_of_iso(v):
-    if {"Ra", "Nbar", "micro"} <= {*v} and not one_of(v["micro"].values, smooth_laws()).all():
+    if {"Ra", "Nbar", "micro"} <= {*v} and not one_of(v["micro"].values, lexicon_in(v).smooth_laws()).all():
         from ..specimen.roughness import looks_like_iso_ra  # here: it loads what measures scans
 
         Ra, Nbar = (v["Ra"] + 0 * v["Nbar"]).values, (0 * v["Ra"] + v["Nbar"]).values  # of one order of axes

@@ -10,14 +10,14 @@ import numpy as np
 
 from solver.bases import is_bare
 from solver.kernels.two_layers import layer_modulus
-from solver.laws import LAWS
+from solver.known import Known
 from solver.parameters import one_of
 from solver.problem import can_feel
-from solver.shapes import SHAPES
 
 from ..arrays import xarray_later as xr
 from ..arrays.labelled import Labelled, along
-from ..inputs.vocabulary import ROWS, VOCABULARY, attributes
+from ..inputs.lexicon import lexicon_in
+from ..inputs.vocabulary import ROWS, attributes
 
 
 class Rule(NamedTuple):
@@ -111,27 +111,31 @@ def numbers(variables: Mapping) -> Mapping:
 
     Beside the variables: layered, rough, thin (bool: a thin layer was used), on_half_space (bool: asperities press on
     one, whatever their pitch), E1* (reduced modulus of the layer), spots (how many touch), b (radius of the central
-    one), slope (f'(a) of the shape of the punch), pressure (p(0), and where that is not finite the mean).
+    one), slope (f'(a) of the shape of the punch), pressure (p(0), and where that is not finite the mean), known (what
+    the words of `micro` and `shape` stand for).
     """
     dims, used = variables["status"].dims, variables["model_used"].attrs
     arrays = {name: along(dims, array) for name, array in variables.items() if set(array.dims) <= set(dims)}
-    v = defaultdict(lambda: np.nan, {"m": 0.0} | arrays)
+    known = lexicon_in(variables).known
+    v = defaultdict(lambda: np.nan, {"m": 0.0, "known": known} | arrays)
     models = zip(used["flag_values"], used["flag_meanings"].split(), strict=True)
     v["thin"] = one_of(
         v["model_used"], [value for value, word in models if word.endswith(("thin_layer", "thin_stack"))]
     )
     v |= {"slope": slope(v), "pressure": _pressure(v)}
-    v |= {"on_half_space": ~can_feel(v["base"], v["micro"]) | (v.get("asperities_on", "auto") == "half_space")}
-    v |= {"layered": ~is_bare(v["base"]), "rough": have("rough", v["micro"]), "E1*": layer_modulus(v["n"])}
+    on_half_space = v.get("asperities_on", "auto") == "half_space"
+    v |= {"on_half_space": ~can_feel(v["base"], v["micro"], known.laws) | on_half_space}
+    rough = have("rough", v["micro"], known)
+    v |= {"layered": ~is_bare(v["base"]), "rough": rough, "E1*": layer_modulus(v["n"])}
     return v | {"spots": spots(v) * _touching(v), "b": spot_radius(v)}
 
 
 def slope(v):
-    """f'(a) of the shapes of the punches; NaN of a shape that is not registered."""
+    """f'(a) of the shapes of the punches; NaN of a shape that is not known."""
     if "shape" not in v:
         return v["a"]
     slopes = np.full(np.broadcast(v["a"], v["shape"]).shape, np.nan)
-    for kind in SHAPES.values():
+    for kind in v["known"].shapes.values():
         if np.any(v["shape"] == kind.name):
             arrays = np.broadcast_arrays(*(v[name] for name in ("a", *kind.parameters)), slopes)
             a, *numbers = (array.ravel() for array in arrays[:-1])
@@ -148,15 +152,15 @@ def _pressure(v):
         return np.where(np.isfinite(v["p0"]), v["p0"], v["P"] / (np.pi * v["a"] ** 2)) if "shape" in v else v["p0"]
 
 
-def have(feature: str, micro):
-    """Whether the law of each case has a feature, such as "rough". A law that is not registered is taken to have it."""
-    return sum(micro == name for name, law in LAWS.items() if not getattr(law, feature)) == 0
+def have(feature: str, micro, known: Known):
+    """Whether the law of each case has a feature, such as "rough". A law that is not known is taken to have it."""
+    return sum(micro == name for name, law in known.laws.items() if not getattr(law, feature)) == 0
 
 
 def _touching(values):
     """Share of the summits in the centre that touch: 1 of equal heights."""
     share = np.ones(())
-    for law in [law for name, law in LAWS.items() if law.touching and np.any(values["micro"] == name)]:
+    for law in [law for name, law in values["known"].laws.items() if law.touching and np.any(values["micro"] == name)]:
         touch = law.touching(values["A0"], **{name: values.get(name, np.nan) for name in law.parameters})
         share = np.where(values["micro"] == law.name, touch, share)
     return share
@@ -200,7 +204,8 @@ def whole(flags: np.ndarray, attributes: dict) -> np.ndarray:
 
 def has_units(dataset: xr.Dataset) -> bool:
     """Whether the numbers are in SI units, also of a dataset without the coordinates that say it."""
-    return any(own.attrs.get("units", "1") != "1" for name, own in dataset.variables.items() if name in VOCABULARY)
+    rows = lexicon_in(dataset).rows
+    return any(own.attrs.get("units", "1") != "1" for name, own in dataset.variables.items() if name in rows)
 
 
 def in_si(v: Mapping, name: str) -> bool:

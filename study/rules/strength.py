@@ -3,14 +3,14 @@
 import numpy as np
 
 from solver import Problem, Status, solve
-from solver.laws import LAWS
 from solver.laws.elastic_plastic import TABOR
 from solver.models.spot_pressure import lifts_off
 from solver.parameters import one_of
 from solver.yields import spots
 from solver.yields.contact import of_contacts
 
-from ..inputs.vocabulary import CONTROLS, NUMERICS, parameters_of
+from ..inputs.lexicon import lexicon_of
+from ..inputs.vocabulary import CONTROLS, NUMERICS
 from . import yield_bounds
 from .rule import WORDS, have, rule
 
@@ -72,7 +72,8 @@ def of_asperities(v):
     """The same of asperities that are elastic: given in the call, or that of the softer of the two surfaces."""
     if not {*v} & _OF_ASPERITIES:
         return np.array(np.nan), np.array(0)
-    elastic = have("rough", v["micro"]) & ~one_of(v["micro"], [name for name, law in LAWS.items() if law.yielded])
+    yielding = [name for name, law in v["known"].laws.items() if law.yielded]
+    elastic = have("rough", v["micro"], v["known"]) & ~one_of(v["micro"], yielding)
     named = [_of_material(v, name) for name in ("Y1", "Y2", "Y_punch")]
     call = first([v.get("yield_strength", np.nan), 0], [v.get("hardness", np.nan) / TABOR, 0])
     # of one surface whose strength is not known the other's serves: what exceeds that exceeds the lower of both
@@ -160,9 +161,10 @@ def _stress_of_spots(v, index):
 def problem_of(v, index):
     """The problem of some of the cases, given by their radii."""
     shape = v["status"].shape
-    own = {name: v[name] for name in parameters_of(v) if name in v and name not in (*NUMERICS, *CONTROLS)}
+    names = lexicon_of(v["known"]).parameters_of(v)
+    own = {name: v[name] for name in names if name in v and name not in (*NUMERICS, *CONTROLS)}
     own = {name: np.broadcast_to(values, shape).ravel()[index] for name, values in {"a": v["a"], **own}.items()}
-    return Problem.of(**own)
+    return Problem.of(known=v["known"], **own)
 
 
 def again(v, index, x=(0.0, 1.0)):

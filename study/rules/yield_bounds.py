@@ -15,7 +15,7 @@ from solver.bases import is_stack
 from solver.closed_forms import yield_pressure
 from solver.shapes import PARABOLOID
 
-from ..inputs.vocabulary import VOCABULARY
+from ..inputs.lexicon import PACKAGE
 
 #: On a bare body the stress under asperities is p(0)/q, of a smooth ball, times a factor between these (0.91 to 1.00
 #: were seen).
@@ -117,7 +117,7 @@ def _nu(v) -> np.ndarray:
 
 
 def _value(v, name):
-    return v[name] if name in v else VOCABULARY[name].parameter.default
+    return v[name] if name in v else PACKAGE.parameter(name).default
 
 
 def _known(v) -> np.ndarray:

@@ -7,14 +7,14 @@ less.
 import pickle
 import traceback
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from solver import NUMERICS_VERSION, Problem, Solution, laws, sensitivities, solve
-from solver.laws import Law
+from solver import NUMERICS_VERSION, Problem, Solution, sensitivities, solve
+from solver.known import Known
+from solver.laws import BUILT_IN, Law
 from solver.laws.trial import going_on
-from solver.shapes.table import TABLES, Rows
 
 from ..inputs.definition import Definition
 from ..inputs.grid import columns
@@ -32,8 +32,7 @@ class Parcel:
     inputs : of the solver, by which derivatives are wanted
     stresses : names of the largest stresses and their places that are wanted
     numerics : version of the solver's numerics that is wanted
-    laws : micro laws of users, which the worker may not have registered
-    tables : word -> rows of the tables of shapes, whose files the worker may not have
+    known : laws, shapes and tables of users that its words stand for
     """
 
     first: int
@@ -45,8 +44,7 @@ class Parcel:
     inputs: tuple[str, ...]
     stresses: tuple[str, ...]
     numerics: str
-    laws: tuple[Law, ...] = ()
-    tables: dict[str, Rows] = field(default_factory=dict)
+    known: Known
 
 
 @dataclass(frozen=True)
@@ -62,15 +60,13 @@ def parcel(definition: Definition, index: Sequence) -> Parcel:
     parameters = columns(definition.grid, np.asarray(index))
     parameters = {name: array if definition.grid.values[name][0] else array[:1] for name, array in parameters.items()}
     wanted = definition.x, definition.results, definition.profiles, definition.inputs, definition.stresses
-    of_users = tuple(laws_of_users(parameters["micro"]))
-    words = np.unique(parameters.get("shape", ())).tolist()
-    tables = {word: TABLES[word] for word in words if word in TABLES}
-    return Parcel(int(index[0]), int(index[-1]), parameters, *wanted, NUMERICS_VERSION, of_users, tables)
+    known = definition.grid.lexicon.known.only(parameters)
+    return Parcel(int(index[0]), int(index[-1]), parameters, *wanted, NUMERICS_VERSION, known)
 
 
-def laws_of_users(micro: np.ndarray) -> list[Law]:
+def laws_of_users(known: Known, micro: np.ndarray) -> list[Law]:
     """The laws among the words of `micro` that are not of this package."""
-    return [law for law in map(laws.LAWS.get, set(micro.ravel().tolist())) if law not in laws.BUILT_IN]
+    return [law for word in set(micro.ravel().tolist()) if (law := known.laws[word]) not in BUILT_IN]
 
 
 def can_travel(definition: Definition) -> bool:
@@ -78,7 +74,7 @@ def can_travel(definition: Definition) -> bool:
 
     Their functions must have names, in a module that it can import. The program itself is no such module.
     """
-    for law in laws_of_users(definition.grid.values["micro"][1]):
+    for law in laws_of_users(definition.grid.lexicon.known, definition.grid.values["micro"][1]):
         if any(getattr(part, "__module__", "") == "__main__" for part in vars(law).values() if callable(part)):
             return False
         try:
@@ -90,11 +86,8 @@ def can_travel(definition: Definition) -> bool:
 
 def compute(task: Parcel) -> dict[str, np.ndarray]:
     """Solve a parcel: name -> (n, ...). Touches no file and no shared state: may run in any thread, on any machine."""
-    for law in task.laws:
-        laws.register(law)
-    TABLES.update(task.tables)
     with going_on():  # the functions of a law of one's own
-        problem = Problem.of(**task.parameters)
+        problem = Problem.of(known=task.known, **task.parameters)
         solution = solve(problem, task.x)
         arrays = arrays_of(solution, task.results, task.profiles)
         arrays |= stresses_of(problem, solution, task.stresses) if task.stresses else {}

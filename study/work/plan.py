@@ -15,7 +15,6 @@ from ..files.access import Unusable
 from ..files.atomic import make_folder, target
 from ..files.examine import Condition, statuses
 from ..inputs.definition import LARGE, Definition, StudyError
-from ..inputs.identity import law_versions
 from ..inputs.reading import same_tables
 from ..inputs.vocabulary import NOT_RUN, suggest
 from ..store.blocks import lost_cases
@@ -85,9 +84,6 @@ class Order:
             wrong.append(f"workers = {shown(self.workers)}: must be a whole number, 1 or more")
         if not (isinstance(self.retry, (tuple, list)) and whole(*self.retry)):
             wrong.append(f"retry = {shown(self.retry)}: must be a tuple of values of status")
-        name, laws = self.definition.name, ", ".join(self.definition.laws)
-        if ", ".join(law_versions(self.definition.grid)) != laws:  # the digest of the study is of the law as it was
-            wrong.append(f"{name}: {laws} was registered anew after the study was loaded: load it again")
         if wrong:
             raise StudyError(wrong)
         screen_of(self.progress)

@@ -13,7 +13,7 @@ from ..again import Again, of_all_cases
 from ..arrays.labelled import Labelled
 from ..data.dataset import validity_of_rows
 from ..inputs.identity import STRENGTHS
-from ..inputs.laws import results_of
+from ..inputs.punch.laws import results_of
 from ..rules.rule import RULES, broken, of_cases, validity_attributes
 from ..work.cases import arrays_of
 
@@ -28,9 +28,9 @@ def validity_at(again: Again, crossing: Crossing) -> np.ndarray:
     # without strengths, whose masks say that something yields: at these loads it does
     numbers = {name: value for name, value in problem.parameters.items() if name not in STRENGTHS}
     radii = again.scene.radii() if again.scene else {}
-    results = results_of(problem.micro, felt=bool(problem.feels_layer().any()))
+    results = results_of(problem.known.laws, problem.micro, felt=bool(problem.feels_layer().any()))
     numbers |= {name: of_all_cases(value.to_xarray(), again.dims, again.shape)[rows] for name, value in radii.items()}
-    flags[rows] = validity_of_rows(numbers | arrays_of(solution, results, ())).values
+    flags[rows] = validity_of_rows(numbers | arrays_of(solution, results, ()), problem.known).values
     return flags
 
 

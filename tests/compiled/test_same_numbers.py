@@ -36,7 +36,7 @@ def controlled(control: str, seed: int) -> tuple:
     if control == "P":
         return problem, solution
     solved = np.flatnonzero(solution.status == Status.CONVERGED)
-    problem = Problem(control, getattr(solution, control), problem.parameters).take(solved)
+    problem = Problem(control, getattr(solution, control), problem.parameters, problem.known).take(solved)
     return problem, by("numpy", problem)
 
 

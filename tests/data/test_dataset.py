@@ -132,8 +132,8 @@ def test_an_interrupted_write_is_finished_first(reread, monkeypatch, tmp_path):
 
 
 def test_vocabulary_names_every_parameter_of_the_solver():
+    from solver.known import PARAMETERS as OF_THE_SOLVER
     from solver.parameters import CONTROL
-    from solver.parameters import PARAMETERS as OF_THE_SOLVER
 
     assert set(CONTROL) | (set(OF_THE_SOLVER) - {"R", "E2"}) == set(PARAMETERS)
 

@@ -9,6 +9,7 @@ from solver.yields.below.central_spot import SPOT_EXTREMES
 from solver.yields.extremes import EXTREMES
 from study.data import derived
 from study.data.units import factor
+from study.inputs.lexicon import PACKAGE
 from study.inputs.vocabulary import PARAMETERS, VOCABULARY
 
 SCALE = {"R": 5e-3, "E2_star": 2e11}
@@ -109,7 +110,7 @@ def test_axes_are_converted_and_stay_selectable():
 
 
 def test_there_and_back():
-    parameters = {name: 0.25 for name in PARAMETERS if not VOCABULARY[name].parameter.choices}
+    parameters = {name: 0.25 for name in PARAMETERS if not PACKAGE.parameter(name).choices}
     physical = {name: value * factor(name, **SCALE) for name, value in parameters.items()}
     assert study.from_physical(**SCALE, **physical) == pytest.approx(parameters, rel=1e-14)  # a few roundings
 

@@ -3,6 +3,7 @@
 import csv
 import re
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,9 @@ from study.__main__ import main
 from study.data import derived
 from study.figures.registry import FIGURES, TABLES
 from study.inputs import vocabulary
+from study.inputs.lexicon import PACKAGE
+
+pytestmark = pytest.mark.usefixtures("forgetful")
 
 SECTIONS = dict(part.split("\n", 1) for part in pages.read("docs/extending.md").split("\n## ")[1:])
 
@@ -81,9 +85,18 @@ def test_a_table_is_one_function(results, tmp_path):
     assert r"contact & $(dP/dD)/(E_2^* R)$ \\" in latex
 
 
-def test_an_output_quantity_is_one_row_and_its_formula(results, monkeypatch):
+@pytest.fixture
+def row() -> Iterator[vocabulary.Entry]:
+    """The row of the page, as if it stood in the file."""
     (row,) = vocabulary.entries(tomllib.loads(ROW)).values()
-    monkeypatch.setitem(vocabulary.VOCABULARY, row.name, row)
+    for table in (vocabulary.VOCABULARY, PACKAGE.rows):
+        dict.__setitem__(table, row.name, row)
+    yield row
+    for table in (vocabulary.VOCABULARY, PACKAGE.rows):
+        dict.__delitem__(table, row.name)
+
+
+def test_an_output_quantity_is_one_row_and_its_formula(results, row, monkeypatch):
     monkeypatch.setitem(derived.QUANTITIES, row.name, None)  # and not there any more after the test
     found = vars(derived) | {}
     exec(FORMULA, found)

@@ -1,7 +1,6 @@
 """A fixed sample of random shapes and of what sticks, and that wrong numbers are seen."""
 
 from collections import Counter
-from pathlib import Path
 
 import fuzz_shapes
 import numpy as np
@@ -56,7 +55,6 @@ def test_wrong_stresses_are_seen():
     assert fuzz_shapes.stressed(s, problem).tolist() == [False, True]
 
 
-def test_a_table_is_convex_and_its_file_is_gone():
+def test_a_table_is_convex():
     word = fuzz_shapes.table(np.random.default_rng(0), 0, 0)
-    assert not Path(word.removeprefix("table:")).exists()
     assert solve(Problem.of(shape=word, P=1e-4, base="half_space", micro="smooth")).status == Status.CONVERGED

@@ -6,8 +6,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import study
 from solver import Problem, Status, solve
-from solver.parameters import PARAMETERS
+from solver.known import PARAMETERS
 from study.inputs.identity import case_keys
+from study.inputs.lexicon import PACKAGE
 from study.inputs.reading import from_tables
 from study.inputs.vocabulary import VOCABULARY
 
@@ -71,7 +72,7 @@ def test_an_unknown_parameter_is_named():
 def test_the_table():
     """Of defaults: no other parameter has one, in the solver or in a study."""
     assert {name: own.default for name, own in PARAMETERS.items() if own.default is not None} == DEFAULTS
-    of_studies = {name: VOCABULARY[name].parameter.default for name in PARAMETERS if name in VOCABULARY}
+    of_studies = {name: PACKAGE.parameter(name).default for name in PARAMETERS if name in VOCABULARY}
     assert {name: value for name, value in of_studies.items() if value is not None} == {
         name: value for name, value in DEFAULTS.items() if name not in ("R", "E2")
     }

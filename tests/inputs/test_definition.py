@@ -7,7 +7,8 @@ import study
 from study.inputs import identity
 from study.inputs import reading as study_file
 from study.inputs.definition import MOST_VALUES
-from study.inputs.vocabulary import PARAMETERS, VOCABULARY
+from study.inputs.lexicon import PACKAGE
+from study.inputs.vocabulary import PARAMETERS
 
 GOOD = """
 title = "Prüfung"
@@ -165,6 +166,6 @@ def test_defaults_of_the_vocabulary_are_allowed_values():
     from study.inputs.vocabulary import check
 
     for name in PARAMETERS:
-        entry = VOCABULARY[name]
-        assert entry.parameter.default is None or not check(entry.parameter, entry.parameter.default)
-        assert entry.parameter.interval or entry.parameter.choices
+        row = PACKAGE.parameter(name)
+        assert row.default is None or not check(row, row.default)
+        assert row.interval or row.choices

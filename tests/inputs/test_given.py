@@ -13,8 +13,8 @@ from solver.parameters import Parameter
 from study import StudyError
 from study.inputs.definition import Definition
 from study.inputs.grid import as_array
+from study.inputs.lexicon import PACKAGE
 from study.inputs.reading import from_tables
-from study.inputs.vocabulary import VOCABULARY
 
 SMOOTH = {"micro": "smooth", "base": "half_space"}
 
@@ -124,7 +124,7 @@ def test_a_value_between_a_single_one_and_the_interval_is_refused():
 
 def test_decimal_numbers():
     """As databases give them."""
-    errors, own = [], VOCABULARY["P"].parameter
+    errors, own = [], PACKAGE.parameter("P")
     assert as_array(own, [Decimal("1e-5"), 2e-5], "P", errors).tolist() == [1e-5, 2e-5] and not errors
     as_array(own, [Decimal("sNaN")], "P", errors)
     assert errors == ["P = sNaN: must be a finite number, in [1e-24, 1e3]"]
@@ -132,8 +132,8 @@ def test_decimal_numbers():
 
 def test_nothing_is_a_value_only_where_gaps_are_allowed():
     errors = []
-    assert np.isnan(as_array(VOCABULARY["h"].parameter, [None, 1.0], "h", errors, gaps=True)).tolist() == [True, False]
-    as_array(VOCABULARY["h"].parameter, [None, 1.0], "h", errors)
+    assert np.isnan(as_array(PACKAGE.parameter("h"), [None, 1.0], "h", errors, gaps=True)).tolist() == [True, False]
+    as_array(PACKAGE.parameter("h"), [None, 1.0], "h", errors)
     assert errors == ["h[0] = None: must be a finite number, in [1e-12, 1e6]"]
 
 

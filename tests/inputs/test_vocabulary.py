@@ -5,6 +5,7 @@ import pytest
 from xarray.plot.utils import label_from_attrs
 
 import study
+from study.inputs.lexicon import PACKAGE
 from study.inputs.vocabulary import PARAMETERS, VOCABULARY, attributes, check, names
 
 # The largest stresses, each with its place.
@@ -224,7 +225,7 @@ def test_every_parameter_has_limits_or_choices():
 
 @pytest.mark.parametrize("name", LIMITS)
 def test_limits(name):
-    own, (low, below, *ends) = VOCABULARY[name].parameter, LIMITS[name]
+    own, (low, below, *ends) = PACKAGE.parameter(name), LIMITS[name]
     high, above = ends or (1e300, INF)
     assert [check(own, value) for value in (low, high)] == ["", ""]
     assert all(check(own, value) for value in (below, above, float("nan"), True, "1", None))
@@ -232,7 +233,7 @@ def test_limits(name):
 
 @pytest.mark.parametrize("name", CHOICES)
 def test_choices(name):
-    own = VOCABULARY[name].parameter
+    own = PACKAGE.parameter(name)
     assert {word for word in own.choices if not word.startswith("table:")} == CHOICES[name]
     assert all(check(own, value) == "" for value in CHOICES[name])
     assert all(check(own, value) for value in ("glued", "", 1, None))
@@ -240,5 +241,5 @@ def test_choices(name):
 
 def test_zero_leaves_nodes_and_iterations_to_the_solver():
     for name in ("nodes", "max_iterations"):
-        assert check(VOCABULARY[name].parameter, 0) == "" and check(VOCABULARY[name].parameter, 16.0) == ""
-        assert check(VOCABULARY[name].parameter, 16.5) == "must be a whole number"
+        assert check(PACKAGE.parameter(name), 0) == "" and check(PACKAGE.parameter(name), 16.0) == ""
+        assert check(PACKAGE.parameter(name), 16.5) == "must be a whole number"

@@ -13,8 +13,11 @@ from children import joined, started
 
 import study
 from solver import laws
+from solver.known import register
 from study.__main__ import main
 from study.figures import registry
+
+pytestmark = pytest.mark.usefixtures("forgetful")
 
 LAW = '[model]\nbase = "half_space"\nNbar = 250000\nmicro = "leaving"\n[axes]\nP = [1e-6, 2e-6]\n'
 POINT = ["point", "P=1e-6", "base=half_space", "micro=leaving"]
@@ -76,7 +79,7 @@ def leaves_later(y, q):
 
 
 def test_a_function_that_calls_exit_later_fails_its_block_and_not_the_program(tmp_path, monkeypatch, capsys):
-    laws.register(law(area=leaves_later))
+    register(law(area=leaves_later))
     monkeypatch.chdir(tmp_path)
     Path("s.toml").write_text(LAW.replace("Nbar", "alpha = 1.3\nNbar"))
     assert main(["run", "s.toml"]) == 1

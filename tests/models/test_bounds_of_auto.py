@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from solver import Model, Problem, laws, solve
+from solver.known import register
 from solver.models.auto import bounds
+
+pytestmark = pytest.mark.usefixtures("forgetful")
 
 ERROR = 0.03
 GIVEN = {"Nbar": 250_000.0, "Ra": 0.004, "n": 0.9, "asperities_on": "half_space"}
@@ -17,7 +20,7 @@ def micro() -> dict[float, str]:
     """Error -> the name of a law of discs that states it."""
     disc, found = laws.LAWS["disc_cell"], {0.0: "exact_discs", ERROR: "rough_discs"}
     for error, name in found.items():
-        laws.register(replace(disc, name=name, version="1", error=error, on_body=None))
+        register(replace(disc, name=name, version="1", error=error, on_body=None))
     return found
 
 

@@ -26,7 +26,7 @@ OURS = {"roughcoat", "solver", "study", "studies"}
 ROOMS = {
     "solver": (
         *("closed_forms", "numerics", "status", "bases", "parameters", "layers", "shapes", "kernels"),
-        *("laws", "body", "problem", "solution", "rough", "compiled", "scaling"),
+        *("laws", "known", "body", "problem", "solution", "rough", "compiled", "scaling"),
         *("schemes", "smooth", "ways", "models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (
@@ -65,8 +65,13 @@ def of_each(paths: list[Path]) -> Callable:
 @cache
 def imported(path: Path) -> set[str]:
     """Absolute dotted names that a file imports anywhere, relative ones resolved against its package."""
+    return names_in(ast.parse(path.read_text(encoding="utf-8")), path)
+
+
+def names_in(tree: ast.AST, path: Path) -> set[str]:
+    """The same of the tree of a file, or of a part of it."""
     found = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -175,6 +180,34 @@ def test_no_cycles(package):
     graphlib.TopologicalSorter(graph).prepare()  # raises CycleError
 
 
+def test_no_cycles_through_roughcoat():
+    """Imports inside functions count, and so does the package of a module that is imported from outside of it. What a
+    type checker alone reads does not."""
+    graph = {}
+    for package in ("roughcoat", "solver", "study", "studies"):
+        for path in (ROOT / package).rglob("*.py"):
+            files = {file for full in imported(path) - of_checkers(path) if (file := file_of(full))}
+            parents = {parent / "__init__.py" for file in files for parent in file.parents if ROOT in parent.parents}
+            files |= {parent for parent in parents if parent.exists() and parent.parent not in path.parents}
+            graph[path] = files - {path}
+    graphlib.TopologicalSorter(graph).prepare()  # raises CycleError
+
+
+def of_checkers(path: Path) -> set[str]:
+    """What the file imports for type checkers alone."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    blocks = [node for node in tree.body if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"]
+    tree.body = [node for node in tree.body if node not in blocks]
+    return imported(path) - names_in(tree, path)
+
+
+def file_of(module: str) -> Path | None:
+    """The file of a module of ours."""
+    path = ROOT / module.replace(".", "/")
+    files = (path.with_suffix(".py"), path / "__init__.py")
+    return next((file for file in files if file.exists()), None)
+
+
 @pytest.mark.parametrize("package", ["solver", "study"])
 def test_rooms_are_named(package):
     """A new room is named in ROOMS."""
@@ -209,8 +242,8 @@ def test_only_blocks_and_dataset_and_tables_know_the_solver():
     """The seam between solver and study stays narrow: the vocabulary knows the table of parameters alone."""
     users = {path.stem: {full for full in imported(path) if full.split(".")[0] == "solver"} for path in STUDY}
     assert users["vocabulary"] == {"solver.parameters"}
-    own = {"solver.parameters", "solver.laws", "solver.laws.own_table", "solver.laws.fit"}
-    assert users["laws"] == own, "those that others have registered, tables in files, fits"
+    own = {"solver.parameters", "solver.laws", "solver.laws.fit"}
+    assert users["laws"] == own, "those of the words of a study, and fits"
     assert not any(users[name] for name in ("grid", "request", "draft", "run", "api", "units", "progress"))
 
 
@@ -241,6 +274,13 @@ def test_rooms_are_there_after_import_of_the_package_alone():
     )
 
 
+def test_roughcoat_imports_study_when_a_name_is_asked_for():
+    alone(
+        "import roughcoat; assert not {'study', 'solver', 'numpy'} & set(sys.modules);"
+        "assert roughcoat.solve is sys.modules['study'].solve"
+    )
+
+
 def test_public_names():
     import study
 
@@ -267,7 +307,7 @@ def test_roughcoat_gives_what_study_gives():
 def test_solve_names_every_parameter_with_its_default_and_its_choices():
     """The signature is what editors show; the docstring has a line for each name, the vocabulary the truth."""
     import study
-    from solver.parameters import PARAMETERS as OWN
+    from solver.known import PARAMETERS as OWN
     from study.inputs.vocabulary import BODIES, PARAMETERS, SCENE
 
     known = inspect.signature(study.solve).parameters

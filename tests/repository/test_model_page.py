@@ -11,6 +11,7 @@ from solver import Model, Problem, Status, solve
 from solver.kernels.closed_form import layered_kernel
 from study.data import derived
 from study.data.dataset import status_words
+from study.inputs.lexicon import PACKAGE
 from study.inputs.vocabulary import VOCABULARY
 
 CONTENTS = "docs/model.md"
@@ -136,12 +137,12 @@ def test_the_masks_and_thresholds_are_those_of_the_code():
 
 
 def test_defaults_of_the_table_are_those_of_the_solver():
-    default = {name: entry.parameter.default for name, entry in VOCABULARY.items()}
+    default = {name: PACKAGE.parameter(name).default for name in VOCABULARY}
     assert [default[name] for name in ("nu1", "nu2", "rtol", "accuracy")] == [0.3, 0.3, 1e-6, 0.01]
     for name in ("bonding", "base", "micro", "scheme", "model_check"):
         described = next(row[2] for row in rows("symbol") if f"`{name}`" in row[1])
         assert f"`{default[name]}` (default)" in described
-        assert set(VOCABULARY[name].parameter.choices) <= set(re.findall(r"`(\w+)`", described))
+        assert set(PACKAGE.parameter(name).choices) <= set(re.findall(r"`(\w+)`", described))
 
 
 @pytest.mark.parametrize("n", [0.1, 0.5, 3.0])

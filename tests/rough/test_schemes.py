@@ -8,21 +8,19 @@ from numpy.testing import assert_allclose
 from solver_cases import MAIN
 
 from solver import Problem, Status, schemes, solve
-from solver.parameters import PARAMETERS
 
 SECTION = pages.read("docs/extending.md").split("\n## A scheme\n")[1].split("\n## ")[0]
 (CODE,) = re.findall(r"^```python\n(.*?)^```", SECTION, re.DOTALL | re.MULTILINE)
 
 
 @pytest.fixture(autouse=True)
-def one_mesh():
+def one_mesh(forgetful):
     """The scheme of the page, for one test."""
-    before, choices = dict(schemes.SCHEMES), PARAMETERS["scheme"]
+    before = dict(schemes.SCHEMES)
     exec(CODE, {})
     yield
     schemes.SCHEMES.clear()
     schemes.SCHEMES.update(before)
-    PARAMETERS["scheme"] = choices
 
 
 @pytest.mark.parametrize("base", ["half_space", "thin_layer", "layered"])

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from solver import Model, Problem, Status, register, solve
+from solver.known import PARAMETERS
 from solver.laws import disc_cell
 from solver.laws.law import Law
-from solver.parameters import PARAMETERS, uses
 from solver.sensitivity import QUANTITIES, sensitivities
 
 #: Below this no reference is right: the solver's rounding over its step, 1e-11/1e-3, and the step to the fourth power.
@@ -46,14 +46,14 @@ def moved(problem, name, step):
     own = problem.value if name == problem.control else getattr(problem, name)
     new = own + step * (1 if name in ("nu1", "nu2") else own)
     if name == problem.control:
-        return Problem(problem.control, new, problem.parameters)
+        return Problem(problem.control, new, problem.parameters, problem.known)
     return problem.but(**{name: new})
 
 
 def joined(problems):
     """One problem of the cases of several of the same control."""
     every = {name: np.concatenate([p.parameters[name] for p in problems]) for name in problems[0].parameters}
-    return Problem(problems[0].control, np.concatenate([p.value for p in problems]), every)
+    return Problem(problems[0].control, np.concatenate([p.value for p in problems]), every, problems[0].known)
 
 
 def differences(problem, names, quantity, x=()):
@@ -71,7 +71,8 @@ def acting(problem):
     """The inputs on which the answer of some case depends."""
     names = [name for name, own in PARAMETERS.items() if own.interval and not own.whole]
     names = [name for name in names if name not in ("k", "rtol", "accuracy", "R", "E2")]  # R = E2 = 1 are units
-    return [problem.control, *(name for name in names if np.any(uses(name, lambda key: getattr(problem, key))))]
+    used = [name for name in names if np.any(problem.known.uses(name, lambda key: getattr(problem, key)))]
+    return [problem.control, *used]
 
 
 def errors(problem, inputs=None):

@@ -9,20 +9,15 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 from solver import Problem, Status, solve
-from solver.parameters import PARAMETERS
-from solver.shapes import SHAPES, register, shape_of
+from solver.known import register
+from solver.shapes import shape_of
 
 CASE = {"shape": "steep_ball", "steepness": 2.0}
 
 
 @pytest.fixture(autouse=True)
-def known(monkeypatch):
+def known(forgetful):
     """The shape is known within a test, and forgotten after it."""
-    monkeypatch.setitem(PARAMETERS, "shape", PARAMETERS["shape"])
-    monkeypatch.setitem(
-        PARAMETERS, "steepness", steep_ball.KIND.parameters["steepness"]._replace(needed_by=("shape", ()))
-    )
-    monkeypatch.setitem(SHAPES, "steep_ball", steep_ball.KIND)
     register(steep_ball.KIND)
 
 

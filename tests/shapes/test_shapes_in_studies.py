@@ -9,8 +9,6 @@ import xarray as xr
 from numpy.testing import assert_allclose
 
 import study
-from solver import shapes
-from solver.parameters import PARAMETERS
 from study.inputs.identity import case_keys
 from study.inputs.reading import from_call
 from study.rules.punch import SLOPE
@@ -28,8 +26,8 @@ def quiet():
 
 @pytest.fixture
 def tip(tmp_path):
-    """Write a table of a tip; gives its word. It is forgotten at the end."""
-    words, rows = [], dict(PARAMETERS)
+    """Write a table of a tip; gives its word."""
+    words = []
 
     def write(text):
         path = tmp_path / f"tip{len(words)}.csv"
@@ -37,12 +35,7 @@ def tip(tmp_path):
         words.append(f"table:{path}")
         return words[-1]
 
-    yield write
-    for word in words:
-        shapes.SHAPES.pop(word, None)
-        shapes.table.TABLES.pop(word, None)
-    PARAMETERS.clear()
-    PARAMETERS.update(rows)
+    return write
 
 
 def test_words_of_a_shape_are_read_as_people_write_them():
@@ -142,6 +135,19 @@ def test_a_table_is_read_anew_and_its_numbers_are_in_the_key(tip):
     assert (keys(first) != keys(same)).any()
     with pytest.raises(study.StudyError, match="shape: table:.*is not convex beyond the row with r = 1"):
         keys(tip("0,0\n1,1\n2,1.5\n"))
+
+
+def test_results_of_a_study_have_the_table_of_its_file(tip, tmp_path):
+    """Opened by the study; a file alone says nothing of what is in the table."""
+    word = tip("0,0\n1,1\n2,3\n")
+    text = f'[model]\nP = 1e-4\nshape = "{word}"\nbase = "half_space"\nmicro = "smooth"\n'
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    mine = study.load(tmp_path / "mine.toml", tmp_path / "results")
+    mine.run()
+    Path(word.removeprefix("table:")).unlink()
+    assert study.sensitivities(mine.open()).a_sensitivity.notnull().all()
+    with pytest.raises(study.StudyError, match="no shape of this name is registered here"):
+        study.sensitivities(study.open_results(tmp_path / "results/mine.nc"))
 
 
 def test_results_do_not_choose_which_files_are_opened(tip):

@@ -9,7 +9,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 import study
-from solver.numerics.profiles import TABLES
 from study.__main__ import main
 from study.inputs.identity import case_keys
 from study.inputs.reading import from_call, from_tables
@@ -98,7 +97,6 @@ def test_a_table_in_a_call(tmp_path):
     layer, keys = {"profile": f"table:{path}", "h": 0.05, "bonding": "bonded"}, []
     for last in (2, 3):
         path.write_text(f"0,1\n1,{last}\n")
-        TABLES.clear()
         definition = from_call({"a": 0.05, "micro": "smooth", "layers": [layer]}, [], False, tables)
         keys.append((case_keys(definition.grid).tolist(), definition.digest))
     assert keys[0][0] != keys[1][0] and keys[0][1] != keys[1][1]

@@ -13,16 +13,17 @@ from numpy.testing import assert_array_equal
 from punched import PUNCH
 
 import solver
-from solver.parameters import CONTROL, EVERY, Parameter
+from solver.parameters import CONTROL, EVERY, NamedRows, Parameter
 from study.inputs import identity
 from study.inputs.definition import Definition
 from study.inputs.grid import Grid
 from study.inputs.identity import case_keys, digest_of
+from study.inputs.lexicon import PACKAGE, Lexicon
 from study.inputs.reading import from_tables
-from study.inputs.vocabulary import NUMERICS, PARAMETERS, VOCABULARY, Entry
+from study.inputs.vocabulary import NUMERICS, PARAMETERS, VOCABULARY, Entry, Names
 from study.work.cases import compute, parcel
 
-OF_ALL = CONTROL | solver.parameters.PARAMETERS
+OF_ALL = CONTROL | solver.known.PARAMETERS
 COMPARED = ("hardness", "yield_strength", "Y1", "Y2", "Y_punch")  # with the answer, which does not depend on them
 
 TWO = {  # allowed values of every parameter
@@ -122,15 +123,23 @@ def test_every_parameter_is_used_by_all_or_tested():
     assert always | {*UNUSED, *PUNCH, "table_unit"} >= set(PARAMETERS)
 
 
-def test_a_parameter_of_tomorrow_changes_nothing_until_it_is_given(monkeypatch):
+def of_tomorrow() -> Lexicon:
+    """A lexicon with one parameter more."""
+    known = replace(PACKAGE.known)
+    known.__dict__["parameters"] = NamedRows({**known.parameters, "tilt": Parameter(0.0, interval="[0, 1]")})
+    lexicon = Lexicon(known)
+    lexicon.__dict__["rows"] = NamedRows({**VOCABULARY, "tilt": Entry("tilt", "material", "tilt of the punch")})
+    lexicon.__dict__["parameters"] = Names((*PARAMETERS, "tilt"))
+    return lexicon
+
+
+def test_a_parameter_of_tomorrow_changes_nothing_until_it_is_given():
     """A tilt of the punch, say, 0 by default. Results and blocks of today stay those of their cases."""
     today = defined()
-    monkeypatch.setitem(solver.parameters.PARAMETERS, "tilt", Parameter(0.0, interval="[0, 1]"))
-    monkeypatch.setitem(VOCABULARY, "tilt", Entry("tilt", "material", "tilt of the punch"))
-    monkeypatch.setattr(identity, "PARAMETERS", (*PARAMETERS, "tilt"))
+    grid = replace(today.grid, lexicon=of_tomorrow())
     for tilt, same in ((None, True), (0.0, True), (0.5, False)):
         values = today.grid.values | ({} if tilt is None else {"tilt": ((), np.array(tilt))})
-        tilted = replace(today, grid=replace(today.grid, values=values))
+        tilted = replace(today, grid=replace(grid, values=values))
         assert (case_keys(tilted.grid) == case_keys(today.grid)).all() == same
         assert (digest_of(tilted) == today.digest) == same
 

@@ -51,7 +51,7 @@ def main(size: int = 20_000, seed: int = 5) -> None:
 
         def at(rtol: float, path: str, problem: Problem = problem) -> Solution:
             parameters = problem.parameters | {"rtol": np.full(len(problem), rtol)}
-            return by(path, Problem(problem.control, problem.value, parameters), (0.0, 1.0))
+            return by(path, Problem(problem.control, problem.value, parameters, problem.known), (0.0, 1.0))
 
         truth = at(FINE, "numpy")
         for (name, rtol), parts in rows.items():

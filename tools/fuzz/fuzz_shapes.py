@@ -23,13 +23,16 @@ from solver import Problem, Solution, Status, solve
 from solver.fields.contact import have_fields
 from solver.fields.contact import of_contacts as fields_of
 from solver.fields.invariants import mises
-from solver.parameters import ADHESIONS, BRANCHES, CONTROL, PARAMETERS, ends
-from solver.shapes import SHAPES, named
+from solver.known import PARAMETERS
+from solver.parameters import ADHESIONS, BRANCHES, CONTROL, ends
+from solver.shapes import SHAPES
 from solver.yields.contact import of_contacts as extremes_of
 
 X = np.array([0.0, 0.3, 0.7, 0.95, 1.0])
 #: A table of random rows, whose word is known once it is drawn.
 TABLE = "table:"
+#: Where random tables are written; it goes with the program.
+FOLDER = tempfile.TemporaryDirectory()
 NAMES = (*(name for name in SHAPES if not name.startswith(TABLE)), TABLE)
 WAYS = ("smooth", *ADHESIONS, "rough")
 BASES = ("half_space", "layered", "stack")
@@ -59,19 +62,16 @@ def drawn(random, name, size, usual):
 
 
 def table(random, seed, number):
-    """The word of a table of random rows, some of them straight or with jumps of f'', in a file that is gone by now."""
+    """The word of a table of random rows, some of them straight or with jumps of f''."""
     count = int(random.integers(3, 40))
     r = np.cumsum(np.exp(random.uniform(-3, 1, count))) * np.exp(random.uniform(-8, 1))
     slopes = np.cumsum(random.choice([0.0, 0.0, 1.0, 3.0], count) * random.random(count) + 1e-6) * random.uniform(
         0.01, 2
     )
     r, f = np.append(0.0, r), np.append(0.0, np.cumsum(slopes * np.diff(r, prepend=0.0)))
-    with tempfile.NamedTemporaryFile("w", suffix=".csv", delete=False) as file:
-        np.savetxt(file, np.stack([r, f], axis=1), delimiter=",", fmt="%.17g")
-    word = f"{TABLE}{file.name}"
-    named(word)
-    Path(file.name).unlink()
-    return word
+    file = Path(FOLDER.name, f"{seed}_{number}.csv")
+    np.savetxt(file, np.stack([r, f], axis=1), delimiter=",", fmt="%.17g")
+    return f"{TABLE}{file}"
 
 
 def stressed(s: Solution, problem: Problem) -> np.ndarray:

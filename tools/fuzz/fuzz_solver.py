@@ -18,7 +18,8 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from solver import Problem, Solution, Status, laws, solve
-from solver.parameters import BONDINGS, CONTROL, MODEL_CHECKS, PARAMETERS, ends
+from solver.known import PARAMETERS
+from solver.parameters import BONDINGS, CONTROL, MODEL_CHECKS, ends
 
 #: Under a plate nearly all of the load may lie in a narrow ring at the edge.
 X = np.unique([*np.linspace(0.0, 1.0, 9), *(1 - 2.0 ** -np.arange(4, 20))])
@@ -76,7 +77,7 @@ def table(random, kind, file):
     while True:
         file.write_text({"rows": rows, "histogram": histogram}[kind](random), encoding="utf-8")
         try:
-            return laws.named(f"{laws.own_table.PREFIX}{file}")
+            return laws.own_table.read(f"{laws.own_table.PREFIX}{file}").name
         except ValueError:
             pass
 

@@ -7,7 +7,6 @@ import numpy as np
 from ...body import BODIES
 from ...fields.below_spots import EXACT, below_spot, below_summit
 from ...kernels.two_layers import TwoLayers, layer_modulus
-from ...laws import LAWS
 from ...laws.cell.members import Member, members
 from ...laws.cell.spot import spots
 from ...models.spot_pressure import largest_radius
@@ -58,7 +57,7 @@ def felt_cells(scaled, a, lam, p0):
         if not len(rows):
             continue
         part = scaled.take(rows)
-        different, which = members(LAWS[micro].cell, pitch[rows] / part.h, layers.take(rows), part.m)
+        different, which = members(part.known.laws[micro].cell, pitch[rows] / part.h, layers.take(rows), part.m)
         body = BODIES["layered"](part)
         largest = largest_radius(part.but(base="layered"), body, lam[rows, 0], p0[rows])
         for i, member, b in zip(rows, (different[j] for j in which), largest, strict=True):

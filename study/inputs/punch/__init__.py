@@ -1,1 +1,1 @@
-"""What a call or a study file says of the punch: its shape, and how it sticks."""
+"""What a call or a study file says of the punch: its shape, its asperities, and how it sticks."""

@@ -12,7 +12,7 @@ from solver.shapes import table
 from ...specimen.quantities import has_unit, quantity
 from ...terminal import shown
 from ..grid import Grid, along
-from ..vocabulary import VOCABULARY, Entry, add_rows, cases_with, of_package
+from ..lexicon import Lexicon
 
 #: Inputs besides the shape that are words, of which capitals, blanks and hyphens do not matter.
 WORDS = ("tip", "adhesion", "branch")
@@ -25,32 +25,6 @@ WITH_A_FLAT = ("frustum", "rounded_flat")
 LENGTHS = ("flat_radius", "tip_radius", "h")
 #: That unit where no such input is given.
 MICROMETRE = "1 um"
-
-
-def rows() -> dict[str, Entry]:
-    """Rows of the vocabulary for the parameters of shapes that are registered, those of tables too."""
-    entries = {}
-    for kind in shapes.SHAPES.values():
-        for name, row in ((name, row) for name, row in kind.parameters.items() if not of_package(name)):
-            words = row.long_name or f"parameter of the shape {kind.name}"
-            entries.setdefault(name, Entry(name, "shape", words, row.symbol or name, row.powers))
-    return entries
-
-
-def words_of(values: list) -> list:
-    """The values of `shape` in the solver's spelling: "cube_corner" of "Cube corner". Tables that are named are read.
-
-    Raises ValueError for a table that cannot be used.
-    """
-    words = as_written(values)
-    for word in {word for word in words if isinstance(word, str) and word.startswith(table.PREFIX)}:
-        try:
-            table.read(word, again=True)  # the file may have changed
-            shapes.named(word)
-        except ValueError as error:
-            raise ValueError(str(error).removeprefix("shape ")) from None
-        add_rows(rows())
-    return words
 
 
 def as_written(values: list) -> list:
@@ -91,9 +65,13 @@ def _degrees(name: str, value: Any) -> Any:
     return angle if angle.spread else angle.value
 
 
-def left_out(name: str, sections: Any) -> bool:
+def left_out(name: str, sections: Any, lexicon: Lexicon) -> bool:
     """Whether a parameter of shapes stays out of a grid: no shape is given; `sections` has the names that are."""
-    return name in VOCABULARY and VOCABULARY[name].role == "shape" and "shape" not in sections
+    return "shape" not in sections and _of_shapes(name, lexicon)
+
+
+def _of_shapes(name: str, lexicon: Lexicon) -> bool:
+    return name in lexicon.rows and lexicon.rows[name].role == "shape"
 
 
 def radius_needed(words: Any) -> bool:
@@ -101,9 +79,10 @@ def radius_needed(words: Any) -> bool:
     return bool(np.isin(words, shapes.ROUND).any())
 
 
-def in_metres(words: Any) -> Any:
+def in_metres(words: Any, lexicon: Lexicon) -> Any:
     """Whether a shape is a table with units of length in its header, of the form of `words`: a text or an array."""
-    there = [word for word, rows in list(table.TABLES.items()) if rows.metres]
+    tables = {word: table.rows_of(kind) for word, kind in lexicon.known.shapes.items()}
+    there = [word for word, rows in tables.items() if rows and rows.metres]
     return words.isin(there) if hasattr(words, "isin") else np.isin(words, there) if np.ndim(words) else words in there
 
 
@@ -115,7 +94,7 @@ def mistakes(grid: Grid, sections: Any, physical: bool) -> list[str]:
     words = values("shape")
     if ((words != shapes.PARABOLOID) & on_springs(values("base"))).any():
         messages.append('base = "thin_layer" is for shape = "paraboloid": take "layered", or "auto"')
-    if np.any(in_metres(words)) and not physical:
+    if np.any(in_metres(words, grid.lexicon)) and not physical:
         example = 'R = "1 um", E2 = "1 MPa"'
         messages.append(f"shape: the table has units in its header: give the other inputs with units too ({example})")
     return messages + (_of_the_radius(grid, words, values("a")) if "a" in grid.values else [])
@@ -144,9 +123,9 @@ def _without_use(grid: Grid, sections: Any) -> list[str]:
     """Messages for numbers of shapes that are given though no case has a shape with them."""
     messages = []
     for name in sections:
-        if name in VOCABULARY and VOCABULARY[name].role == "shape" and name != "shape":
-            owners = VOCABULARY[name].parameter.needed_by[1]
+        if name != "shape" and _of_shapes(name, grid.lexicon):
+            owners = grid.lexicon.parameter(name).needed_by[1]
             users = " or ".join(shown(word) for word in owners)
-            if "shape" not in grid.values or not np.any(cases_with(name, partial(along, grid))):
+            if "shape" not in grid.values or not np.any(grid.lexicon.cases_with(name, partial(along, grid))):
                 messages.append(f"{name} is given, and no case has a shape with it: shape = {users}")
     return messages

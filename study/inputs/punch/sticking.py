@@ -11,8 +11,8 @@ from solver.parameters import Parameter, one_of
 from ...specimen.quantities import readable
 from ...terminal import shown
 from ..grid import Grid, along
-from ..laws import smooth_laws
-from ..vocabulary import VOCABULARY, finite, names
+from ..lexicon import Lexicon
+from ..vocabulary import finite, names
 
 OF_ADHESION = names("adhesion")
 #: Bounds of load and depth under adhesion.
@@ -22,9 +22,9 @@ _PULLED = "[-1000, 1000]"
 _NEGLIGIBLE = 0.01
 
 
-def row_of(name: str, sections: Any) -> Parameter:
+def row_of(name: str, sections: Any, lexicon: Lexicon) -> Parameter:
     """The row of a parameter in a call that gives `sections`: under adhesion load and depth may be 0 and negative."""
-    row = VOCABULARY[name].parameter
+    row = lexicon.parameter(name)
     return row._replace(interval=_PULLED) if name in ("P", "D") and "w_adhesion" in sections else row
 
 
@@ -80,7 +80,7 @@ def rough_and_sticking(grid: Grid, unit: Any) -> list[str]:
 
     unit : of pressures, in Pa, a number; None without units
     """
-    rough = ~one_of(along(grid, "micro"), smooth_laws())
+    rough = ~one_of(along(grid, "micro"), grid.lexicon.smooth_laws())
     if not (adhesive(grid) & rough).any():
         return []
     message = (

@@ -6,17 +6,16 @@ from solver.bases import is_stack
 from solver.shapes import PARABOLOID
 
 from ..grid import Grid, along
-from ..laws import smooth_laws
 
 #: Inputs that decide whether there are stresses.
-DECIDE = ("base", "micro", "shape", "w_adhesion", "adhesion")
+DECIDE = ("base", "shape", "w_adhesion", "adhesion")
 
 
-def without_stresses(base, micro, shape=PARABOLOID, w_adhesion=0.0, adhesion="jkr", *, largest=False) -> str:
+def without_stresses(base, rough, shape=PARABOLOID, w_adhesion=0.0, adhesion="jkr", *, largest=False) -> str:
     """Why some of the cases have no stresses, or no `largest` ones; "" where all have them. Values are texts and
-    numbers, or arrays."""
+    numbers, or arrays; rough : whether the cases have asperities."""
     shape, sticks = np.asarray(shape), np.asarray(w_adhesion) > 0
-    rough, flat = ~np.isin(micro, smooth_laws()), shape == "flat"
+    flat = shape == "flat"
     reasons = (
         (is_stack(np.asarray(base)), "no stresses in stacks of layers yet, but of one layer (base = layered)"),
         (sticks & (np.asarray(adhesion) != "jkr"), 'no stresses of contacts that stick yet, but by adhesion = "jkr"'),
@@ -35,4 +34,6 @@ def without_stresses(base, micro, shape=PARABOLOID, w_adhesion=0.0, adhesion="jk
 
 def none_in(grid: Grid, *, largest: bool = True) -> str:
     """The same of the cases of a grid."""
-    return without_stresses(*(along(grid, name) for name in DECIDE), largest=largest)
+    rough = ~np.isin(along(grid, "micro"), grid.lexicon.smooth_laws())
+    base, *others = (along(grid, name) for name in DECIDE)
+    return without_stresses(base, rough, *others, largest=largest)

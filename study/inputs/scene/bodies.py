@@ -11,7 +11,8 @@ from ...specimen import materials
 from ...specimen.quantities import Quantity
 from ...terminal import shown
 from ..grid import equal_values
-from ..vocabulary import BODIES, VOCABULARY, absent, bodies_of, finite
+from ..lexicon import PACKAGE
+from ..vocabulary import BODIES, absent, bodies_of, finite
 from .names import RIGID_TEXTS
 
 _MAY_BE_RIGID = ("punch", "body")
@@ -67,7 +68,7 @@ def of_names(body: str, names: Any) -> list[tuple]:
 
 def layered(values: dict) -> bool:
     """Whether some case may have a layer; values : as those of a Grid. A word that is no base is refused elsewhere."""
-    _, base = values.get("base", ((), VOCABULARY["base"].parameter.default))
+    _, base = values.get("base", ((), PACKAGE.parameter("base").default))
     return bool(np.isin(base, WITH_LAYERS).any())
 
 

@@ -14,7 +14,7 @@ from ...specimen.quantities import multiple, quantity, readable, unit_in
 from ...terminal import on_one_line
 from ..punch.sticking import hint, row_of
 from ..request import Input
-from ..vocabulary import ROWS, SCENE, VOCABULARY, allowed, bodies_of
+from ..vocabulary import SCENE, allowed, bodies_of
 from .scales import with_unit
 from .scene import Scene
 
@@ -27,20 +27,21 @@ def beyond_bounds(scene: Scene, inputs: dict[str, Input]) -> list[str]:
 
     inputs : E and ν in place of materials
     """
-    with_units = [name for name in scene.values if name not in SCENE and VOCABULARY[name].powers != (0, 0)]
+    with_units = [name for name in scene.values if name not in SCENE and scene.lexicon.rows[name].powers != (0, 0)]
     messages = [_message(scene, inputs[name], place) for name in with_units for place in _first_outside(scene, name)]
     for modulus, _, ratio in bodies_of(scene.values).values():
         for place in _first_outside(scene, ratio) if ratio and modulus in scene.values else ():
-            entry, value = VOCABULARY[ratio], _at(scene.parameters[ratio], place)
+            entry, value = scene.lexicon.rows[ratio], _at(scene.parameters[ratio], place)
             modulus_text = f"{modulus} = {readable(_at(scene.values[modulus], place), 'Pa')}"
-            messages.append(f"{modulus_text}: {entry.long_name}: {ratio} = {value:.4g}: {allowed(entry.parameter)}")
+            bounds = allowed(scene.lexicon.parameter(ratio))
+            messages.append(f"{modulus_text}: {entry.long_name}: {ratio} = {value:.4g}: {bounds}")
     return messages
 
 
 def _first_outside(scene: Scene, name: str) -> list[Place]:
     """The place of the first dimensionless value of a parameter that is outside its interval; [] if all are inside."""
     values = scene.parameters[name]
-    inside = within(row_of(name, scene.values), np.asarray(values))
+    inside = within(row_of(name, scene.values, scene.lexicon), np.asarray(values))
     outside = [] if inside.all() else np.argwhere(~inside)[:1].tolist()  # argwhere takes as long as all else here
     return [dict(zip(getattr(values, "dims", ()), index, strict=True)) for index in outside]
 
@@ -55,11 +56,11 @@ def _at(value: Any, place: Place) -> Any:
 def _message(scene: Scene, entry: Input, place: Place) -> str:
     """The message for the value of an input at a place."""
     name = entry.name
-    value, row = scene.values[name], VOCABULARY[name]
-    parameter = row_of(name, scene.values)
+    value, row = scene.values[name], scene.lexicon.rows[name]
+    parameter = row_of(name, scene.values, scene.lexicon)
     index = [place[dim] for dim in getattr(value, "dims", ())]
     label = f"{name}{index}" if index else name
-    text, word, size = _written(entry, index, _at(value, place), ROWS[name].unit)
+    text, word, size = _written(entry, index, _at(value, place), scene.lexicon.all_rows[name].unit)
     R, unit = _at(scene.R, place), _at(scene.unit, place)
     # the bounds in the unit of the value
     low, high = (f"{with_unit(end, row.powers, unit, R) / size:.4g}" for end in ends(parameter.interval)[:2])

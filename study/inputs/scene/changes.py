@@ -7,8 +7,8 @@ import numpy as np
 
 from ..grid import Grid
 from ..identity import acts
-from ..laws import slopes_of_fit
-from ..vocabulary import CONTROLS, SCENE, parameters_of
+from ..punch.laws import slopes_of_fit
+from ..vocabulary import CONTROLS, SCENE
 from .layers import moduli_of
 from .names import is_ratio
 from .scales import make_dimensionless
@@ -73,5 +73,5 @@ def inputs_of(scene: Scene, grid: Grid) -> tuple[str, ...]:
     """The inputs of the solver that change with some spread, and act in some case; the control if none do."""
     tables = changes_by_spread(scene, grid.fitted).values()
     moved = {key for table in tables for key, change in table.items() if np.any(change)}
-    inputs = tuple(name for name in parameters_of(moved) if name in moved and acts(grid, name).any())
+    inputs = tuple(name for name in grid.lexicon.parameters_of(moved) if name in moved and acts(grid, name).any())
     return inputs or tuple(name for name in CONTROLS if name in grid.values)

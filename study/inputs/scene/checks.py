@@ -83,7 +83,7 @@ def moving_tables(scene: Scene) -> list[str]:
     """A message if a table of the user's, whose lengths are in R, would change with the spread of a radius."""
     words = [np.ravel(np.array(scene.parameters.get(name, ""), dtype=object)).tolist() for name in ("micro", "shape")]
     tables = [str(word) for word in sum(words, []) if str(word).startswith(PREFIX)]
-    table = next((word for word in tables if not in_metres(word)), "")
+    table = next((word for word in tables if not in_metres(word, scene.lexicon)), "")
     moved = sorted({"R", "R1", "R2"} & {*scene.spreads})
     if not (table and moved):
         return []

@@ -58,10 +58,6 @@ def flattened(table: dict, errors: list[str], rows: Any = (), elsewhere: Any = (
     if count > layers.MOST:
         errors.append(f"layers: {count} layers: at most {layers.MOST} are allowed")
         return others
-    try:
-        layers.read_tables(stack)
-    except ValueError as error:
-        errors.append(f"layers: {error}")
     return _with_base(others, errors, rows or []) | stack | {"sublayers": others.get("sublayers", 0)}
 
 

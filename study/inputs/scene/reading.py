@@ -18,7 +18,7 @@ from ..draft import Draft
 from ..grid import equal_values
 from ..punch.shapes import LENGTHS, MICROMETRE, in_metres
 from ..request import NEEDS_NAMES, Input, Request
-from ..vocabulary import ROWS, SCENE, VOCABULARY, bodies_of
+from ..vocabulary import SCENE, bodies_of
 from .bodies import assumed, with_materials
 from .bounds import beyond_bounds
 from .checks import impossible, missing, moving_tables, same_cases
@@ -44,21 +44,24 @@ def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scen
     spreads : whether the results shall have spreads
     axes : dimensions in the order that they shall have, behind `case`
     """
-    scene, errors = Scene(same_piece=request.same_piece, labels=request.labels), request.errors
+    scene = Scene(same_piece=request.same_piece, labels=request.labels, lexicon=request.lexicon)
+    errors = request.errors
     before = len(errors)
     inputs, scene.names, scene.strengths = with_materials(_filled(request, scene), errors)
     # a list of h in µm is an axis "h in SI": h/R changes along the dimensions of R too
-    in_si = {name: dim_of(name) for name, entry in inputs.items() if entry.dims == (name,)}
+    in_si = {name: dim_of(name, request.lexicon) for name, entry in inputs.items() if entry.dims == (name,)}
     inputs = {n: replace(entry, dims=tuple(in_si.get(dim, dim) for dim in entry.dims)) for n, entry in inputs.items()}
     for entry in inputs.values():
         if not entry.is_wrong:
             _read(scene, draft, entry)
+    scene.lexicon = request.lexicon  # with the laws and tables that have been read
     errors += [f"same_piece: {NEEDS_NAMES}"] * (request.same_piece and not errors and none_alike(scene.names))
     errors += missing(request, draft.values)
     hint = f" ({request.sign} makes this a study with units)"
     errors[before:] = [f"{message}{hint * ('has no unit' in message)}" for message in errors[before:]]
     labels = {name: np.array(texts) for name, (dim, texts) in scene.names.items() if dim == name}
-    draft.check(labels | {name: np.asarray(value) for name, value in scene.values.items() if dim_of(name) == name})
+    axes_in_si = [name for name in scene.values if dim_of(name, scene.lexicon) == name]
+    draft.check(labels | {name: np.asarray(scene.values[name]) for name in axes_in_si})
     errors += [] if errors else impossible(scene) + (same_cases(scene) if request.rows else [])
     if errors:
         return scene
@@ -80,13 +83,14 @@ def _measure(scene: Scene) -> None:
     """Note what the unit of length is of shapes without a radius, and which tables of shapes have units."""
     if "R" not in scene.values and "R1" not in scene.values:
         scene.scale = next((name for name in LENGTHS if name in scene.values), MICROMETRE)
-    scene.metres = in_metres(scene.parameters.get("shape", ""))
+    scene.metres = in_metres(scene.parameters.get("shape", ""), scene.lexicon)
 
 
 def _read(scene: Scene, draft: Draft, entry: Input) -> None:
     """Put the numbers of an input into the scene."""
     name, before = entry.name, len(draft.errors)
-    if name in SCENE or name in _LIMITS or is_ratio(name) or VOCABULARY[name].powers != (0, 0) or entry.has_unit:
+    has_unit = name in SCENE or name in _LIMITS or scene.lexicon.rows[name].powers != (0, 0)
+    if has_unit or is_ratio(name) or entry.has_unit:
         try:
             _add(scene, entry)
         except ValueError as error:
@@ -112,7 +116,7 @@ def _filled(request: Request, scene: Scene) -> dict[str, Input]:
     on it, and results do not show it.
     """
     base = request.inputs.get("base")
-    inputs, default = dict(request.inputs), VOCABULARY["base"].parameter.default
+    inputs, default = dict(request.inputs), request.lexicon.parameter("base").default
     bases = [] if base is None or base.is_wrong or base.array is not None else base.values
     bases = [default if value is None else value for value in bases]
     if len(bases) != len(request.rows):
@@ -140,18 +144,19 @@ def _is_of_layer(name: str) -> bool:
 
 def _add(scene: Scene, entry: Input) -> None:
     """Put the SI values and spreads of an input into the scene. Raises ValueError for values that it cannot have."""
-    name, unit = entry.name, ROWS[entry.name].unit
+    name, unit = entry.name, scene.lexicon.all_rows[entry.name].unit
+    dim = dim_of(name, scene.lexicon)
     if entry.array is not None:
         value, spread = _of_array(entry, unit), 0.0
     elif entry.dims:
-        quantities = [si(name, text, f"{name}[{i}]") for i, text in enumerate(entry.values)]
+        quantities = [si(name, text, f"{name}[{i}]", scene.lexicon) for i, text in enumerate(entry.values)]
         value = xr.DataArray([number.value for number in quantities], dims=entry.dims)
         spread = xr.DataArray([number.spread for number in quantities], dims=entry.dims)
     else:
-        single = si(name, entry.values[0])
+        single = si(name, entry.values[0], lexicon=scene.lexicon)
         value, spread = single.value, single.spread
-    if entry.dims == (dim_of(name),):
-        scene.dims[dim_of(name)] = name
+    if entry.dims == (dim,):
+        scene.dims[dim] = name
         twins = equal_values(name, value.values.tolist(), lambda number: f"{number:g} {unit}".removesuffix(" 1"))
         if twins:
             raise ValueError(twins[0])

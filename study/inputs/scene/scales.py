@@ -13,12 +13,13 @@ import numpy as np
 from solver.bases import is_bare
 
 from ...arrays import xarray_later as xr
-from ..vocabulary import SCENE, VOCABULARY
+from ..lexicon import PACKAGE
+from ..vocabulary import SCENE
 from .layers import moduli_of
 from .scene import Scene
 
 #: Default of the Poisson ratio of a punch, that of the other bodies.
-_POISSON = VOCABULARY["nu1"].parameter.default
+_POISSON = PACKAGE.parameter("nu1").default
 #: The unit of length in m of a punch of which no length is given.
 _MICROMETRE = 1e-6
 
@@ -42,7 +43,7 @@ def make_dimensionless(scene: Scene) -> None:
         scene.parameters["m"] = surface / _reduced(values, "E_punch", "nu_punch")
     for name, value in values.items():
         if name not in SCENE:
-            scene.parameters[name] = without_unit(value, VOCABULARY[name].powers, scene.unit, scene.R)
+            scene.parameters[name] = without_unit(value, scene.lexicon.rows[name].powers, scene.unit, scene.R)
     if np.any(scene.metres):
         scene.parameters["table_unit"] = _where(scene.metres, 1 / scene.R, 1.0)
 

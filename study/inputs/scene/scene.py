@@ -9,6 +9,7 @@ import numpy as np
 
 from ...arrays import xarray_later as xr
 from ...arrays.labelled import Labelled
+from ..lexicon import PACKAGE, Lexicon
 
 
 @dataclass
@@ -30,6 +31,7 @@ class Scene:
     correlations : pair of inputs with spreads -> their correlation, a number or a DataArray; 0 of all other pairs
     scale : the input that is R, the unit of length, of shapes without a radius, or "1 um"; "": R, or R1 and R2, are
         given
+    lexicon : what its words stand for
     metres : bool, where the shape is a table with units of length in its header; False: nowhere
     """
 
@@ -47,6 +49,7 @@ class Scene:
     R: Any = 1.0
     unit: Any = 1.0
     scale: str = ""
+    lexicon: Lexicon = PACKAGE
     metres: Any = False
 
     def sizes(self, axes: list[str]) -> dict[str, int]:

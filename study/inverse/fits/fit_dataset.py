@@ -107,9 +107,11 @@ def _in_si(question: Question, names: tuple, fits: dict, X: np.ndarray, there: n
 def _of_unknowns(question: Question, names: tuple, numbers: _Numbers, plan: bool) -> dict[str, Any]:
     """The variables of the unknowns: values, ends of intervals, spreads; for a `plan` spreads alone."""
     variables: dict[str, Any] = {}
+    rows = question.model.scene.lexicon.all_rows
+    of_shifts = {"D0": "m", "P0": ROWS[question.model.y].unit, "tilt": "N/m"}
     for j, name in enumerate(names):
-        si = ROWS[name].unit if name in ROWS else {"D0": "m", "P0": ROWS[question.model.y].unit, "tilt": "N/m"}[name]
-        words = ROWS[name].long_name if name in ROWS else NAMES_OF_SHIFTS[name]
+        si = rows[name].unit if name in rows else of_shifts[name]
+        words = rows[name].long_name if name in rows else NAMES_OF_SHIFTS[name]
         if not plan:
             variables[name] = ("curve", numbers.value[:, j], {"units": si, "long_name": words})
         ends = ("low", "high") if question.intervals and not plan else ()
@@ -141,7 +143,7 @@ def _of_points(question: Question, fits: dict, count: np.ndarray) -> dict[str, t
             values[key][curve] = block[short][i]
         parts[curve] = model.of_coordinate(name, block["parts"][i])
     about = {
-        "units": ROWS[name].unit,
+        "units": model.scene.lexicon.all_rows[name].unit,
         "long_name": f"{name} by parts of the depth, the other unknowns as fitted to all",
     }
     variables: dict[str, tuple] = {key: ("curve", array, {"long_name": words[key]}) for key, array in values.items()}
@@ -232,10 +234,10 @@ def _contacts(question: Question, value: np.ndarray, x: np.ndarray) -> xr.Datase
     """Contacts of the unknown inputs `value` (M, k) at x (M,), over `curve`."""
     model, scene = question.model, question.model.scene
     values = model.within({name: value[:, i] for i, name in enumerate(model.unknowns)})
-    columns: dict[str, tuple] = {name: (values[name], ROWS[name].unit) for name in model.unknowns}
-    columns |= {
-        name: (float(v), ROWS[name].unit) for name, v in scene.values.items() if name not in columns and name != model.x
-    }
+    by_name = scene.lexicon.all_rows
+    columns: dict[str, tuple] = {name: (values[name], by_name[name].unit) for name in model.unknowns}
+    others = [name for name in scene.values if name not in columns and name != model.x]
+    columns |= {name: (float(scene.values[name]), by_name[name].unit) for name in others}
     columns[model.x] = (x, ROWS[model.x].unit)
     arrays = {
         name: xr.DataArray(v, dims=("curve",) if np.ndim(v) else (), attrs={"units": unit})
@@ -252,7 +254,8 @@ def _contacts(question: Question, value: np.ndarray, x: np.ndarray) -> xr.Datase
         "D",
         *(ratio for _, _, ratio in moduli_of(scene.values)),
     }
-    arrays |= {name: scene.parameters[name] for name in others if ROWS[name].unit == "1"}
+    arrays |= {name: scene.parameters[name] for name in others if by_name[name].unit == "1"}
+    arrays["micro"] = scene.lexicon.law_or_name(arrays.get("micro", "disc_cell"))
     if "R1" in arrays:
         del arrays["R"]
     with warnings.catch_warnings():

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from solver import Problem, solve
-from solver.parameters import PARAMETERS as LIMITS
+from solver.parameters import COMMON as LIMITS
 from solver.parameters import ends
 from solver.shapes import PARABOLOID
 
@@ -14,7 +14,7 @@ from ...inputs.definition import Definition, StudyError
 from ...inputs.punch.shapes import ANGLES
 from ...inputs.scene.scales import make_dimensionless, with_unit
 from ...inputs.scene.scene import Scene
-from ...inputs.vocabulary import PARAMETERS, VOCABULARY
+from ...inputs.vocabulary import VOCABULARY
 
 #: Two rows of exponents for each pair (x, y). The first has q, e, r of Hertz's contact on a half-space of the layer's
 #: material, y = x^q E^e R^r. The second has those of x, h, R, E in a number u without unit. The only length in the
@@ -166,10 +166,11 @@ class CurveModel:
         A tile of a table may reach beyond the end of a law of asperities: only the fitted contacts are judged.
         """
         changed = self.scene_of(values)
-        numbers = {name: value for name, value in changed.parameters.items() if name in PARAMETERS}
+        numbers = {name: value for name, value in changed.parameters.items() if name in self.scene.lexicon.parameters}
         unit, R = changed.unit, changed.R
         control = with_unit(x, tuple(-power for power in VOCABULARY[self.x].powers), unit, R)
         numbers = {name: value for name, value in numbers.items() if name not in ("P", "a", "D")} | {"rtol": _RTOL}
-        solution = solve(Problem.of(**{self.x: control}, **numbers), np.array([0.0]), extrapolate=True)
+        problem = Problem.of(**{self.x: control}, known=self.scene.lexicon.known, **numbers)
+        solution = solve(problem, np.array([0.0]), extrapolate=True)
         y = with_unit(getattr(solution, self.y), VOCABULARY[self.y].powers, unit, R)
         return np.where(solution.status == 0, y, np.nan)

@@ -11,10 +11,11 @@ import numpy as np
 from solver.parameters import ends
 
 from ...inputs.definition import Definition, StudyError
+from ...inputs.lexicon import Lexicon, lexicon_for
 from ...inputs.punch.shapes import ANGLES
 from ...inputs.reading import from_call
 from ...inputs.scene.layers import short
-from ...inputs.vocabulary import BODIES, CONTROLS, ROWS, parameters_of, scene_of, suggest
+from ...inputs.vocabulary import BODIES, CONTROLS, ROWS, scene_of, suggest
 from ...specimen.quantities import has_unit, quantity
 from ...terminal import shown
 from .model import PAIRS, CurveModel, is_ratio
@@ -63,6 +64,7 @@ class _Unknowns(NamedTuple):
     priors : inputs with ± in the call that are fitted, free ones too
     bounds : free input -> (low, high) in SI, of those for which the call has bounds
     valued : free inputs that have a value in the call
+    lexicon : of the call
     """
 
     free: tuple[str, ...]
@@ -70,6 +72,7 @@ class _Unknowns(NamedTuple):
     priors: tuple[str, ...]
     bounds: dict[str, tuple[float, float]]
     valued: set[str]
+    lexicon: Lexicon
 
     @property
     def every(self) -> tuple[str, ...]:
@@ -112,7 +115,8 @@ def _unknowns(free: Any, parameters: dict, x: str, y: str, options: dict) -> _Un
     names, texts = _listed(free, errors), dict(free) if isinstance(free, dict) else {}
     called = {short(name): name for name in names}
     names, texts = tuple(map(short, names)), {short(name): pair for name, pair in texts.items()}
-    numbers = _numbers((*names, *parameters))
+    lexicon = lexicon_for([parameters], [name for name in (*names, *map(short, parameters)) if name not in ROWS])
+    numbers = _numbers((*names, *parameters), lexicon)
     for name in names:
         if name not in numbers:
             near = suggest(name, numbers, ["such as E1, h or Ra"]).replace("; known: ", ", ")
@@ -123,11 +127,11 @@ def _unknowns(free: Any, parameters: dict, x: str, y: str, options: dict) -> _Un
     written = {*map(short, parameters), *names} & {*values}  # ± of layers that are not free is taken over
     priors = tuple(name for name in values if name in written and _has_prior(name, values[name], name in names))
     valued = {name for name in names if values.get(name) is not None}
-    unknowns = _Unknowns(names, called, priors, {}, valued)
+    unknowns = _Unknowns(names, called, priors, {}, valued, lexicon)
     errors += _too_many(unknowns, bool(errors))
     bounds: dict[str, tuple[float, float]] = {}
     for name in (name for name in texts if name in numbers):
-        bounds |= _bounds(name, texts[name], errors)
+        bounds |= _bounds(name, texts[name], errors, lexicon)
     if errors:
         raise StudyError(errors)
     return unknowns._replace(bounds=bounds)
@@ -156,14 +160,15 @@ def _call(unknowns: _Unknowns, parameters: dict, x: str, options: dict) -> dict[
     bounds, called = unknowns.bounds, unknowns.called
     from_material = {name for body, rows in _OF_BODIES.items() if parameters.get(body) is not None for name in rows}
     open_ = [name for name in unknowns.free if name not in unknowns.valued and name not in from_material]
-    stand_in = {name: _stand_in(name, bounds) for name in open_}
+    stand_in = {name: _stand_in(name, bounds, unknowns.lexicon) for name in open_}
     lacking = [name for name, value in stand_in.items() if value is None]
     if lacking or (options["plan"] and open_):
         wanted = "give the value that is assumed" if options["plan"] else "give bounds, or a value to begin with"
         way = ', free={{"{0}": (low, high)}}, or {0}=...' if not options["plan"] else ", {0}=..."
         raise StudyError([f"free: {name} has no value: {wanted}{way.format(name)}" for name in lacking or open_])
     call = parameters | {called.get(name, name): value for name, value in stand_in.items()} | {x: _ABSCISSA[x]}
-    _check_ends(call, {name: pair for name, pair in bounds.items() if name not in from_material}, called)
+    ends_of = {name: pair for name, pair in bounds.items() if name not in from_material}
+    _check_ends(call, ends_of, called, unknowns.lexicon)
     return call
 
 
@@ -193,7 +198,7 @@ def _all_bounds(model: CurveModel, unknowns: _Unknowns) -> dict[str, tuple[float
     for name in unknowns.free:
         if name not in bounds and name != model.modulus and name not in unknowns.priors:
             value = model.value(name)
-            bounds[name] = (0.0, 0.5) if is_ratio(name) else _within(name, value / 10, 10 * value)
+            bounds[name] = (0.0, 0.5) if is_ratio(name) else _within(name, value / 10, 10 * value, model.scene.lexicon)
             if name in ANGLES:
                 bounds[name] = tuple(model.of_coordinate(name, model.coordinate(name, value) + [-DECADE, DECADE]))
     return bounds
@@ -236,13 +241,13 @@ def _listed(free: Any, errors: list[str]) -> tuple[str, ...]:
     return names
 
 
-def _numbers(names: Iterable[str]) -> set[str]:
+def _numbers(names: Iterable[str], lexicon: Lexicon) -> set[str]:
     """Inputs that may be fitted: numbers of the contact, not settings of the solver.
 
     names : inputs of the call and free ones, whose names say which layers there are
     """
-    rows = {name for name in parameters_of(names) if ROWS[name].parameter.interval}
-    rows = {name for name in rows if not ROWS[name].parameter.whole}
+    rows = {name for name in lexicon.parameters_of(names) if lexicon.parameter(name).interval}
+    rows = {name for name in rows if not lexicon.parameter(name).whole}
     return (rows | set(scene_of(names))) - {*BODIES, *CONTROLS, "rtol", "accuracy", "k", "n", "m"}
 
 
@@ -256,8 +261,8 @@ def _has_prior(name: str, value: Any, free: bool) -> bool:
     return bool(spread) or (written and (free or has_unit(value)))
 
 
-def _bounds(name: str, pair: Any, errors: list[str]) -> dict[str, tuple[float, float]]:
-    unit = ROWS[name].unit
+def _bounds(name: str, pair: Any, errors: list[str], lexicon: Lexicon) -> dict[str, tuple[float, float]]:
+    unit = lexicon.all_rows[name].unit
     if pair is None:
         return {}
     if not isinstance(pair, (tuple, list)) or len(pair) != 2:
@@ -282,29 +287,29 @@ def _definition(parameters: dict, where: str) -> Definition:
         raise StudyError(message.replace("solve: ", f"{where}: ", 1) for message in error.messages) from None
 
 
-def _check_ends(parameters: dict, bounds: dict, called: dict) -> None:
+def _check_ends(parameters: dict, bounds: dict, called: dict, lexicon: Lexicon) -> None:
     """Whether the contact takes the bounds. Raises StudyError if not. `called` : input -> its name in the call."""
     for name, pair in bounds.items():
+        unit = lexicon.all_rows[name].unit
         for end in pair:
-            _definition(
-                parameters | {called[name]: end if ROWS[name].unit == "1" else f"{end!r} {ROWS[name].unit}"}, "free"
-            )
+            _definition(parameters | {called[name]: end if unit == "1" else f"{end!r} {unit}"}, "free")
 
 
-def _within(name: str, low: float, high: float) -> tuple[float, float]:
+def _within(name: str, low: float, high: float, lexicon: Lexicon) -> tuple[float, float]:
     """Bounds within the interval of an input without unit."""
-    if ROWS[name].unit != "1":
+    if lexicon.all_rows[name].unit != "1":
         return low, high
-    least, most, *_ = ends(ROWS[name].parameter.interval)
+    least, most, *_ = ends(lexicon.parameter(name).interval)
     return max(low, least), min(high, most)
 
 
-def _stand_in(name: str, bounds: dict) -> str | float | None:
+def _stand_in(name: str, bounds: dict, lexicon: Lexicon) -> str | float | None:
     """A value for a free input without one, while the call is checked."""
     if name in bounds:
         low, high = bounds[name]
         middle = (low + high) / 2 if is_ratio(name) else math.sqrt(low * high)
-        return middle if ROWS[name].unit == "1" else f"{middle!r} {ROWS[name].unit}"
+        unit = lexicon.all_rows[name].unit
+        return middle if unit == "1" else f"{middle!r} {unit}"
     return _MODULUS if name in ("E1", "E2") else 0.3 if is_ratio(name) else None
 
 

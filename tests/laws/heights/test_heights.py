@@ -10,9 +10,12 @@ from scipy.optimize import brentq
 from solver_cases import difference
 
 import study
-from solver import Problem, laws, solve
+from solver import Problem, solve
+from solver.known import register
 from solver.laws import disc_cell, heights, spread
 from study.studies.literature.formulas import GREENWOOD_TRIPP
+
+pytestmark = pytest.mark.usefixtures("forgetful")
 
 LAW = heights.LAW
 CASE = {"Nbar": 250_000.0, "Ra": 0.004, "h": 0.02, "n": 0.5}
@@ -121,7 +124,7 @@ def test_derivatives_inverses_and_edge(spread):
 def test_without_a_field_it_is_greenwood_and_tripp(mu, at_four):
     """p(0) and a_eff; μ = (8/3) Nbar σ sqrt(2 R Ra). The cut moves them by 5e-4 at most at 5 σ, by more at 4 σ."""
     alpha, (p0, a_eff) = np.array(list(GREENWOOD_TRIPP[mu])), np.array(list(GREENWOOD_TRIPP[mu].values())).T
-    free = laws.register(heights.law("free_heights", heights.NORMAL, field=0.0, version="1"))
+    free = register(heights.law("free_heights", heights.NORMAL, field=0.0, version="1"))
     a, Ra = 0.01, 1e-6
     sigma = alpha * a**2
     points, weights = np.polynomial.legendre.leggauss(40)

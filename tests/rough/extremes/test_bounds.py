@@ -8,9 +8,11 @@ from solver_cases import ALL_KINDS, KINDS, LOAD, MAIN
 
 import study
 from solver import Problem, Status, solve
-from solver.parameters import CONTROL, PARAMETERS, ends
+from solver.known import PARAMETERS
+from solver.parameters import CONTROL, ends
 from solver.scaling import dimensionless, refused
 from study.__main__ import main
+from study.inputs.lexicon import PACKAGE
 from study.inputs.vocabulary import VOCABULARY
 from study.studies.paper.uniform import solve_uniform
 
@@ -50,7 +52,7 @@ def test_the_bounds_hold_what_is_used():
 
 def test_a_study_has_the_bounds_of_the_solver():
     """rtol alone is narrower: a tolerance of a half is for tests on fixed meshes."""
-    own = {name: VOCABULARY[name].parameter.interval for name in BOUNDS if name in VOCABULARY}
+    own = {name: PACKAGE.parameter(name).interval for name in BOUNDS if name in VOCABULARY}
     known = {name: (CONTROL | PARAMETERS)[name].interval for name in own}
     assert {name: text for name, text in own.items() if text != known[name]} == {"rtol": "[1e-12, 0.1]"}
     assert set(BOUNDS) - set(own) == {"R", "E2"}
@@ -155,7 +157,7 @@ def test_a_study_says_what_is_allowed(name, value):
     case = ({} if name == "a" else {"P": LOAD}) | MAIN | {"micro": "power_law", name: value}
     with pytest.raises(study.StudyError) as caught:
         study.solve(**case)
-    own = VOCABULARY[name].parameter
+    own = PACKAGE.parameter(name)
     low, high = own.interval[1:-1].split(", ")
     single = "".join(f"{also} or " for also in own.also)
     assert caught.value.messages == (f"solve: {name} = {value}: must be {single}in [{low}, {high}]",)

@@ -17,6 +17,7 @@ from solver import Problem, Status, solve
 from solver.rough import equation
 from solver.rough.start import guess_radius
 from solver.scaling import as_cases
+from study.inputs.lexicon import PACKAGE
 from study.inputs.sample import draw
 from study.inputs.vocabulary import VOCABULARY
 
@@ -40,7 +41,7 @@ def sample(base, size=None, seed=11, **start):
     study = ROOT / "studies/evidence" / ("extremes_layered.toml" if base == "layered" else "extremes.toml")
     table = tomllib.loads(study.read_text(encoding="utf-8"))["sample"]
     ranges = {name: table[name] | {"start": value} for name, value in start.items()}
-    errors, known = [], {name: VOCABULARY[name].parameter for name in table if name in VOCABULARY}
+    errors, known = [], {name: PACKAGE.parameter(name) for name in table if name in VOCABULARY}
     columns = draw(table | {"size": size or SIZE[base], "seed": seed} | ranges, known, errors)
     assert not errors
     return {name: np.array(values) for name, values in columns.items()}

@@ -12,7 +12,10 @@ import xarray as xr
 
 import study
 from solver import laws
+from solver.known import register
 from study import lazy
+
+pytestmark = pytest.mark.usefixtures("forgetful")
 
 ROUGH = {"Nbar": 250000.0, "Ra": 0.004, "n": 0.5}
 LOADS = np.geomspace(1e-6, 1e-4, 25).tolist()
@@ -68,7 +71,7 @@ def test_threads_solve_them():
 
 def test_processes_solve_them_and_a_law_of_ones_own_goes_with_its_chunk():
     """A worker process knows the laws of this package only."""
-    laws.register(replace(laws.LAWS["power_law"], name="mine", version="1"))
+    register(replace(laws.LAWS["power_law"], name="mine", version="1"))
     law, known = {"B": 1.0, "beta": 0.9} | ROUGH, {"P": [1e-5, 2e-5], "base": "half_space"}
     with dask.config.set(scheduler="processes", num_workers=2):
         found = study.solve(**known, micro="mine", **law, chunks={"P": 1}).a.values

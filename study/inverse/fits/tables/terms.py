@@ -15,7 +15,6 @@ from solver.shapes import PARABOLOID
 from solver.smooth.adhesion.apart import apart
 
 from ....inputs.scene.scales import with_unit
-from ....inputs.vocabulary import PARAMETERS
 from ..model import CurveModel, is_ratio
 
 #: Powers of E, w, of the length that is the unit of a, and of R in P₀, D₀, pull_P and pull_D.
@@ -104,10 +103,10 @@ class Terms(NamedTuple):
         model = self.model
         count = len(next(iter(values.values()), np.zeros(1)))
         changed = model.scene_of(values)
-        names = {name: value for name, value in changed.parameters.items() if name in PARAMETERS}
+        names = {name: value for name, value in changed.parameters.items() if name in changed.lexicon.parameters}
         names = {name: value for name, value in names.items() if name not in ("P", "a", "D", "k_machine", "branch")}
         names["base"] = {"auto": "layered"}.get(word := names.get("base", "layered"), word)
-        problem = Problem.of(**names, a=np.full(count, 0.01))
+        problem = Problem.of(known=changed.lexicon.known, **names, a=np.full(count, 0.01))
         shift = np.log(names["h"]) if self.length == "h" else 0.0
         terms = apart(problem, np.broadcast_to(x + np.reshape(shift, (-1, 1)), (count, len(x))))
         factors = np.broadcast_to(self.factors(values).reshape(4, -1), (4, count))

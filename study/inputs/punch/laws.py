@@ -1,29 +1,18 @@
-"""Micro laws in studies: laws that users register, and power laws that are fitted."""
+"""Micro laws in studies: which results they have, and power laws that are fitted."""
 
-from contextlib import suppress
+from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
 import numpy as np
 
-from solver import laws
+from solver.laws import Law
 from solver.laws.fit import fit_power_law
-from solver.laws.own_table import PREFIX
-from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import allowed, one_of
 
-from .grid import Grid, along
-from .punch import shapes
-from .vocabulary import (
-    BODIES,
-    PARAMETERS,
-    SCENE,
-    VOCABULARY,
-    Entry,
-    names,
-    of_package,
-    put_rows,
-)
+from ..grid import Grid, along
+from ..lexicon import PACKAGE
+from ..vocabulary import names
 
 MOST_FITS = 1000
 """Most different values of Nbar Ra² in a study. A law is fitted to each, in 2 ms."""
@@ -32,79 +21,20 @@ DIGITS = 10
 last digits of a fit depend on the processor."""
 COMMENT = "fitted to Nbar and Ra by least squares over pressures from 1e-4 to 0.025 E1*, as in Section 4.1 of the paper"
 
-# A law must not call a parameter like a result, or like another argument of `study.solve`.
-laws.RESERVED.update({*VOCABULARY, "cases", "profiles", "title", "workers"} - set(SOLVER_PARAMETERS))
-laws.RESERVED.update(f"{name}_spread" for name in VOCABULARY)
-laws.RESERVED.update(SCENE, BODIES)
-
-
-def update_vocabulary() -> None:
-    """Make PARAMETERS and VOCABULARY fit the micro laws and shapes that are registered now.
-
-    Where they do already nothing is touched: other threads read them meanwhile.
-    """
-    put_rows(_rows)
-
-
-def _rows() -> dict[str, Entry]:
-    """Rows of the vocabulary for the parameters of laws and shapes that are registered."""
-    rows: dict[str, Entry] = {}
-    for law in laws.LAWS.values():
-        for name, declared in law.parameters.items():
-            if not of_package(name):
-                owners = " and ".join(other.name for other in laws.LAWS.values() if name in other.parameters)
-                words = declared.long_name or f"parameter of the micro law {owners}"
-                rows.setdefault(name, Entry(name, "roughness", words, declared.symbol or name, declared.powers))
-    return rows | shapes.rows()
-
-
-def law_names(values: list) -> list:
-    """The values of `micro` as names. A law given as an object is registered under its name.
-
-    If a name is not known, the laws of installed packages are loaded. Raises ValueError for a law that cannot be used.
-    """
-    words = laws.named(values)
-    laws.load((), [word for word in words if isinstance(word, str)])
-    update_vocabulary()
-    return words
-
-
-def recall(versions: str) -> None:
-    """Register the laws of results, if they are installed; `versions` has a line "NAME VERSION" for each.
-
-    A table of the user's is not read: whoever sends a results file must not choose which files are opened.
-    """
-    for line in versions.splitlines():
-        if (name := laws.name_in(line)) not in laws.LAWS and not name.startswith(PREFIX):
-            with suppress(ValueError):  # then it stays unknown
-                law_names([name])
-
-
-def is_parameter(name: str) -> bool:
-    """Whether this is the name of a parameter. The laws of installed packages are loaded before the answer is no."""
-    if name not in PARAMETERS:
-        with suppress(ValueError):  # a law that cannot be loaded is an error when `micro` names it
-            laws.load([name], ())
-        update_vocabulary()
-    return name in PARAMETERS
-
-
 #: Results that only asperities which feel the layer have.
 _OF_FELT = ("p_spot", "r_spot")
 
 
-def results_of(micro: np.ndarray, sticking: bool = False, felt: bool = False) -> tuple[str, ...]:
-    """Names of the results of these laws; plastic_share only if the spots of some law yield, those of pull-off only of
-    contacts that may be `sticking`, those of spots only where some asperities feel the layer (`felt`)."""
-    yields = one_of(micro, [name for name, law in laws.LAWS.items() if law.yielded]).any()
+def results_of(
+    laws: Mapping[str, Law], micro: np.ndarray, sticking: bool = False, felt: bool = False
+) -> tuple[str, ...]:
+    """Names of the results of the `laws` that `micro` names; plastic_share only if the spots of some law yield, those
+    of pull-off only of contacts that may be `sticking`, those of spots only where some asperities feel the layer
+    (`felt`)."""
+    yields = one_of(micro, [name for name, law in laws.items() if law.yielded]).any()
     left_out = ("plastic_share",) * (not yields) + _OF_FELT * (not felt)
     of_laws = tuple(name for name in names("result") if name not in left_out)
     return of_laws + (names("pull_off") if sticking else ())
-
-
-def smooth_laws() -> list[str]:
-    """Names of the laws without asperities."""
-    return [name for name, law in laws.LAWS.items() if not law.rough]
 
 
 def wants_a_fit(grid: Grid) -> bool:
@@ -128,7 +58,7 @@ def fitted(grid: Grid) -> tuple[dict, list[str]]:
     dims = tuple(dim for dim in grid.sizes if dim in {*grid.values["Nbar"][0], *grid.values["Ra"][0]})
     values, errors = {}, []
     for name, fits in fits_to(different).items():
-        parameter = VOCABULARY[name].parameter
+        parameter = PACKAGE.parameter(name)
         rounded = {product: float(f"{fit:.{DIGITS}g}") for product, fit in fits.items()}
         array = np.array([rounded.get(product, np.nan) for product in products.ravel().tolist()])
         values[name] = dims, array.reshape([grid.sizes[dim] for dim in dims])

@@ -180,6 +180,7 @@ def test_units():
     np.testing.assert_allclose(first.p * E2, second.p, rtol=1e-7, atol=0.1)
 
 
+@pytest.mark.usefixtures("forgetful")
 def test_law_of_ones_own():
     """A law of which only the necessary functions are known."""
     parts = {name: getattr(disc_cell.LAW, name) for name in ("scales", "curve", "area", "peak", "edge", "parameters")}

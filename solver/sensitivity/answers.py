@@ -39,6 +39,8 @@ def derivatives_of(scaled, now: Held, solution, inputs, nodes, x):
     solved_as = held(asked, np.tile(solution.model_used, 2 * (len(others) + 1)))
     answers, at_x = _answers(Solved.of(iterated.at), solved_as, asked, x)
     by = {name: slope_of(np.log(np.abs(values)), len(others) + 1) for name, values in answers.items()}
+    p0 = quantities(iterated.at).p0 * now.E2  # as p(0) of the profile, which has no logarithm at the edge
+    by["p0"] = slope_of(answers["p0"], len(others) + 1) / p0
     order, control = [others.index(name) if name in others else -1 for name in inputs], by[scaled.control]
     logs = {name: _under(control, slopes)[order] for name, slopes in by.items()}
     finite = np.ones(len(scaled), dtype=bool)
@@ -74,7 +76,8 @@ def _answers(start, solved_as: Held, asked, x):
         values |= {name: values[name] * E2 for name in _OF_MODULUS}
         unit = (contacts.at.cases.law.p_star * E2)[:, None]
         q, at_x[1, rows] = profiles(start, contacts, x)
-        at_x[0, rows] = unit * q
+        p0 = values["p0"][:, None]
+        at_x[0, rows] = np.where((x == 0) & np.isfinite(p0), p0, unit * q)
         if added:  # to all cases: they have one law
             p, law = unit * between(start, contacts, np.append(area_rule()[0], 1.0))[0], law_of(asked.take(rows))
             values |= spots_under(law, p[:, -1], p[:, :-1])

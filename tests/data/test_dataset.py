@@ -1,6 +1,9 @@
 """A dataset in a file and back: nothing is lost, attributes and flags follow CF, interrupts wait."""
 
+import copy
+import pickle
 import signal
+import threading
 
 import numpy as np
 import pytest
@@ -8,6 +11,7 @@ import xarray as xr
 
 import study
 from solver import Status
+from study.arrays.labelled import Labelled
 from study.data import dataset
 from study.files import access, results_file
 from study.files.examine import examine
@@ -142,3 +146,31 @@ def test_cases_without_a_solution_have_not_failed():
     """The model says so of them: `--fail-fast` goes on."""
     status = np.array([0, Status.THIN_LAYER_NOT_APPLICABLE, Status.DIVERGED, 0, Status.LIFT_OFF, Status.INVALID_INPUT])
     assert dataset.failed_cases(status).tolist() == [2, 5]
+
+
+def test_arrays_with_names_are_copied_and_sent_to_processes():
+    """Before there is a dataset; what is asked of a copy that has no array yet is not asked of xarray."""
+    array = Labelled(("h", "x"), np.arange(6.0).reshape(2, 3), {"units": "m"}, {"dtype": "f4"})
+    for twin in (copy.copy(array), copy.deepcopy(array), pickle.loads(pickle.dumps(array))):
+        assert (twin.dims, twin.attrs, twin.encoding) == (array.dims, array.attrs, array.encoding)
+        assert (twin.data == array.data).all()
+    assert array.mean().item() == 2.5 and not hasattr(array, "_nothing_of_xarray")
+
+
+def test_an_interrupt_while_another_thread_has_netcdf_leaves_the_lock_free(monkeypatch):
+    """Of xarray, which reads a lazily opened file under this lock alone."""
+    lock = access.Access("file.nc")
+
+    class Interrupted:
+        def acquire(self, blocking):
+            raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(access, "NETCDF4_PYTHON_LOCK", Interrupted())
+        with pytest.raises(KeyboardInterrupt):
+            lock.acquire()
+    taken = []
+    thread = threading.Thread(target=lambda: taken.append(lock.acquire(blocking=False)) or lock.release())
+    thread.start()
+    thread.join()
+    assert taken == [True] and access.Access._depth == 0

@@ -38,3 +38,12 @@ def test_both_occur():
 def test_coatings_on_metals_are_not():
     hard = {"R": "5 mm", "E1": "400 GPa", "E2": "70 GPa", "h": ["1 um", "5 um"], "a": "100 um", "micro": "smooth"}
     assert not (study.solve(**hard, x=2).validity & 32).any()
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_ball_is_a_paraboloid_there():
+    """Its slope at the edge is that of a paraboloid to some percent."""
+    places = {"h": "100 nm", "a": ["0.5 um", "2 um", "4 um"]}
+    paraboloid, ball = (study.solve(**METAL_ON_RUBBER, **places, shape=name) for name in ("paraboloid", "sphere"))
+    assert (paraboloid.validity & 32 > 0).values.tolist() == [False, True, True]
+    assert (ball.validity & 32 > 0).values.tolist() == [False, True, True]

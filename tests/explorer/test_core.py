@@ -62,3 +62,31 @@ def test_contacts_of_all_kinds():
     assert error.max() < 5e-4
     assert np.quantile(thick, 0.99) < 1e-5
     assert beyond < 0.01
+
+
+PROFILES = """
+const Core = require(process.argv[1] + "/core.js"), [meshes, cases, x] = JSON.parse(require("fs").readFileSync(0));
+Core.load(meshes);
+console.log(JSON.stringify(cases.map((p) => {
+  const { status, Q, ev } = Core.solve(p);
+  return status === "converged" ? [Q.a, Q.P, Q.p0, Q.lam0, ...x.map((x) => Core.profile(ev, x))] : null;
+})));
+"""
+
+
+def test_profiles_bear_the_load():
+    """P = 2π a² ∫ p x dx; p and λ in the centre are those of the contact, and there is no pressure at the edge."""
+    s, weights = (np.polynomial.legendre.leggauss(40)[0] + 1) / 2, np.polynomial.legendre.leggauss(40)[1] / 2
+    x = [0.0, 1.0, *np.sqrt(1 - s**2).tolist()]
+    text = json.dumps([contents()["meshes"], cases("P")[::25], x])
+    done = subprocess.run(
+        [NODE, "-e", PROFILES, "--", str(ROOM)], input=text, capture_output=True, text=True, check=True
+    )
+    lines = [line for line in json.loads(done.stdout) if line]
+    rough = [line for line in lines if line[3] < 1]
+    assert len(lines) > 20 and 10 < len(rough) < len(lines)
+    for a, P, p0, lam0, centre, edge, *profile in lines:
+        p = np.array([at["p"] for at in profile])
+        assert (centre["p"], edge["p"]) == (pytest.approx(p0, rel=1e-9), 0)
+        assert 2 * np.pi * a**2 * (p * s * weights).sum() == pytest.approx(P, rel=1e-3)
+        assert centre["lam"] == pytest.approx(lam0, rel=1e-9)

@@ -13,6 +13,7 @@ from children import joined, started
 from line_study import TEXT
 
 import study
+from study import catalogue
 from study.__main__ import main
 from study.figures import record, registry
 
@@ -292,3 +293,16 @@ def test_curves_of_a_study_are_whole_or_not_there(monkeypatch, capsys):
 def test_the_program_is_both_of_its_packages():
     root = Path(study.__file__).parent
     assert {*record.PACKAGES} == {root, root.parent / "solver"}
+
+
+def test_a_bare_figure_has_no_parameters_above_it(monkeypatch):
+    def titled(axes, line):
+        axes.figure.suptitle("parameters")
+        return shown(axes, line)
+
+    above = []
+    study.load("studies/line.toml").run(progress=False)
+    registry.FIGURES["shown"] = registry.Figure(("line",), titled, (3, 2), (1, 1), "")
+    monkeypatch.setattr(catalogue, "save", lambda path, figure, *rest: above.append(figure.get_suptitle()) or [])
+    assert main(["plot", "shown"]) == main(["plot", "shown", "--bare"]) == 0
+    assert above == ["parameters", ""]

@@ -30,6 +30,15 @@ def test_a_stack_in_a_call():
     assert_allclose(one.P, layered.P, rtol=1e-10)
 
 
+@pytest.mark.parametrize(
+    "inputs", [{"layers": [{"h": 0.01, "n": 1.0}] * 17}, {"layers.17.h": 0.01, "layers.17.n": 1.0}]
+)
+def test_too_many_layers_are_named(inputs):
+    with pytest.raises(study.StudyError) as caught:
+        study.solve(P=1e-5, micro="smooth", **inputs)
+    assert "solve: layers: 17 layers: at most 16 are allowed" in caught.value.messages
+
+
 def test_an_axis():
     contact = study.solve(layers=PURE, a=0.05, micro="smooth", **{"layers.2.h": [0.01, 0.02, 0.04]})
     assert contact.P.dims == ("layers.2.h",)

@@ -56,6 +56,16 @@ def test_of_other_laws_the_largest_spot_in_the_centre_counts():
     assert r[0] == 0 and lattice == pytest.approx(cell, rel=0.1)
 
 
+def test_spots_that_yield_are_taken_for_elastic_ones():
+    """The pressure of the contact as a whole is another one, and has a small part in the stress."""
+    case = {"a": 0.05, "Nbar": 1e6, "Ra": 1e-3, "base": ["half_space", "layered"], "h": 0.02, "n": 5.0}
+    elastic, plastic = Problem.of(**case), Problem.of(**case, micro="elastic_plastic", hardness=0.02)
+    solutions = solve(elastic), solve(plastic)
+    assert (solutions[1].P < 0.9 * solutions[0].P).all(), "many spots yield"
+    wanted, stress = (spots.of_contacts(*both)[0] for both in zip((elastic, plastic), solutions, strict=True))
+    assert stress == pytest.approx(wanted, rel=0.03)
+
+
 def test_first_yield_of_asperities():
     """Where it is found the stress is the strength. Under the elastic-plastic law it is the same load, and no share of
     the area has yielded before."""

@@ -75,6 +75,17 @@ def test_ratios_of_which_some_are_0(body, ratio):
     assert [ratio in used_inputs(part) for part in parts] == [False, True, True]
 
 
+@pytest.mark.filterwarnings("ignore:this contact is beyond")
+def test_branches_are_stated_where_some_contact_is_unstable():
+    sticking = {"R": "5 um", "E2": "5 kPa", "base": "half_space", "micro": "smooth", "w_adhesion": "0.1 mJ/m^2", "x": 2}
+    both = study.solve(**sticking, P="-1 nN", branch=["stable", "unstable"])
+    assert (both.status == 0).all()
+    assert ["branch" in used_inputs(part) for part in (both, both.isel(branch=[1]), both.isel(branch=[0]))] == [
+        *(True, True, False)
+    ]
+    assert "branch" not in used_inputs(study.solve(**sticking, a="1 um")), "a radius has one load"
+
+
 def test_asperities_of_a_law_that_is_gone():
     """It may depend on whatever there is of asperities."""
     found = contacts(BARE | SPOTS, BARE | FLAT)

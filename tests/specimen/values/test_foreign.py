@@ -67,6 +67,22 @@ class Column:
         return f"Column{self.values}"  # names of tests must not depend on an address
 
 
+class Tensor:
+    """As a tensor of torch, whose `to` is to another device: it has no unit."""
+
+    def __init__(self, *values):
+        self.values = values
+
+    def to(self, device: str) -> "Tensor":
+        return self
+
+    def tolist(self) -> list:
+        return [*self.values]
+
+    def __repr__(self) -> str:
+        return f"Tensor{self.values}"
+
+
 class Astropy(np.ndarray):
     """As a quantity of astropy: an array with a unit, which `tolist` leaves out."""
 
@@ -156,6 +172,7 @@ def test_what_is_refused(given, message):
         (Fraction(1, 50), 0.02),
         (np.array(0.02), 0.02),
         (Column(0.02, 0.03), [0.02, 0.03]),
+        (Tensor(0.02, 0.03), [0.02, 0.03]),
         (pd.Series([0.02, 0.03], index=["x", "y"]), [0.02, 0.03]),
         (dask.array.from_array(np.array([0.02, 0.03])), [0.02, 0.03]),
         (xr.DataArray(UNITS.Quantity([0.02, 0.03], ""), dims="h"), [0.02, 0.03]),

@@ -83,6 +83,10 @@ def test_tension_inside():
         ({"w_adhesion": 1e-6, "adhesion": "maugis"}, "needs exactly one of sigma0 and z0"),
         ({"w_adhesion": 1e-6, "adhesion": "dmt", "z0": 1e-4}, "z0 is given with adhesion"),
         ({"w_adhesion": 1e-6, "adhesion": "dmt", "shape": "sphere"}, "is for shape = .paraboloid."),
+        (
+            {"w_adhesion": 1e-6, "adhesion": "maugis", "z0": 1e-4, "shape": "flat", "flat_radius": 0.1},
+            'does not go with shape = "flat", whose edge is held: take "jkr"',
+        ),
         ({"w_adhesion": 0.0, "P": -1e-5}, "P must be > 0 where w_adhesion is 0"),
         ({"w_adhesion": 1e-6, "scheme": "picard"}, "picard"),
         ({"w_adhesion": 1e-6, "adhesion": "dlvo"}, 'must be one of "jkr", "dmt", "maugis"'),

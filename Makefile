@@ -82,7 +82,7 @@ explorer-test: $(READY) ## install node, chromium and playwright, and test the p
 	@command -v node >/dev/null && command -v chromium >/dev/null || \
 	  apt-get install --yes --no-install-recommends nodejs chromium
 	$(VENV)/bin/python -m pip install --quiet --editable '.[explorer]' --no-build-isolation
-	EXPLORER_EVERY=1 $(VENV)/bin/python -m pytest -q -s tests/explorer
+	EXPLORER_EVERY=1 $(VENV)/bin/python -m pytest -q -s --verify tests/explorer
 
 # Of each room what is quick, against references where there are any: no test that starts Python anew, or that takes
 # the shrunken results of all studies, which are twenty seconds of computing.

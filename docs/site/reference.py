@@ -12,6 +12,7 @@ from typing import Any
 import roughcoat
 import solver
 from study.__main__ import parser
+from study.inputs.lexicon import PACKAGE
 from study.inputs.vocabulary import VOCABULARY, allowed
 from study.rules.rule import ASSUMPTIONS, RULES
 
@@ -127,7 +128,7 @@ def parameters() -> str:
         rows = []
         for name, entry in VOCABULARY.items():
             if entry.role == role:
-                parameter = entry.parameter
+                parameter = PACKAGE.parameter(name)
                 bounds = allowed(parameter) if parameter.interval or parameter.choices else ""
                 default = (
                     ""

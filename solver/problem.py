@@ -79,7 +79,7 @@ class Problem:
     nodes = 0 : number of nodes; 0: chosen by `rtol`
     max_iterations = 0 : most steps on a mesh, or approximations at one radius; 0: the limit of the scheme
     R, E2 = 1 : radius of the punch, and reduced modulus E2* of the half-space, both > 0, in any units
-    known : what the words of the parameters stand for, a :class:`~solver.known.Known`
+    known : what the words of the parameters stand for (solver/known)
     """
 
     control: str

@@ -215,7 +215,7 @@ def register(kind: Law | Kind) -> Law | Kind:
 
     Parameters
     ----------
-    kind : :class:`~solver.laws.Law` or :class:`~solver.shapes.Kind`
+    kind : a `solver.Law`, or a `solver.shapes.Kind`
 
     Returns
     -------

@@ -136,7 +136,7 @@ def test_a_core_of_other_sources_is_not_taken(monkeypatch, tmp_path):
     class Longer(ctypes.Structure):
         _fields_ = [("batch", library.CBatch), ("more", ctypes.c_int64)]
 
-    monkeypatch.setattr(library, "Batch", Longer)
+    monkeypatch.setattr(library, "CBatch", Longer)
     assert not library._fits(core)
     monkeypatch.undo()
     assert not library._fits(ctypes.CDLL(None))  # which has no layout, as cores built before there was one

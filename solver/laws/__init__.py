@@ -1,14 +1,13 @@
 """Micro laws, one a file. docs/extending.md says how to add one."""
 
 from types import MappingProxyType
-from weakref import WeakSet
 
-from ..numerics.kept import shared_lock
-from . import disc_cell, elastic_plastic, heights, lattice, own_table, power_law, trial
+from . import disc_cell, elastic_plastic, heights, lattice, own_table, power_law
 from .cell.axis import cell_axis
 from .cell.periodic import periodic_rows
 from .cell.rows import cell_rows
 from .law import Bound, Curve, Law, Spots
+from .trial import try_out, untried
 
 __all__ = [
     "LAWS",
@@ -24,30 +23,6 @@ __all__ = [
     "try_out",
     "untried",
 ]
-
-#: Laws whose functions have been tried.
-_TRIED: WeakSet[Law] = WeakSet()
-_trying = shared_lock()
-
-
-def untried(law):
-    """Whether a law is somebody else's, and its functions have not been tried."""
-    if not law.version or law.name.startswith(own_table.PREFIX):
-        return False
-    with _trying:
-        return law not in _TRIED
-
-
-def try_out(law, E, parameters):
-    """Try the functions of a law that is :func:`untried` at some of its cases: see :func:`.trial.tried`.
-
-    That takes a seventh of a millisecond, once a process. Without it a law with a wrong derivative gives a dP/dD that
-    is 2 % off, as converged (tests/laws/test_trial.py).
-    """
-    if untried(law):
-        trial.tried(law, E, parameters)
-        with _trying:
-            _TRIED.add(law)
 
 
 def identity(law):

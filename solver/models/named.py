@@ -10,7 +10,7 @@ from ..numerics.batch import alike
 from ..scaling import dimensionless, restore, with_a_stiff_base, with_rigid_punch, without_springs
 from ..solution import Model, Solution
 from ..status import Status
-from .range_of_law import edge_error, outside_law
+from .law_error import edge_error, outside_law
 from .thin_layer_error import largest_error
 
 _BY_NAME = {
@@ -49,7 +49,7 @@ def solve_named(problem, x):
 
 
 def with_model_error(problem, solution):
-    """The solution with a `model_error` of at least :func:`~.range_of_law.edge_error`. Cases at pressures that their
+    """The solution with a `model_error` of at least :func:`~.law_error.edge_error`. Cases at pressures that their
     law does not know lose their numbers. `solution` and result are in the units of the problem."""
     error = np.maximum(solution.model_error, edge_error(problem, solution))
     return replace(solution, model_error=error).refused(outside_law(problem, solution), Status.OUTSIDE_LAW)

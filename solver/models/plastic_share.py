@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..scaling import dimensionless, law_of, of_one_law
-from .range_of_law import RADII, has_yield
+from .law_error import RADII, has_yield
 
 #: The places s² = 1 - (r/a)² of the profile, ascending from the edge.
 _S2 = (1 - RADII) * (1 + RADII)

@@ -31,7 +31,7 @@ def doubtful_lines(definition: Definition) -> list[str]:
     such as 210 TPa, or whose spread is too wide, and for what it is far outside of."""
     if not definition.scene:
         return [f"{definition.name}: beware: {text}" for text in unloading(definition)]
-    from ..in_words.estimates import far_outside
+    from ..in_words.sentences import far_outside
     from ..inputs.scene.scene import bare_variable  # here: these import xarray
     from ..rules.rule import sentences
 

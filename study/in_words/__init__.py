@@ -1,7 +1,6 @@
 """A contact in words: each quantity with its unit and how sure it is, how it was solved, and what it rests on."""
 
-from .estimates import FarOutside, far_outside
-from .sentences import MODELS, NOT_VIOLATED, beside_rules, doubts
+from .sentences import MODELS, NOT_VIOLATED, FarOutside, beside_rules, doubts, far_outside
 from .text import MOST_CASES, SHOWN, Summary, summary
 
 __all__ = [

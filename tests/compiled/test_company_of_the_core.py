@@ -6,7 +6,7 @@ from both_paths import by, contacts, of_the_sources  # noqa: F401
 
 from solver.compiled import newton_in_c
 from solver.compiled.library import available
-from solver.compiled.structures import mesh_for
+from solver.compiled.newton_in_c import mesh_for
 
 VARIANTS = available()
 pytestmark = pytest.mark.skipif(not VARIANTS, reason="no compiled core was built here")

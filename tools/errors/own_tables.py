@@ -7,7 +7,7 @@ half-space and on the exact layer, from 1.5 times the first pressure on. Three l
 - tables: how many are not refused, and how many of these are somewhere between their rows off by more than `error`;
 - contacts: how many there are, how many are farther off than `model_error`, and the largest ratio of the two;
 - edge: the largest error above that of the rows, over (p1/p(0))^_STEEPNESS: what _GUESSED of
-  solver/models/range_of_law.py must be.
+  solver/models/law_error.py must be.
 """
 
 import sys
@@ -16,7 +16,7 @@ import numpy as np
 
 from solver import Problem, Status, laws, solve
 from solver.laws import own_table
-from solver.models.range_of_law import _STEEPNESS
+from solver.models.law_error import _STEEPNESS
 from solver.solution import JUDGED
 
 LAWS = ("disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights")

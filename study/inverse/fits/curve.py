@@ -1,8 +1,10 @@
 """The model of measured curves: y = F(x - D0; inputs) + P0 + tilt x, and its derivatives by the unknowns."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
+
+from solver.numerics import batch
 
 from ...inputs.punch.shapes import ANGLES
 from .model import HERTZ
@@ -16,6 +18,7 @@ _TILES = 4  # along ln u: from the largest depth down, more than _REACH
 _REACH = np.log(800.0)  # below 1/800 of twice the range of x the curve goes on as a power of x
 
 
+@batch.of_cases
 @dataclass
 class MeasuredCurves:
     """B curves of n points. Their unknowns are the inputs of the model, then D0/wide, P0/high and tilt wide/high.
@@ -39,11 +42,6 @@ class MeasuredCurves:
     @property
     def names(self) -> tuple[str, ...]:
         return (*self.table.model.unknowns, *self.shifts)
-
-    def take(self, index: np.ndarray) -> "MeasuredCurves":
-        """Some of the curves."""
-        points = self.points and self.points.take(index)
-        return replace(self, x=self.x[index], wide=self.wide[index], high=self.high[index], points=points)
 
     def values(self, p: np.ndarray) -> dict[str, np.ndarray]:
         """Input -> its SI values (B, 1)."""

@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from solver.numerics import batch
+
 STEPS = 100  # at most
 _CLOSE = 1e-9  # steps of all unknowns below this end the search; all unknowns are of order 1
 #: Unknowns are then within 1e-4 of their spreads.
@@ -20,6 +22,7 @@ _STIFF = 1e10  # damping at which only rounding is left
 HUBER, MAD = 1.345, 1.4826
 
 
+@batch.of_cases
 class Data(NamedTuple):
     """The points of curves, and bounds and priors of their unknowns.
 
@@ -37,11 +40,8 @@ class Data(NamedTuple):
     stiffness: np.ndarray
     huber: bool = False
 
-    def take(self, index: np.ndarray) -> "Data":
-        """The data of some curves."""
-        return Data(*(array[index] for array in self[:6]), self.huber)
 
-
+@batch.of_cases
 class Minimum(NamedTuple):
     """Where the search ended: unknowns p (B, k), cost (B,), model (B, n) and its derivatives J (B, n, k), the weights
     (B, n) of the residuals' squares, and whether it ended by itself (B,)."""
@@ -52,10 +52,6 @@ class Minimum(NamedTuple):
     J: np.ndarray
     weights: np.ndarray
     ended: np.ndarray
-
-    def take(self, index: np.ndarray) -> "Minimum":
-        """The minima of some curves."""
-        return Minimum(*(array[index] for array in self))
 
 
 def minimise(

@@ -15,7 +15,7 @@ from solver.known import PACKAGE
 from solver.models.estimate import estimate
 from study import solving
 from study.data.dataset import model_attributes
-from study.in_words import FarOutside, estimates, far_outside
+from study.in_words import FarOutside, far_outside, sentences
 from study.inputs.reading import read
 from study.rules.rule import RULES, validity_of
 
@@ -139,7 +139,7 @@ def test_random_contacts(control):
     results = {name: getattr(solution, name) for name in ("a", "D", "p0", "p_max", "A0")} | {"lam0": solution.lam[:, 0]}
     solved = solution.status == 0
     inside, outside = ~beyond(given, results, 1) & solved, beyond(given, results, 50) & solved
-    said = np.any([*estimates._exceeded(given, PACKAGE).values()], axis=0)
+    said = np.any([*sentences._exceeded(given, PACKAGE).values()], axis=0)
     assert solved.mean() > 0.9 and inside.sum() > 20 and outside.sum() > 80
     assert not said[inside].any() and said[outside].mean() > 0.9
     if control == "P":
@@ -165,10 +165,10 @@ def test_the_estimate_of_what_is_refused_is_unknown():
 
 def test_a_large_grid_is_looked_at_here_and_there(unsolved, monkeypatch):
     sizes = []
-    real = estimates._exceeded
+    real = sentences._exceeded
     monkeypatch.setattr(
-        estimates, "_exceeded", lambda given, known: (sizes.append(len(given["micro"])), real(given, known))[1]
+        sentences, "_exceeded", lambda given, known: (sizes.append(len(given["micro"])), real(given, known))[1]
     )
     loads = [f"{load} N" for load in np.linspace(1, 5, 250)]
     assert len(said_before(**FILM | {"P": loads})) == 1 and said_before(**LINING | {"P": loads}) == []
-    assert all(50 < size <= estimates.MOST for size in sizes) and len(sizes) == 2
+    assert all(50 < size <= sentences.MOST for size in sizes) and len(sizes) == 2

@@ -15,10 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solver.numerics import batch
+
 #: At least this part of the points is in contact.
 _LEAST = 0.1
 
 
+@batch.of_cases
 class StickingPoints(NamedTuple):
     """y and weights w (B, n) of curves, the order (B, n) of their depths, how many of the deepest are in contact (B,),
     and whether errors count by themselves, (B,), or by their squares."""
@@ -37,9 +40,6 @@ class StickingPoints(NamedTuple):
         count = there.sum(axis=1)
         least = np.maximum((_LEAST * count).astype(int), np.minimum(unknowns + 1, count))
         return cls(y, w, order, count - least, np.full(len(x), robust), retractions(x, w))
-
-    def take(self, index: np.ndarray) -> "StickingPoints":
-        return StickingPoints(*(array[index] for array in self))
 
     def in_contact(
         self, load: np.ndarray, free: np.ndarray, base: np.ndarray, must: np.ndarray | None = None

@@ -99,9 +99,9 @@ def _film_part(body, h_a, octave, stiffness):
     level = body.whole(CUT * h_a / 2)[:, None]
     kappa, _, _ = film.waves()
     below = _kernel(body, h_a, k, level, film.step(k / CUT))
-    beyond, d_beyond = _kernel(body, h_a, CUT * kappa, level, 1 - film.step(kappa))
+    above, d_above = _kernel(body, h_a, CUT * kappa, level, 1 - film.step(kappa))
     p, end = CUT * h_a[:, None], level - 1
-    return *below, np.pi / 2 * film.transform(beyond, end, p), np.pi / 2 * film.transform(d_beyond, 0 * end, p), level
+    return *below, np.pi / 2 * film.transform(above, end, p), np.pi / 2 * film.transform(d_above, 0 * end, p), level
 
 
 def _kernel(body, h_a, k, level=None, factor=1.0):

@@ -21,7 +21,7 @@ from ..rough import adaptive
 from ..rough.answer import denser_rule
 from ..rough.error import STEEP, another_rule
 from ..rough.newton import LIMIT
-from ..rough.results import apart, stiffness_between
+from ..rough.results import off_edge, stiffness_between
 from ..shapes.paraboloid import Paraboloid
 from ..solution import Solution
 from ..status import Status
@@ -92,30 +92,30 @@ def _solved(function, cases, rtol, nodes, x):
     """:class:`~solver.solution.Solution` by the core; `nodes` is 0 of the cases that are handed back."""
     size, points, s = len(rtol), len(x), np.sqrt((1 - x) * (1 + x))
     place = np.flatnonzero(s > 0)
-    solved_at = apart(s[place], cases.law.rough)
+    solved_at = off_edge(s[place], cases.law.rough)
     shrink, ladder = s[place] / solved_at, np.array([*_MESHES, _FINER], dtype=np.int64)
     scalars, (p, lam) = np.empty((len(_SCALARS), size)), np.zeros((2, size, points))
     last, iterations = np.zeros((2, size), dtype=np.int32)
     rows = _inputs(cases, rtol) | {"p": p, "lam": lam, "nodes": last, "iterations": iterations}
     rows["fixed"] = np.ascontiguousarray(nodes, dtype=np.int64)
-    given = _Given(solved_at.tobytes())
+    callbacks = _Callbacks(solved_at.tobytes())
     shared = {"stride": size, "points": len(place), "rungs": len(ladder), "control": _CONTROLS.index(cases.control)}
     shared |= {"law": _law_of(cases.law.law), "layered": isinstance(cases.body, Hankel), "steps": LIMIT}
     shared |= {"octaves": OCTAVES[1] - OCTAVES[0] + 1, "first_octave": OCTAVES[0], "columns": points}
     shared |= {"ladder": pointer(ladder), "shrink": pointer(shrink), "place": pointer(place)}
-    shared |= {"mesh": OF_MESH(given.address_of(mesh_for)), "table": OF_TABLE(given.address_of(table_for))}
+    shared |= {"mesh": OF_MESH(callbacks.address_of(mesh_for)), "table": OF_TABLE(callbacks.address_of(table_for))}
     on_body, chunk = cases.law.law.curve is spot_curve, _CHUNK
     if on_body and len(np.unique(number(cases.law.own[0], "digest"))) > _FAMILIES:
         chunk = min(chunk, _FAMILIES)
     for low in range(0, size, chunk):
-        own = {name: pointer(values, low) for name, values in rows.items()}
+        of_chunk = {name: pointer(values, low) for name, values in rows.items()}
         if on_body:
             families, addresses = cells_of(cases.law.own[0][low : low + chunk])
-            own["cells"] = pointer(addresses)
-        own |= {"size": min(chunk, size - low), "scalars": pointer(scalars.T, low)}
-        if not function(byref(CBatch(**shared, **own)), -(-max(3 * _MESHES[-1], len(place)) // 32) * 32):
+            of_chunk["cells"] = pointer(addresses)
+        of_chunk |= {"size": min(chunk, size - low), "scalars": pointer(scalars.T, low)}
+        if not function(byref(CBatch(**shared, **of_chunk)), -(-max(3 * _MESHES[-1], len(place)) // 32) * 32):
             raise MemoryError("no memory for the compiled core")
-        given.raise_what_was_raised()
+        callbacks.raise_what_was_raised()
     values = dict(zip(_SCALARS, scalars, strict=True))
     missed = values["error"] > rtol  # on a mesh that the case asks for
     values["status"] = np.where(missed, Status.TOLERANCE_NOT_MET, Status.CONVERGED).astype(np.int8)
@@ -125,9 +125,9 @@ def _solved(function, cases, rtol, nodes, x):
 
 def _inputs(cases, rtol):
     """Name in batch.h -> contiguous array (B,) of the numbers of the cases."""
-    law, body, one = cases.law, cases.body, np.ones(len(rtol))
+    law, body, ones = cases.law, cases.body, np.ones(len(rtol))
     inputs = {"value": cases.value, "rtol": rtol, "p_star": law.p_star, "A_star": law.A_star, "E": body.E, "C": body.C}
-    beta, ratio = (own[:, 0] for own in law.own) if law.law.name == "power_law" else (one, one)
+    beta, ratio = (numbers[:, 0] for numbers in law.own) if law.law.name == "power_law" else (ones, ones)
     inputs |= {"beta": beta, "ratio": ratio}
     if isinstance(body, Hankel):
         kernel = body.kernel
@@ -136,23 +136,23 @@ def _inputs(cases, rtol):
     return {name: np.ascontiguousarray(values, dtype=float) for name, values in inputs.items()}
 
 
-class _Given:
+class _Callbacks:
     """What the core asks for while it solves, and what is raised meanwhile: in a callback of C that would be lost."""
 
     def __init__(self, s_bytes):
-        self.s_bytes, self.held, self.raised = s_bytes, [], []
+        self.s_bytes, self.structures, self.raised = s_bytes, [], []
 
     def address_of(self, make):
         """A callback: the address of what `make` returns, or 0. What it has returned is there until the call ends."""
 
         def of(*key):
             try:
-                made = None if self.raised else make(*key, self.s_bytes)
+                structure = None if self.raised else make(*key, self.s_bytes)
             except BaseException as error:  # Ctrl-C too
                 self.raised.append(error)
                 return 0
-            self.held.append(made)
-            return made.address if made else 0
+            self.structures.append(structure)
+            return structure.address if structure else 0
 
         return of
 
@@ -161,7 +161,7 @@ class _Given:
             raise self.raised[0]
 
 
-class Made(tuple):
+class CStructure(tuple):
     """A structure of C and the arrays to which it points: ``(structure, [arrays])``."""
 
     @property
@@ -170,13 +170,13 @@ class Made(tuple):
 
 
 def mesh_for(n, s_bytes):
-    """:class:`Made` of the :class:`.library.CMesh` of n nodes, with the points of profiles."""
+    """:class:`CStructure` of the :class:`.library.CMesh` of n nodes, with the points of profiles."""
     return _kept.get(("mesh", n, s_bytes), lambda: _mesh(mesh_of(n), np.frombuffer(s_bytes)))
 
 
 def table_for(n, octave, stiffness, s_bytes):
-    """:class:`Made` of the :class:`.library.CTable` of an octave of h/a and a class of stiffness on n nodes; None if
-    the core has no room for it."""
+    """:class:`CStructure` of the :class:`.library.CTable` of an octave of h/a and a class of stiffness on n nodes;
+    None if the core has no room for it."""
     key = "table", n, octave, stiffness, s_bytes
     return _kept.get(key, lambda: _table(mesh_of(n), octave, stiffness, np.frombuffer(s_bytes)))
 
@@ -198,12 +198,12 @@ def _mesh(mesh, profile):
         return at(np.vstack([mesh.K, mesh.edge]))
 
     (s, w), (dense, dense_w) = another_rule(mesh), denser_rule(mesh)
-    made = CMesh(
+    structure = CMesh(
         *(mesh.n, at(mesh.s), at(mesh.w), operator(mesh), at(stiffness_between(mesh, mesh.s))),
         *(at(mesh.basis(np.zeros(1))[0]), at(fine.s), at(fine.w), operator(fine)),
         *(points(fine.s), points(s, 2 * w * s), points(dense, dense_w * dense), points(profile)),
     )
-    return Made((made, arrays))
+    return CStructure((structure, arrays))
 
 
 def _blocks(array):
@@ -227,11 +227,11 @@ def _table(mesh, octave, stiffness, profile):
             return of_mesh, CRows(at(_blocks(of_mesh.product)), None, None, None, columns)
         return of_mesh, CRows(None, at(J.T), at(_blocks(J)), at(_blocks(phi)), columns)
 
-    (of_mesh, own), (_, fine) = rows(mesh), rows(finer_mesh(mesh))
+    (of_mesh, coarse), (_, fine) = rows(mesh), rows(finer_mesh(mesh))
     if of_mesh.spread.shape[1] > MOST_WAVES:
         return None
     s, _ = another_rule(mesh)
     points = (_blocks(between(octave, stiffness, np.ascontiguousarray(v))) for v in (finer_mesh(mesh).s, s, profile))
     k = at(few(SAMPLER, octave, stiffness).k)
-    made = CTable(*of_mesh.spread.shape, k, at(_blocks(of_mesh.spread)), own, fine, *map(at, points))
-    return Made((made, arrays))
+    structure = CTable(*of_mesh.spread.shape, k, at(_blocks(of_mesh.spread)), coarse, fine, *map(at, points))
+    return CStructure((structure, arrays))

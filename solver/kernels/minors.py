@@ -32,11 +32,11 @@ class LayerPowers(NamedTuple):
     @classmethod
     def of(cls, g, nu):
         """g : G1/G (B,); nu : Poisson ratio (B,)."""
-        B, one = np.zeros((len(g), 5, 5)), 1 - nu
-        B[:, 0, 2] = B[:, 3, 4] = g * (1 - 2 * nu) / (2 * one)
+        B, complement = np.zeros((len(g), 5, 5)), 1 - nu
+        B[:, 0, 2] = B[:, 3, 4] = g * (1 - 2 * nu) / (2 * complement)
         B[:, 0, 3] = B[:, 2, 4] = g
-        B[:, 1, 2], B[:, 1, 3], B[:, 2, 1] = -nu / one, 1.0, 2.0
-        B[:, 3, 0] = B[:, 4, 2] = 2 / (g * one)
+        B[:, 1, 2], B[:, 1, 3], B[:, 2, 1] = -nu / complement, 1.0, 2.0
+        B[:, 3, 0] = B[:, 4, 2] = 2 / (g * complement)
         B[:, 3, 1] = 2 * B[:, 1, 2]
         two = B @ B
         three = B @ two

@@ -58,15 +58,17 @@ class Stack(NamedTuple):
         of_base = np.where(self.rigid[:, None], 0.0, self.n)
         _, A2 = thin_layer_coefficients(of_base, self.nu, self.nu2[:, None], True)
         softness, slope = self.n[:, :1] / self.n * self.depth, self.cn.sum(axis=1) / 2
-        held = ~np.logical_or.accumulate(self.free[:, ::-1], axis=1)[:, ::-1]
-        slope = slope + np.where(held, softness * A2, 0.0).sum(axis=1)
+        on_base = ~np.logical_or.accumulate(self.free[:, ::-1], axis=1)[:, ::-1]
+        slope = slope + np.where(on_base, softness * A2, 0.0).sum(axis=1)
         group = np.cumsum(self.free[:, ::-1], axis=1)[:, ::-1]  # 0 is bonded to the base, 1 lies upon the lowest slip
-        squeezed, one = softness * (1 - 2 * self.nu) / (1 - self.nu) ** 2, self.nu / (1 - self.nu)
+        squeezed, lateral = softness * (1 - 2 * self.nu) / (1 - self.nu) ** 2, self.nu / (1 - self.nu)
         for number in range(1, int(group.max(initial=0)) + 1):
-            own = group == number
-            wide, stiff = ((own * v).sum(axis=1) for v in (self.depth * one, self.depth * self.n / self.n[:, :1]))
+            in_group = group == number
+            wide, stiff = (
+                (in_group * v).sum(axis=1) for v in (self.depth * lateral, self.depth * self.n / self.n[:, :1])
+            )
             stretched = wide**2 / np.where(stiff > 0, stiff, 1.0)
-            slope = slope + ((own * squeezed).sum(axis=1) + stretched) / 2
+            slope = slope + ((in_group * squeezed).sum(axis=1) + stretched) / 2
         return slope
 
     @property
@@ -109,12 +111,12 @@ class Stack(NamedTuple):
         does not decay is left out where the rest is small."""
         layer, X = self._under_top(u, layers, slopes=True)
         x4, x5 = at_surface(layer, u, X).transpose(1, 2, 0, 3)
-        one = 1 - self.nu[:, :1]
-        below, d_below = one * x5
+        complement = 1 - self.nu[:, :1]
+        below, d_below = complement * x5
         above, d_above = x4[0] - below, x4[1] - d_below
         if np.any(far := u >= _NEAR):
-            apart, d_apart = numerator(layer, u, X, self.nu[:, 0])
-            above, d_above = np.where(far, apart, above), np.where(far, d_apart, d_above)
+            decaying, d_decaying = numerator(layer, u, X, self.nu[:, 0])
+            above, d_above = np.where(far, decaying, above), np.where(far, d_decaying, d_above)
         L1 = above / below
         return L1, (d_above - L1 * d_below) / below
 

@@ -156,7 +156,7 @@ def _curve(density, field, y, sigma, cut):
     q, slope = _looked_up(density, field, 0, np.minimum(y, spread.LAST), sigma, cut)
     relief = _relief(density, sigma, cut)
     if (y > spread.LAST).any():
-        q, slope = spread.beyond(y, q, slope, relief)
+        q, slope = spread.extrapolated(y, q, slope, relief)
     (delta, w), dq = spread.depth(y, q, relief), slope * q / y
     spots = Curve(q, delta, dq, 2 * delta / y * (1 - y * dq / (w + q)))
     if (sigma > 0).all():
@@ -266,7 +266,7 @@ class _Body(NamedTuple):
         q, slope = self.looked_up(0, np.minimum(y, spread.LAST), *own)
         relief = _relief(self.density, sigma, cut)
         if (y > spread.LAST).any():
-            q, slope = spread.beyond(y, q, slope, relief)
+            q, slope = spread.extrapolated(y, q, slope, relief)
         (delta, w), dq = spread.depth(y, q, relief), slope * q / y
         spots = Curve(q, delta, dq, 2 * delta / y * (1 - y * dq / (w + q)))
         if (sigma > 0).all():

@@ -184,7 +184,7 @@ def _curve(column, t, q, X, power):
     its largest error at and between them. Raises ValueError where every degree is too far away, or falls."""
     degrees = range(min(_DEGREE, len(t) - 2) + 1)
     tried = [fitted(t, q, X, degree, power=power, span=(t[0], t[-1])) for degree in degrees]
-    apart, tried = _apart([curve for curve, _ in tried], t), tried[1:]  # degree 1 is compared with degree 0
+    differences, tried = _apart([curve for curve, _ in tried], t), tried[1:]  # degree 1 is compared with degree 0
     far = np.array([error[1:-1].max() for _, error in tried])  # no curve through the others tells the ends
     if far.min() > _FAR:
         row = int(np.argmax(tried[far.argmin()][1][1:-1])) + 2
@@ -192,9 +192,9 @@ def _curve(column, t, q, X, power):
             f"column {column}, row {row}: is {100 * far.min():.0f} % off a smooth curve through the other rows: "
             f"at most {100 * _FAR:.0f} % are allowed"
         )
-    at_rows, far = far, np.maximum(far, apart.max(axis=1))
+    at_rows, far = far, np.maximum(far, differences.max(axis=1))
     if far.min() > _FAR:
-        row = int(np.argmax(apart[far.argmin()])) // _STEPS + 1
+        row = int(np.argmax(differences[far.argmin()])) // _STEPS + 1
         raise ValueError(
             f"column {column}, rows {row} and {row + 1}: smooth curves through the rows differ by "
             f"{100 * far.min():.0f} % between them: at most {100 * _FAR:.0f} % are allowed: add rows there"

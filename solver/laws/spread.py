@@ -71,7 +71,7 @@ def unknown(delta, q, relief):
     return np.sqrt(delta / depth(1.0, q, relief)[0])
 
 
-def beyond(y, q, slope, relief):
+def extrapolated(y, q, slope, relief):
     """q and d ln q/d ln y, where y is larger from those at LAST: w + q goes on as the power of y that it is there. It
     is nearly the first power, so that δ is nearly constant."""
     w = depth(1.0, q, relief)[1]

@@ -88,7 +88,7 @@ def _is_interval(text):
 
 
 @np.errstate(all="ignore")
-def tried(law, E, given):
+def tried(law, E, values):
     """Try a law at three of its cases: of modulus E (B,) and its parameters, name -> (B,).
 
     It finds slips that would make a wrong number look right, or end deep in the solver; NaN is none, for such a case
@@ -96,8 +96,8 @@ def tried(law, E, given):
     increase from 0; a derivative or an inverse is not that of the curve.
     """
     places = np.linspace(0, len(E) - 1, len(_Y)).astype(int)
-    E, given = E[places], {name: given[name][places] for name in law.arguments}
-    bound, curve, area = _shapes(law, E, given)
+    E, values = E[places], {name: values[name][places] for name in law.arguments}
+    bound, curve, area = _shapes(law, E, values)
     # no contact is beyond full contact, or where p is above E: there a law may be what it likes
     here = (area <= 1) & (bound.p_star[:, None] * curve.q <= E[:, None])
     small, above, below = (_curve(law, y, bound.own) for y in (_ZERO * _Y, _Y * np.exp(_STEP), _Y * np.exp(-_STEP)))
@@ -106,23 +106,23 @@ def tried(law, E, given):
         falls[:, 1:] = here[:, 1:] & here[:, :-1] & (at[:, 1:] < at[:, :-1] * (1 - _ROUNDING))
         falls |= here & (getattr(small, name) > _NEAR * at)
         if falls.any():
-            _refuse(law, f"curve: {name} must increase from 0 at y = 0", given, falls)
+            _refuse(law, f"curve: {name} must increase from 0 at y = 0", values, falls)
         slope = np.log(getattr(above, name) / getattr(below, name)) / (2 * _STEP)  # of ln q over ln y
         numbers, checked = (slope, _Y * getattr(curve, f"d{name}") / at, _WRONG), here & (at > _TINY)
         rising = checked & (slope > _FLAT / _STEP)
-        _compare(law, f"curve: d{name} must be the derivative of {name} by y", numbers, rising, given)
+        _compare(law, f"curve: d{name} must be the derivative of {name} by y", numbers, rising, values)
         if getattr(law, inverse):
-            again = _curve(law, _of_shape(law, inverse, at, *bound.own), bound.own)
-            numbers = at, getattr(again, name), _INVERSE
-            _compare(law, f"{inverse} must be the inverse of {name} of curve", numbers, checked, given)
+            returned = _curve(law, _of_shape(law, inverse, at, *bound.own), bound.own)
+            numbers = at, getattr(returned, name), _INVERSE
+            _compare(law, f"{inverse} must be the inverse of {name} of curve", numbers, checked, values)
 
 
-def _shapes(law, E, given):
+def _shapes(law, E, values):
     """The law bound to its cases, and curve and area at _Y, if all of its functions return what they must."""
-    parts = _called(law, "scales", E, **given)
+    parts = _called(law, "scales", E, **values)
     if not (isinstance(parts, (tuple, list)) and len(parts) >= 2 and all(np.shape(v) in ((), E.shape) for v in parts)):
         _refuse(law, "scales must return p*, A* and what else the functions need, each of the shape of E")
-    bound = law.bind(E, **given)
+    bound = law.bind(E, **values)
     curve, edge = _curve(law, _Y, bound.own), _called(law, "edge", *bound.own)
     if not (isinstance(edge, (tuple, list)) and len(edge) == 2):
         _refuse(law, "edge must return two values, gamma and beta")
@@ -130,17 +130,17 @@ def _shapes(law, E, given):
         _broadcasts(law, name, value, _Y)
     if law.touching:
         A = bound.A_star * curve.g[:, 0]
-        _broadcasts(law, "touching", _called(law, "touching", A, **given), A)
+        _broadcasts(law, "touching", _called(law, "touching", A, **values), A)
     return bound, curve, _of_shape(law, "area", _Y, curve.q, *bound.own)
 
 
-def _compare(law, rule, numbers, checked, given):
+def _compare(law, rule, numbers, checked, values):
     """Refuse a law if two arrays differ at too many of the points that are `checked`."""
     right, stated, most = numbers
     checked = checked & np.isfinite(right) & np.isfinite(stated)
     wrong = checked & (np.abs(stated - right) > most * np.abs(right))
     if wrong.sum() > _PART * checked.sum():
-        _refuse(law, rule, given, wrong)
+        _refuse(law, rule, values, wrong)
 
 
 def _curve(law, y, own):

@@ -85,15 +85,15 @@ def beyond_end(problem, solution):
     """(B,) bool: cases with numbers of which p(0) or a pressure of the profile is beyond the end of the law of spots
     that feel the body, and all cases whose law ends at once. `solution` is in the units of `problem`, whose bases have
     names."""
-    beyond = np.zeros(len(problem), dtype=bool)
+    past_end = np.zeros(len(problem), dtype=bool)
     felt = np.flatnonzero(problem.feels_layer())
     scaled = dimensionless(problem.take(felt))
     for rows in of_one_law(scaled):
         index, most = felt[rows], end(law_of(scaled.take(rows)))
         largest = np.fmax(solution.p0[index], np.fmax.reduce(solution.p[index], axis=1, initial=0.0))
         solved = np.isin(solution.status[index], (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
-        beyond[index] = solved & (largest > most * problem.E2[index]) | ~(most > 0)
-    return beyond
+        past_end[index] = solved & (largest > most * problem.E2[index]) | ~(most > 0)
+    return past_end
 
 
 def edge_error(problem, solution):

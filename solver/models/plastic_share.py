@@ -39,7 +39,7 @@ def _share_above(level):
     first = np.clip(np.where(rises, after - _POINTS, after), 0, m - _POINTS)
     places = first[:, None] + np.arange(_POINTS)
     x, others = level[rows[:, None], places], ~np.eye(_POINTS, dtype=bool)
-    weights = [np.prod(x[:, own] / (x[:, own] - x[:, i, None]), axis=1) for i, own in enumerate(others)]
+    weights = [np.prod(x[:, rest] / (x[:, rest] - x[:, i, None]), axis=1) for i, rest in enumerate(others)]
     crossing = np.exp((np.stack(weights, axis=1) * np.log(_S2[places])).sum(axis=1))
     crossing = np.clip(crossing, np.append(0.0, _S2)[after], _S2[after])
     np.subtract.at(share, rows, np.where(rises, crossing, -crossing))

@@ -25,22 +25,22 @@ def pressure_in_spots(problem, solution, lam0):
     the middle by as much less as the middle does its mean.
     """
     felt = problem.feels_layer() & np.isfinite(solution.p_max)
-    made = np.where(felt, [solution.p_max, np.zeros(len(problem))], np.nan)
+    answers = np.where(felt, [solution.p_max, np.zeros(len(problem))], np.nan)
     p0, p_max = solution.p0 / problem.E2, solution.p_max / problem.E2
     for index, part, body in _of_one_law(problem, felt & _may_be_hard(problem)):
         law = part.known.laws[str(part.micro[0])]
         b = largest_radius(part, body, lam0[index], p0[index])
         for rows, member in _wide_spots(part, body, b):
-            here, some, own = index[rows], part.take(rows), b[rows]
+            here, some, radii = index[rows], part.take(rows), b[rows]
             unit, middle, ease = (body.E / (part.Ra * np.sqrt(part.Nbar)))[rows], p_max[here], 1.0
             if law.yielded:
                 bound = law_of(some)
-                middle, ease = elastic_plastic.in_the_middle(np.sqrt(np.pi) * own[:, None], *bound.own)
+                middle, ease = elastic_plastic.in_the_middle(np.sqrt(np.pi) * radii[:, None], *bound.own)
                 middle = bound.p_star * middle
             others = (p0[here] / unit,) * member.alone
-            largest, made[1, here] = peaks_of(member).at(np.minimum(own, member.reach), middle / unit, *others)
-            made[0, here] += ease * (largest * unit - middle) * problem.E2[here]
-    return made
+            largest, answers[1, here] = peaks_of(member).at(np.minimum(radii, member.reach), middle / unit, *others)
+            answers[0, here] += ease * (largest * unit - middle) * problem.E2[here]
+    return answers
 
 
 def lifts_off(problem, lam):

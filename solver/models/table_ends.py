@@ -19,16 +19,16 @@ def beyond_table(scaled, solution):
 
     scaled : the problem in units R = E2* = 1
     """
-    beyond, of_table = np.zeros(len(scaled), dtype=bool), np.char.startswith(scaled.shape, PREFIX)
+    past_end, of_table = np.zeros(len(scaled), dtype=bool), np.char.startswith(scaled.shape, PREFIX)
     for word in np.unique(scaled.shape[of_table]).tolist():
         index = np.flatnonzero(scaled.shape == word)
         most = shape_of(scaled.take(index)).most()
         if scaled.control == "a":
-            beyond[index] = scaled.value[index] >= most
+            past_end[index] = scaled.value[index] >= most
             continue
         left = np.flatnonzero(solution.status[index] != Status.CONVERGED)
         if len(left):
             part, control = scaled.take(index[left]), scaled.control
             last = replace(part, control="a", value=most[left] * _LAST).but(rtol=_ROUGHLY, w_adhesion=0.0)
-            beyond[index[left]] = part.value > getattr(solve_named(last, np.zeros(0)), control)
-    return beyond
+            past_end[index[left]] = part.value > getattr(solve_named(last, np.zeros(0)), control)
+    return past_end

@@ -134,10 +134,10 @@ def solve_on(start, limit=0, budget=BUDGET):
     if limit or not len(failed):
         return iterated
     rest = np.flatnonzero(iterated.closed)
-    again = _by_radius(cases.take(failed), mesh, (most - iterated.count)[failed])
-    ends = [iterated.at.take(rest), again.at], [rest, failed]
-    iterated.closed[failed] = again.closed
-    iterated.count[failed] += again.count
+    searched = _by_radius(cases.take(failed), mesh, (most - iterated.count)[failed])
+    ends = [iterated.at.take(rest), searched.at], [rest, failed]
+    iterated.closed[failed] = searched.closed
+    iterated.count[failed] += searched.count
     return iterated._replace(at=batch.join(*ends, cases=cases))
 
 

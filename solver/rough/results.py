@@ -146,7 +146,7 @@ def cornered(ev, rows):
     return area, np.abs(few - many).sum(axis=1) / area, missed[:, -1], missed.max(axis=1)
 
 
-def apart(s, rough):
+def off_edge(s, rough):
     """The points (m,) where the pressure at s (m,) > 0 is solved: those of a smooth punch are apart from the edge."""
     return s if rough else np.maximum(s, _APART)
 
@@ -155,7 +155,7 @@ def profiles(ev, x, rows):
     """p (b, m) in E2* and λ (b, m) of the cases `rows` (b,) at the radii x (m,); 0 at the edge."""
     s = np.sqrt((1 - x) * (1 + x))
     inner, law = s > 0, ev.cases.law.take(rows)
-    solved_at = apart(s[inner], law.rough)
+    solved_at = off_edge(s[inner], law.rough)
     y = interpolate(ev, solved_at, rows=rows)
     q = law.evaluate(y).q * (s[inner] / solved_at)
     p, lam = np.zeros((2, len(q), len(s)))

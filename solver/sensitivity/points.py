@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..numerics.mesh import gauss_rule
-from ..rough.results import apart, interpolate, stiffness_between
+from ..rough.results import interpolate, off_edge, stiffness_between
 
 #: Gauss points between any two nodes at which a λ that bends is summed. With 5 points the derivatives of Ar/An are as
 #: right as the other ones (tests/sensitivity/test_sensitivities.py).
@@ -18,7 +18,7 @@ def between(start, contacts, s):
     polynomial, and small at the edge as the right-hand side is.
     """
     ev, now = start.at, contacts.at
-    law, inside = now.cases.law, apart(s, now.cases.law.rough)
+    law, inside = now.cases.law, off_edge(s, now.cases.law.rough)
     blocks = len(now.state.eta) // len(ev.state.eta)
     y = interpolate(ev, inside)
     curve = ev.cases.law.evaluate(y)

@@ -11,7 +11,7 @@ import numpy as np
 from ..numerics import batch
 from ..parameters import Parameter
 from .cone import HALF_ANGLE, cotangent
-from .shape import Kind, angle, beyond, column, load_by_quadrature, radii_at
+from .shape import Kind, angle, column, half_chord, load_by_quadrature, radii_at
 
 #: Radius ρ of the tip, and what the tip is.
 TIP_RADIUS = Parameter(interval="[1e-12, 1e6]", powers=(0, 1))
@@ -56,13 +56,13 @@ class BluntCone(NamedTuple):
 
     def lifted(self, t):
         rho, cot, b = (column(values) for values in (self.rho, self.cot, self.b))
-        q, theta = beyond(t, b), angle(t, b)
+        q, theta = half_chord(t, b), angle(t, b)
         paraboloid = t / rho * (t - q + b * theta)
         return np.where(column(self.ball), t * (self._logarithm(t, q) + cot * theta), paraboloid)
 
     def lifted_slope(self, t):
         rho, cot, b, side = (column(values) for values in (self.rho, self.cot, self.b, self.side))
-        q, theta = beyond(t, b), angle(t, b)
+        q, theta = half_chord(t, b), angle(t, b)
         paraboloid = (2 * (t - q) + b * theta) / rho
         inner = np.minimum(t, b)
         on_ball = inner * rho / ((rho - inner) * (rho + inner))
@@ -71,7 +71,7 @@ class BluntCone(NamedTuple):
         return np.where(column(self.ball), ball, paraboloid)
 
     def lifted_load(self, a):
-        rho, b, q, theta = self.rho, self.b, beyond(a, self.b), angle(a, self.b)
+        rho, b, q, theta = self.rho, self.b, half_chord(a, self.b), angle(a, self.b)
         closed = (2 / 3 * a**3 - a**2 * q + q**3 / 3 + (a**2 * b * theta + b**2 * q) / 2) / rho
         return np.where(self.ball, load_by_quadrature(self, a), closed)
 

@@ -7,7 +7,7 @@ import numpy as np
 from ..numerics import batch
 from ..parameters import Parameter
 from .cone import HALF_ANGLE, cotangent
-from .shape import Kind, angle, beyond, column, radii_at
+from .shape import Kind, angle, column, half_chord, radii_at
 
 #: The radius b of what is flat around the axis.
 FLAT_RADIUS = Parameter(interval="[1e-9, 1e3]", powers=(0, 1))
@@ -39,10 +39,10 @@ class Frustum(NamedTuple):
 
     def lifted_slope(self, t):
         b = column(self.b)
-        return column(self.cot) * np.where(t < b, 0.0, angle(t, b) + b / beyond(t, b))
+        return column(self.cot) * np.where(t < b, 0.0, angle(t, b) + b / half_chord(t, b))
 
     def lifted_load(self, a):
-        return self.cot / 2 * (a**2 * angle(a, self.b) + self.b * beyond(a, self.b))
+        return self.cot / 2 * (a**2 * angle(a, self.b) + self.b * half_chord(a, self.b))
 
     def drop(self, a, s):
         _, inwards = radii_at(a, s)

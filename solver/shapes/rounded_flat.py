@@ -7,7 +7,7 @@ import numpy as np
 from ..numerics import batch
 from ..parameters import Parameter
 from .frustum import FLAT_RADIUS
-from .shape import Kind, beyond, column, radii_at
+from .shape import Kind, column, half_chord, radii_at
 
 #: Radius ρ of the edge.
 EDGE_RADIUS = Parameter(interval="[1e-12, 1e6]", powers=(0, 1))
@@ -39,15 +39,15 @@ class RoundedFlat(NamedTuple):
     def lifted(self, t):
         # q - b arccos(b/t), with q = sqrt(t² - b²), and arccos(b/t) = arctan(q/b)
         b = column(self.b)
-        return t / column(self.rho) * b * _over_arctangent(beyond(t, b) / b)
+        return t / column(self.rho) * b * _over_arctangent(half_chord(t, b) / b)
 
     def lifted_slope(self, t):
         b = column(self.b)
-        q = beyond(t, b)
+        q = half_chord(t, b)
         return (q + b * _over_arctangent(q / b)) / column(self.rho)
 
     def lifted_load(self, a):
-        z = beyond(a, self.b) / self.b
+        z = half_chord(a, self.b) / self.b
         return self.b**3 / self.rho * (z**3 / 6 + (1 + z**2) / 2 * _over_arctangent(z))
 
     def drop(self, a, s):

@@ -96,14 +96,14 @@ def no_kinks(values):
     return np.empty((len(values), 0))
 
 
-def beyond(t, b):
+def half_chord(t, b):
     """sqrt(t² - b²), or 0 where t < b: without a difference of squares. The arguments broadcast."""
     return np.sqrt(np.maximum(t - b, 0.0) * (t + b))
 
 
 def angle(t, b):
     """arccos(b/t), or 0 where t < b: right also where t is just above b > 0. The arguments broadcast."""
-    return np.arctan2(beyond(t, b), b)
+    return np.arctan2(half_chord(t, b), b)
 
 
 def radii_at(a, s):

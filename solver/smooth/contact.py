@@ -33,8 +33,8 @@ def not_sticking(part, x):
     if part.control != "a" and len(lost):  # the contact may be on another branch
         few = part.take(lost), shape.take(lost), body.take(lost)
         response, counts = smallest(part.control, part.value[lost], *few[1:])
-        again, _ = _touching(*few, (response, counts + solution.iterations[lost]), x)
-        solution = Solution.join(len(part), len(x), [(np.arange(len(part)), solution), (lost, again)])
+        other_branch, _ = _touching(*few, (response, counts + solution.iterations[lost]), x)
+        solution = Solution.join(len(part), len(x), [(np.arange(len(part)), solution), (lost, other_branch)])
     outside = beyond_profile(part, shape, lambda index, a: State.free(respond(shape.take(index), body.take(index), a)))
     return solution.refused(outside, Status.OUTSIDE_LAW)
 

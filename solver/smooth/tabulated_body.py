@@ -72,10 +72,10 @@ class Tabulated(NamedTuple):
         panel = np.maximum(np.ceil(np.log2(np.maximum(share, 0.5))), 0.0).astype(int)
         low = np.where(panel > 0, 2.0 ** (panel - 1.0), 0.0)
         local = 2 * (share - low) / np.where(panel > 0, low, 1.0) - 1
-        beyond = u >= _END
+        past_end = u >= _END
         rows = np.arange(len(u))[:, None]
-        terms = self.series[rows, np.where(beyond, 0, panel)]
-        return np.where(beyond, 0.0, _clenshaw(terms, np.where(beyond, 0.0, local)))
+        terms = self.series[rows, np.where(past_end, 0, panel)]
+        return np.where(past_end, 0.0, _clenshaw(terms, np.where(past_end, 0.0, local)))
 
 
 def where_slow(body):

@@ -53,9 +53,9 @@ def read_block(path: Path) -> Block:
     """The block in a file. Raises Damaged, Unusable for a folder or a pipe, OSError when it cannot be read, or
     MemoryError."""
     check_regular(path)
-    again = "the same command computes its cases again"
+    remedy = "the same command computes its cases again"
     if not is_whole(path):
-        raise Damaged(f"{path}: is no whole block; {again}")
+        raise Damaged(f"{path}: is no whole block; {remedy}")
     try:
         with open(path, "rb") as file:
             head = json.loads(str(np.load(file, allow_pickle=False)))
@@ -68,4 +68,4 @@ def read_block(path: Path) -> Block:
         if short_of_memory(error) or getattr(error, "errno", None):
             raise
         # the checksum fits, the content does not: not written by us
-        raise Damaged(f"{path}: is no whole block; {again}") from error
+        raise Damaged(f"{path}: is no whole block; {remedy}") from error

@@ -30,9 +30,9 @@ def clean(store: Store) -> list[str]:
         for path in gone:
             path.unlink(missing_ok=True)
         store.remove_litter()
-    kept = f"; the study needs the other {counted(len(used), 'block')}" if used else ""
+    rest = f"; the study needs the other {counted(len(used), 'block')}" if used else ""
     what = f"removed {_counted([stock.blocks[path] for path in gone])}" if gone else "nothing to remove"
-    return [f"{store.folder}: {what}{kept}"]
+    return [f"{store.folder}: {what}{rest}"]
 
 
 @contextmanager

@@ -23,7 +23,7 @@ def owner_of(condition: Condition, definition: Definition) -> str:
 def differences(text: str, other: str) -> list[str]:
     """The inputs in which two study files differ: "Ra: 0.004 there, 0.002 here". [] if one is no study file."""
     try:
-        there, here = (dict(_inputs(tomllib.loads(one))) for one in (text, other))
+        there, here = (dict(_inputs(tomllib.loads(source))) for source in (text, other))
     except (ValueError, RecursionError):
         return []
     names = [name for name in {**there, **here} if there.get(name) != here.get(name) and name not in UNNAMED]

@@ -108,13 +108,13 @@ def stresses_of(problem: Problem, solution: Solution, names: tuple[str, ...]) ->
     from solver.yields.below import central_spot
     from solver.yields.contact import of_contacts  # most studies want none
 
-    places, made = {("", "_r", "_z"): of_contacts(problem, solution)}, {}
+    places, columns = {("", "_r", "_z"): of_contacts(problem, solution)}, {}
     if {*central_spot.SPOT_EXTREMES} & {*names}:
         places["", "_z"] = central_spot.of_contacts(problem, solution)
     for ends, stresses in places.items():
         for name, parts in stresses.items():
-            made |= {f"{name}{end}": part for end, part in zip(ends, parts, strict=True)}
-    return made
+            columns |= {f"{name}{end}": part for end, part in zip(ends, parts, strict=True)}
+    return columns
 
 
 def derivatives_of(problem: Problem, solution: Solution, task: Parcel) -> dict[str, np.ndarray]:

@@ -134,32 +134,34 @@ def check_replaceable(order: Order, state: WindowFiles) -> None:
             raise Unusable(file.path, file.kind, f"{file.reason}; move it away, or use --results DIR")
     same_file = order.renew and all(same_tables(file.text, order.definition.text) for file in rivals)
     if rivals and not order.force and not same_file:
-        way = f"{program()} run --force {order.definition.name}" if order.renew else "--force"
-        refusal = _refusal(order, rivals[0], way) if state.is_one else _refusal_of_many(order, state, rivals, way)
+        command = f"{program()} run --force {order.definition.name}" if order.renew else "--force"
+        refusal = (
+            _refusal(order, rivals[0], command) if state.is_one else _refusal_of_many(order, state, rivals, command)
+        )
         if refusal:
             raise StudyError([refusal])
 
 
-def _refusal(order: Order, condition: Condition, way: str) -> str:
+def _refusal(order: Order, condition: Condition, command: str) -> str:
     """Why a file of other results must not be replaced; "" if all its cases are in this study."""
-    made = f'; it was made by "{on_one_line(condition.command, 80)}"' if condition.command else ""
+    maker = f'; it was made by "{on_one_line(condition.command, 80)}"' if condition.command else ""
     if condition.numerics != NUMERICS_VERSION:
         owner = f"version {condition.numerics} of the numerics, this is {NUMERICS_VERSION}"
-        choice = f"{way} computes them again, --results DIR elsewhere"
-        return f"{condition.path}: holds results of {owner}: {choice}{made}"
+        choice = f"{command} computes them again, --results DIR elsewhere"
+        return f"{condition.path}: holds results of {owner}: {choice}{maker}"
     lost = lost_cases(order.store, condition.digest)
     if lost and not lost[0]:
         return ""
     owner = owner_of(condition, order.definition)
     what = f"{lost[0]} of its {lost[1]} cases are not in this one" if lost else "which cases cannot be told"
-    choice = f"{way} replaces them, --results DIR writes elsewhere"
-    return f"{condition.path}: holds results of {owner}, {what}: {choice}{made}"
+    choice = f"{command} replaces them, --results DIR writes elsewhere"
+    return f"{condition.path}: holds results of {owner}, {what}: {choice}{maker}"
 
 
-def _refusal_of_many(order: Order, state: WindowFiles, rivals: list[Condition], way: str) -> str:
+def _refusal_of_many(order: Order, state: WindowFiles, rivals: list[Condition], command: str) -> str:
     """Why files of other results must not be removed."""
     what = f"holds {counted(len(rivals), 'part')} of {of_what(rivals[0], order.definition)}"
-    return f"{state.path}: {what}: {way} removes them, --results DIR writes elsewhere"
+    return f"{state.path}: {what}: {command} removes them, --results DIR writes elsewhere"
 
 
 def status_values(words: list[str]) -> tuple[int, ...]:

@@ -63,8 +63,8 @@ def _make_room(order: Order, state: WindowFiles) -> None:
         order.store.remove_litter()
     for file in state.wrong:
         if state.is_one:
-            kept = f"it is written again, {target(file.path)}.damaged keeps it"
-            log.warning("%s: %s; %s", file.path, file.reason, kept)
+            note = f"it is written again, {target(file.path)}.damaged keeps it"
+            log.warning("%s: %s; %s", file.path, file.reason, note)
             continue
         with suppress(FileNotFoundError):  # another run has put it away
             aside = put_away(file)

@@ -43,8 +43,8 @@ def connected(address: str, listens: float, answers: float):
     except MemoryError:
         raise
     except Exception as error:  # any: an answer that the client does not understand raises whatever it does
-        said = str(error) or type(error).__name__
-        raise StudyError([f"--scheduler {address}: no scheduler answers there ({said})"]) from None
+        words = str(error) or type(error).__name__
+        raise StudyError([f"--scheduler {address}: no scheduler answers there ({words})"]) from None
 
 
 def _is_there(address: str, listens: float, answers: float) -> bool:

@@ -83,9 +83,9 @@ def settled_slope(rows):
 def _along(rows, y):
     """x = 2 v - 1 of the series at y (B, m), dx/d ln y, and ln(y/end), 0 where y is not beyond the end."""
     scale, last = number(rows, "scale"), number(rows, "end")
-    beyond = np.log(np.maximum(y / last, 1.0))
+    past_end = np.log(np.maximum(y / last, 1.0))
     beta, width = scale * np.minimum(y, last), 2 * number(rows, "width")
-    return width * np.arcsinh(beta) - 1, width * beta / np.hypot(1, beta), beyond
+    return width * np.arcsinh(beta) - 1, width * beta / np.hypot(1, beta), past_end
 
 
 def _series(rows, which, x):
@@ -97,12 +97,14 @@ def _series(rows, which, x):
 
 def exponent(rows, which, y):
     """P, G or Q at y (B, m), and its derivative by ln y."""
-    x, dx, beyond = _along(rows, y)
+    x, dx, past_end = _along(rows, y)
     value, slope = _series(rows, which, x)
     last, bend = (rows[:, _AT[name] + which, None] for name in ("slope_P", "bend_P"))
     settles = number(rows, "settles")
-    turned = bend * -np.expm1(-settles * beyond) / settles
-    return value + (last + bend / settles) * beyond - turned / settles, np.where(beyond > 0, last + turned, slope * dx)
+    turned = bend * -np.expm1(-settles * past_end) / settles
+    return value + (last + bend / settles) * past_end - turned / settles, np.where(
+        past_end > 0, last + turned, slope * dx
+    )
 
 
 def _pressure(rows, y):
@@ -125,8 +127,8 @@ def spot_guess(q, rows):
     r, last = np.cbrt(np.pi / 2 * np.maximum(q, 0.0)), number(rows, "end_r")
     x = 2 * number(rows, "width_r") * np.arcsinh(number(rows, "scale") * np.minimum(r, last)) - 1
     inside, _ = clenshaw(rows[:, -GUESS:], x)
-    beyond = np.log(np.maximum(r / last, 1.0))
-    return np.minimum(r, last) * np.exp(inside + beyond * 3 / (3 + settled_slope(rows)))
+    past_end = np.log(np.maximum(r / last, 1.0))
+    return np.minimum(r, last) * np.exp(inside + past_end * 3 / (3 + settled_slope(rows)))
 
 
 def spot_from_pressure(q, rows):

@@ -109,7 +109,9 @@ class Family(NamedTuple):
         widths = 1 / np.arcsinh(scale * end), 1 / np.arcsinh(scale * end_r)
         most = 2 / np.pi * end_r**3 if self.known else 0.0
         turn = _turn(scale, end, self.P) if self.disc else (end, 0.0)
-        series = [np.append(one, np.zeros(terms - len(one))) for one in (self.P, self.G, self.Q)]
+        series = [
+            np.append(coefficients, np.zeros(terms - len(coefficients))) for coefficients in (self.P, self.G, self.Q)
+        ]
         return np.concatenate(
             [
                 [scale, widths[0], end, widths[1], end_r, *slopes, *bends, settles, most, *turn, self.digest],
@@ -278,10 +280,10 @@ def _while_like_hex(cell, N, reach):
         return reach
     b = reach * np.sqrt((1 + np.arange(_SCANNED)) / _SCANNED)
     more = _ratio(cell, N, hexagonal, of_hex, b) - _bare_ratio(b)
-    beyond = np.flatnonzero(~(more <= _SOFT))
-    if not len(beyond):
+    too_soft = np.flatnonzero(~(more <= _SOFT))
+    if not len(too_soft):
         return reach
-    i = int(beyond[0])
+    i = int(too_soft[0])
     low, high = (more[i - 1] if i else 0.0), more[i]
     part = (_SOFT - low) / (high - low) if np.isfinite(high) else 0.0
     lam = (b[i - 1] ** 2 if i else 0.0) * (1 - part) + part * b[i] ** 2

@@ -32,12 +32,12 @@ def members(lattice, pitch, kernel, m):
     alone = lattice == SUMMIT
     lattice = "disc" if alone else lattice
     first, index = different(lattice, pitch, kernel, m)
-    made = []
+    distinct = []
     for key, i in first:
-        own = family(key, kernel, m, i)
+        solved = family(key, kernel, m, i)
         cell = Cell(lattice, key[2], of_kernel(kernel.take([i]), float(m[i])))
-        made.append(Member((*key, alone), cell, own.reach, own.known, alone))
-    return made, index
+        distinct.append(Member((*key, alone), cell, solved.reach, solved.known, alone))
+    return distinct, index
 
 
 def peaks_of(member):

@@ -126,10 +126,10 @@ class SummitPeaks(NamedTuple):
         values, r, lone = np.array(p_max, dtype=float), np.zeros(len(b)), 2 * b / np.pi
         some = np.flatnonzero(np.log(b) >= self.w[0]) if len(self.series[0]) else np.zeros(0, dtype=int)
         if len(some):
-            found = largest(self._values(b[some], p[some]), self.breaks)
-            ring = found.ring & (found.value * lone[some] > values[some])
-            values[some] = np.where(ring, found.value * lone[some], values[some])
-            r[some] = np.where(ring, np.sqrt(found.square), 0.0)
+            highest = largest(self._values(b[some], p[some]), self.breaks)
+            ring = highest.ring & (highest.value * lone[some] > values[some])
+            values[some] = np.where(ring, highest.value * lone[some], values[some])
+            r[some] = np.where(ring, np.sqrt(highest.square), 0.0)
         return values, r
 
 
@@ -241,27 +241,27 @@ def _table(looked_up, w):
         first = np.where(changed[1:].any(axis=0), 1 + changed[1:].argmax(axis=0), _SECTIONS - 1)
         ends = np.stack([fine[first - 1, row], fine[first, row]])
     edges, pieces = [w[0], *ends[1], w[1]], []
-    for low, high, own in zip(edges[:-1], edges[1:], [kind[0], *kind[last + 1]], strict=True):
-        pieces += _pieces(looked_up, low, high, own, _HALVINGS)
+    for low, high, kind_there in zip(edges[:-1], edges[1:], [kind[0], *kind[last + 1]], strict=True):
+        pieces += _pieces(looked_up, low, high, kind_there, _HALVINGS)
     lows, highs, kinds, series = (np.array(column) for column in zip(*pieces, strict=True))
     return Peaks(np.append(lows, highs[-1]), kinds % 2 == 1, kinds >= 2, series)
 
 
-def _kind(found):
+def _kind(peaks):
     """1 in a ring, and 2 more where it lifts off."""
-    return found.ring + 2 * found.lifts
+    return peaks.ring + 2 * peaks.lifts
 
 
 def _pieces(looked_up, low, high, kind, halvings):
     """(low, high, kind, series) of pieces of the table; those in the middle need no series."""
     if kind % 2 == 0:
         return [(low, high, kind, np.zeros((2, _TERMS)))]
-    found = looked_up(_on(low, high, _roots(_TERMS)))
-    series = np.linalg.solve(_vander(_roots(_TERMS), _TERMS), np.stack([found.value, found.square], axis=1)).T
+    peaks = looked_up(_on(low, high, _roots(_TERMS)))
+    series = np.linalg.solve(_vander(_roots(_TERMS), _TERMS), np.stack([peaks.value, peaks.square], axis=1)).T
     between = (_roots(_TERMS)[1:] + _roots(_TERMS)[:-1]) / 2
-    found = looked_up(_on(low, high, between))
-    missed = np.abs(series @ _vander(between, _TERMS).T - [found.value, found.square])
-    if halvings == 0 or (missed.max(axis=1) <= _SAME * np.array([found.value.max(), 1.0])).all():
+    peaks = looked_up(_on(low, high, between))
+    missed = np.abs(series @ _vander(between, _TERMS).T - [peaks.value, peaks.square])
+    if halvings == 0 or (missed.max(axis=1) <= _SAME * np.array([peaks.value.max(), 1.0])).all():
         return [(low, high, kind, series)]
     middle = (low + high) / 2
     halves = (low, middle), (middle, high)

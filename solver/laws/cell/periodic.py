@@ -104,8 +104,8 @@ def pressed(depths, response, mean, start):
 
     def eased(residual, pressed_on):
         """The residual divided by the kernel, where there is contact, without its mean there."""
-        eased = np.fft.irfft2(np.fft.rfft2(np.where(pressed_on, residual, 0.0)) * inverse, s=residual.shape)
-        return np.where(pressed_on, eased - eased[pressed_on].mean(), 0.0)
+        quotient = np.fft.irfft2(np.fft.rfft2(np.where(pressed_on, residual, 0.0)) * inverse, s=residual.shape)
+        return np.where(pressed_on, quotient - quotient[pressed_on].mean(), 0.0)
 
     p, direction, before, scale = start, np.zeros_like(start), 1.0, np.ptp(depths)
     restart = True

@@ -204,9 +204,9 @@ def table(lookup, density, at_x, sigma, relief, lam):
     last = int(np.argmax(wrong)) if wrong.any() else len(q) - 1
     last = min(last, int(np.searchsorted(area[: last + 1], lam)) - 1 + PAST)
     power = min(np.log((w + q[last]) / (w + q[last - 1])) / (spread.STEP / fine), _SLOWER)
-    beyond = (w + q[last]) * (y[last + 1 :] / y[last]) ** power - w
-    lams = np.append(area[: last + 1], np.full(len(beyond), area[last]))
-    return np.log([np.append(q[: last + 1], beyond), lams])
+    extended = (w + q[last]) * (y[last + 1 :] / y[last]) ** power - w
+    lams = np.append(area[: last + 1], np.full(len(extended), area[last]))
+    return np.log([np.append(q[: last + 1], extended), lams])
 
 
 def highest(rows, q, delta):

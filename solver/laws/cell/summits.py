@@ -117,15 +117,15 @@ def parts(cell, b, of_lattice, lone):
     equal = spots(cell, b, of_lattice, rule)
     shape = (equal.phi / (2 * np.pi * (w * equal.phi).sum(axis=1)[:, None]))[..., None]
     ends = np.concatenate([t, b[:, None]], axis=1)
-    own, d_own = kernels(lone, ends, t, w)
+    of_lone, d_of_lone = kernels(lone, ends, t, w)
     lattice, d_lattice = kernels(of_lattice, ends, t, w)
     root = np.sqrt(1 / np.pi - ends**2)
-    right = np.stack([np.ones_like(ends), ends**2, 2 * root - ((lattice - own) @ shape)[..., 0]], axis=2)
-    slopes = [np.zeros_like(t), 2 * t, -2 * t / root[:, :-1] - ((d_lattice - d_own) @ shape)[:, :-1, 0]]
-    phi = np.linalg.solve(np.pi * np.eye(t.shape[1]) + own[:, :-1], right[:, :-1])
-    at_b = (right[:, -1] - (own[:, -1:] @ phi)[:, 0]) / np.pi
+    right = np.stack([np.ones_like(ends), ends**2, 2 * root - ((lattice - of_lone) @ shape)[..., 0]], axis=2)
+    slopes = [np.zeros_like(t), 2 * t, -2 * t / root[:, :-1] - ((d_lattice - d_of_lone) @ shape)[:, :-1, 0]]
+    phi = np.linalg.solve(np.pi * np.eye(t.shape[1]) + of_lone[:, :-1], right[:, :-1])
+    at_b = (right[:, -1] - (of_lone[:, -1:] @ phi)[:, 0]) / np.pi
     load = 2 * np.pi * (w[:, None] @ phi)[:, 0]
-    fall = (d_own[:, :-1] @ phi - np.stack(slopes, axis=2)) / (np.pi * t[..., None])
+    fall = (d_of_lone[:, :-1] @ phi - np.stack(slopes, axis=2)) / (np.pi * t[..., None])
     middle = (w[:, None] @ fall)[:, 0]
     return Parts(t, w, phi, fall, load, middle, at_b, equal)
 
@@ -163,11 +163,11 @@ def at(rows, which, c):
     terms = (rows.shape[1] - len(SUMMIT_NUMBERS)) // len(SERIES)
     first = len(SUMMIT_NUMBERS) + which * terms
     scale, width, end, on = rows[:, : len(SUMMIT_NUMBERS)].T[..., None]
-    beta, beyond = scale * np.minimum(c, end), np.log(np.maximum(c / end, 1.0))
+    beta, past_end = scale * np.minimum(c, end), np.log(np.maximum(c / end, 1.0))
     x, dx = 2 * width * np.arcsinh(beta) - 1, 2 * width * beta / np.hypot(1, beta)
     value, slope = clenshaw(rows[:, first : first + terms], x)
     slope = slope * dx
-    return value + on * slope * beyond, np.where(c < end, slope, on * slope)
+    return value + on * slope * past_end, np.where(c < end, slope, on * slope)
 
 
 class Lookup:
@@ -189,12 +189,12 @@ class Lookup:
         index = np.clip(place.astype(int), 0, self.count - 1)
         xi, dx = 2 * (place - index) - 1, 2 * self.count * self.width * beta / np.hypot(1, beta)
         values, slopes, dx = [], [], np.where(c < self.end, dx, self.on * dx)
-        beyond = np.log(np.maximum(c / self.end, 1.0))
+        past_end = np.log(np.maximum(c / self.end, 1.0))
         for rows in self.polynomials:
             value, slope = rows[-1].take(index), 0.0
             for row in rows[-2::-1]:
                 slope = slope * xi + value
                 value = value * xi + row.take(index)
             slopes.append(slope * dx)
-            values.append(value + slopes[-1] * beyond)
+            values.append(value + slopes[-1] * past_end)
         return values, slopes

@@ -15,7 +15,7 @@ from . import dmt
 from .jkr import Jkr
 from .machine import Holder, machine
 from .maugis import Maugis, ring_pressure, ring_stress
-from .pull import States, Turn, below, beyond, highest, last_minimum
+from .pull import States, Turn, above_turn, below, highest, last_minimum
 
 #: A load or depth as near as this to that of pull-off is it, relative: rounding, by the units of what was returned.
 _SAME = 64 * np.finfo(float).eps
@@ -78,7 +78,7 @@ def pulled(part, law):
     start = highest(law, curve.radii)
     turn = of_control = last_minimum(curve, holder, start)
     control = Holder.by(np.full(len(few), np.inf if part.control == "D" else 0.0))
-    differ = any((held != alone).any() for held, alone in zip(holder, control, strict=True))
+    differ = any((of_machine != alone).any() for of_machine, alone in zip(holder, control, strict=True))
     if differ and part.control != "a":
         of_control = last_minimum(curve, control, start)
     jumped, _ = curve.at(_jump(curve, holder, turn), np.arange(len(few)))
@@ -138,7 +138,7 @@ def _asked(part, curve, pulls):
     least, unstable = control.of(of_control.state.P, of_control.state.D), part.branch == "unstable"
     at_turn = (np.abs(part.value - least) <= _SAME * np.abs(least)) & ~of_control.at_axis
     above = np.where((part.value >= least) & ~at_turn, part.value, np.nan)
-    largest = np.where(at_turn, of_control.x, beyond(curve, control, above, of_control, _start(part, curve)))
+    largest = np.where(at_turn, of_control.x, above_turn(curve, control, above, of_control, _start(part, curve)))
     stays = largest >= turn.x
     x = np.where(stays ^ unstable, largest, np.nan)
     rest = unstable & np.isnan(x) & ~of_control.corner & ~at_turn
@@ -158,7 +158,7 @@ def _jump(curve, holder, turn):
     """x (B,) to which the contact jumps from where the punch only touches, Q = 0: beyond the :class:`~.pull.Turn`; or
     below it, where Q is positive there."""
     least = holder.of(turn.state.P, turn.state.D)
-    x = beyond(curve, holder, np.where(least <= 0, 0.0, np.nan), turn, turn.x + 1)
+    x = above_turn(curve, holder, np.where(least <= 0, 0.0, np.nan), turn, turn.x + 1)
     if (rest := least > 0).any():
         x = np.where(rest, below(curve, holder, 0 * least, np.where(rest, turn.x, np.nan), True), x)
     return x

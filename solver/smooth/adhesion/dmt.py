@@ -18,9 +18,9 @@ def solve(part, shape, body, k, x):
     """:class:`~...solution.Solution` of cases of one base with w > 0 and this law in units R = E2* = 1; k (B,) is the
     stiffness of what holds the punch."""
     pull = 2 * np.pi * part.w_adhesion
-    asked = part.value + pull if part.control == "P" else part.value
-    legal = (asked > 0) & ((part.branch == "stable") | (part.control == "a"))
-    response, counts = touching(part.control, np.where(legal, asked, np.nan), shape, body)
+    without_pull = part.value + pull if part.control == "P" else part.value
+    legal = (without_pull > 0) & ((part.branch == "stable") | (part.control == "a"))
+    response, counts = touching(part.control, np.where(legal, without_pull, np.nan), shape, body)
     state = State.free(response)
     state = state._replace(P=state.P - pull, P_error=state.P_error + NEAR * pull)
     jumped = _jump(shape, body, pull, k)
@@ -50,9 +50,9 @@ def _jump(shape, body, pull, k):
         moved = response.D * k[index] + response.P
         return np.log(moved / pull[index]), response.slope * (k[index] + response.S) * da / moved
 
-    held = np.isfinite(k)
-    start = guess("P", np.where(held, pull, np.nan), shape, body, radii)
+    on_spring = np.isfinite(k)
+    start = guess("P", np.where(on_spring, pull, np.nan), shape, body, radii)
     reached = np.isfinite(rising_root(evaluate, start)[0])
     response = Response.join(len(pull), pieces)
-    P, a = (np.where(held, np.where(reached, v, np.nan), 0.0) for v in (response.P, response.a))
+    P, a = (np.where(on_spring, np.where(reached, v, np.nan), 0.0) for v in (response.P, response.a))
     return response._replace(P=P, a=a)

@@ -23,9 +23,10 @@ _DEEP = 1e-100
 _WITH_ERROR = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
 
 
-def with_edges(part, body, solution, again, x):
-    """The `solution` of contacts with rings, where those with an edge, by ``again(part, index, x)``, are known better:
-    their error is that of the edge and what the ring changes. Its width is about π E w/(4 σ₀²)."""
+def with_edges(part, body, solution, solve_edges, x):
+    """The `solution` of contacts with rings. Where contacts with an edge, from ``solve_edges(part, index, x)``, are
+    more accurate, they stand instead: their error is that of the edge and the change by the ring, which is about
+    π E w/(4 σ₀²) wide."""
     failed = np.isin(solution.status, (Status.DIVERGED, *_WITH_ERROR)) & ~(solution.error <= part.rtol)
     sigma, none = ring_stress(part), np.full(len(part), np.nan)
     with np.errstate(all="ignore"):
@@ -33,7 +34,7 @@ def with_edges(part, body, solution, again, x):
     index = np.flatnonzero(failed & (width < _WIDE))
     if not len(index):
         return solution
-    few, edge = solution.take(index), again(part.but(adhesion="jkr", sigma0=none, z0=none).take(index), index, x)
+    few, edge = solution.take(index), solve_edges(part.but(adhesion="jkr", sigma0=none, z0=none).take(index), index, x)
     wide = ~(width[index] < _WIDE * edge.a_off / _OF_RING)  # at pull-off, which has an equation with digits then
     pulls = {name: np.where(wide, getattr(few, name), getattr(edge, name)) for name in PULLS}
     error = edge.error + _OF_RING * width[index] / np.where(wide, edge.a, np.fmin(edge.a, edge.a_off))
@@ -44,14 +45,14 @@ def with_edges(part, body, solution, again, x):
     return _joined(solution, index[better], edge.take(better), x)
 
 
-def without(part, body, solution, again, x):
-    """The `solution` of contacts that stick, where it has failed or is another contact, though the work of adhesion
-    changes no digit of that without, by ``again(part, x)``: with the numbers of that."""
+def without(part, body, solution, solve_free, x):
+    """The `solution` of contacts that stick. Where it failed, or is another contact, although the work of adhesion is
+    too small to change a digit, it has the numbers of the contact without adhesion, from ``solve_free(part, x)``."""
     tiny = (part.w_adhesion < _COUNTS) & (part.value > 0) & ((part.branch == "stable") | (part.control == "a"))
     index = np.flatnonzero(tiny)
     if not len(index):
         return solution
-    free, few = again(part.but(w_adhesion=np.zeros(len(part))).take(index), x), solution.take(index)
+    free, few = solve_free(part.but(w_adhesion=np.zeros(len(part))).take(index), x), solution.take(index)
     edge = np.sqrt(2 * np.pi * free.a / body.E[index]) * np.sqrt(part.w_adhesion[index])
     nothing = (edge < _NO_DIGIT * free.D) & (edge * free.dP_dD < _NO_DIGIT * free.P)
     same = (

@@ -88,9 +88,9 @@ class Maugis(NamedTuple):
         errors = center.P_error + off * np.abs(by_over[1]), center.D_error + off * np.abs(by_over[2])
         N, none = center.bent.shape[1], np.zeros_like(center.bent)
         pressed = np.pi * (a * (1 + np.exp(over))) ** 2 * self.sigma  # so much more load is borne inside of c
-        nan, one = np.full_like(a, np.nan), np.ones_like(a)
+        nan, ones = np.full_like(a, np.nan), np.ones_like(a)
         response = Response(
-            a, self.body.E * one, center.P + pressed, center.D, one, one, dD, nan, *errors, nan, nan, N * one,
+            a, self.body.E * ones, center.P + pressed, center.D, ones, ones, dD, nan, *errors, nan, nan, N * ones,
             center.bent, none, none, none,
         )  # fmt: skip
         return State(a, 0 * a, center.P, center.D, dP, dD, *errors, 1 + np.exp(over), response)

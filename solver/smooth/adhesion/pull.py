@@ -201,7 +201,7 @@ def _with_middles(curve, holder, x, Q, dQ, index):
     return out
 
 
-def beyond(curve, holder, value, turn, start):
+def above_turn(curve, holder, value, turn, start):
     """x (B,) > turn.x at which Q has the `value` (B,), which is not below Q at the :class:`Turn`; `start` is a first
     guess. NaN where there is none."""
     Q_off = holder.of(turn.state.P, turn.state.D)

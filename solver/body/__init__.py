@@ -1,4 +1,4 @@
-"""What lies under the punch, one body a file, by its name; the protocol is in :mod:`.operator`."""
+"""The bodies that lie under the punch, by name, one a file; the protocol is in :mod:`.operator`."""
 
 from ..kernels.two_layers import TwoLayers
 from .half_space import half_space, thin_layer

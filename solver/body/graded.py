@@ -94,8 +94,8 @@ def _linear(part, bottoms, name, z):
 
 
 def _depths(profile, top, bottom, ends):
-    """The ends (B, N + 1) over the thickness. Of a linear profile they divide the mean of the depth and of the change
-    of ln n evenly: so n changes by a small part of itself in a sublayer, where it is small too."""
+    """The ends (B, N + 1) of the sublayers over the thickness. In a linear profile they divide the mean of the depth
+    and of the change of ln n evenly: so n changes by a small part of itself in each sublayer, also where n is small."""
     ratio = np.log(bottom / top)
     uneven = np.flatnonzero((profile[:, 0] == "linear") & (np.abs(ratio[:, 0]) > _EVEN))
     depths = np.repeat(ends[None], len(top), axis=0)
@@ -112,6 +112,6 @@ def _depths(profile, top, bottom, ends):
 
 
 def cuts(count, octaves):
-    """The ends (N + 1,) of sublayers over the thickness: `count` in each octave, and as many in what is left above."""
+    """The ends (N + 1,) of sublayers over the thickness: `count` in each octave, and as many in the rest above."""
     first = 2.0**-octaves
     return np.append(np.linspace(0.0, first, count + 1)[:-1], np.geomspace(first, 1.0, octaves * count + 1))

@@ -1,6 +1,6 @@
 """The half-space, Eq. (4), and the thin layer, Eq. (3): a half-space that carries springs.
 
-K is that of a :class:`~solver.numerics.mesh.Mesh`. What the methods return is said in :mod:`.operator`.
+K is that of a :class:`~solver.numerics.mesh.Mesh`. :mod:`.operator` says what the methods return.
 
 The displacement of a layer's surface under an axisymmetric pressure is (2/E1*) ∫ L(kh) p̂ J0 dk. The thin-layer model
 takes L(u) ≈ A1 + A2 u, Eq. (2): the displacement is then (4 A1/(π E1*)) a H[p] + C p with C = 2 A2 h/E1*, Eq. (3).

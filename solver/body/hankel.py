@@ -4,10 +4,10 @@
     Λ_ij = ∫₀^∞ (L(kh/a) - 1) J0(k x_i) φ_j(k) dk,   φ_j(k) = ∫₀¹ l_j J0(kx) x dx,
 
 with k in units of 1/a, and l_j the Lagrange polynomials of the mesh. H carries the whole singularity. L - 1
-decays like e^(-2u), so Λ is smooth for every h/a. What depends on k and the mesh alone is tabulated for each octave of
+decays like e^(-2u), so Λ is smooth for every h/a. Numbers of k and the mesh alone are tabulated for each octave of
 h/a (:mod:`.tables`); the matrices of a batch are one product with that table, and the derivatives by ln a come from u
 dL/du. Where two octaves meet they agree to the error of the quadrature. Layers below the first octave are films. They
-all share one quadrature, which ends at k = CUT; what lies beyond is in :mod:`.film`. The kernels are in
+all share one quadrature, which ends at k = CUT; waves beyond it are in :mod:`.film`. The kernels are in
 :mod:`..kernels`.
 """
 

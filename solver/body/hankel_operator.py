@@ -1,4 +1,4 @@
-"""The operator of a body with a kernel on a mesh: its matrix, and what follows from it."""
+"""The operator of a body with a kernel on a mesh: its matrix, and the products and slopes that follow from it."""
 
 from typing import NamedTuple
 
@@ -111,7 +111,7 @@ def rows_of(parts, mesh):
 
 
 def _film(c, tab, n):
-    """What a convolution c (b, T) adds to the matrix and to the row of the edge under it, (b, n + 1, n)."""
+    """The part (b, n + 1, n) of a convolution c (b, T) in the matrix and, under it, in the row of the edge."""
     rows, at_edge = np.zeros((len(c), n + 1, n)), c @ tab.film.edge
     rows[:, :-1] -= at_edge[:, None]
     rows[:, tab.film.nodes] += tab.film.rows.of(c)

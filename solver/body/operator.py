@@ -1,4 +1,4 @@
-"""The protocol of a body: what lies under the punch. One file has one body: :mod:`.half_space`, :mod:`.hankel`.
+"""The protocol of a body under the punch. One file has one body: :mod:`.half_space`, :mod:`.hankel`.
 
 The contact asks a body for nothing else, nor which body it is. Lengths are in R, moduli in E2*; a is the contact
 radius, and x = r/a. The displacement of the surface under the pressure p = p* q, less that at the edge, is
@@ -44,7 +44,7 @@ class Operator(Protocol):
 
 
 class Body(Protocol):
-    """What lies under the punch in B cases.
+    """The bodies under the punches of B cases.
 
     E : (B,), modulus of the half-space to which K is relative
     C : (B,), compliance of springs on the surface, in R/E2*; 0: none
@@ -60,7 +60,7 @@ class Body(Protocol):
 
     def at(self, a, mesh, near=None):
         """The :class:`Operator` at the radii a (B,). `near`: an operator of the same cases, perhaps at other radii or
-        on another mesh; what of it still holds is used again."""
+        on another mesh; the part of it that still holds is used again."""
 
     def softness(self, a):
         """About the compliance (B,) that a contact of radius a feels, over the compliance of a half-space of E."""

@@ -47,7 +47,7 @@ class Part(NamedTuple):
 
     @property
     def kind(self):
-        """What parts have in common that :func:`united` makes one."""
+        """Parts that agree in this are made one by :func:`united`."""
         return self.stiffness, self.film is None, self.sampler or int(self.octave[0])
 
     @property

@@ -15,8 +15,8 @@ _FEW = 8
 
 
 def layers_of(problem):
-    """What the layers of cases have: key of :data:`~..layers.LAYER` -> (B, N), the first layer first. On a rigid base,
-    n = 0, moduli are in E1*."""
+    """The numbers and words of the layers: key of :data:`~..layers.LAYER` -> (B, N), the first layer first. On a rigid
+    base, n = 0, moduli are in E1*."""
     numbers = range(1, max(1, numbers_of(problem.parameters)) + 1)
     names = ("h", "n", "nu", "bonding", "cn", "ct", "profile", "n_bottom", "nu_bottom")
     layers = {name: np.stack([getattr(problem, full_name(i, name)) for i in numbers], axis=1) for name in names}

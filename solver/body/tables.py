@@ -36,8 +36,8 @@ _NEAR, _TERMS = 3e-3, 5
 
 
 class FilmTable(NamedTuple):
-    """What makes the operator of a convolution c (b, T) on one mesh of n nodes: the `nodes` (m,) where it is felt;
-    `rows`, :func:`film_rows` there; and `edge` (T, n), c @ edge being the row of the edge."""
+    """The table by which a convolution c (b, T) becomes an operator on one mesh of n nodes: the `nodes` (m,) where it
+    is felt; `rows`, :func:`film_rows` there; and `edge` (T, n), c @ edge being the row of the edge."""
 
     nodes: np.ndarray
     rows: film.Whole | film.Convolution
@@ -45,7 +45,7 @@ class FilmTable(NamedTuple):
 
 
 class OctaveTable(NamedTuple):
-    """What makes the operator, in one octave on one mesh of n nodes, from L - 1 (b, M) at the few nodes k.
+    """The table by which L - 1 (b, M) at the few nodes k becomes the operator, in one octave on one mesh of n nodes.
 
     L - 1 times `product` (M, (n + 1) n) is the matrix and, under it, the row of the edge; None for few cases, or if it
     were too large. The rest is at all G nodes k of the quadrature: `J` (G, n + 1), J0(k x_i) - J0(k), and last J0(k);

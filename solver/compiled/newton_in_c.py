@@ -39,7 +39,7 @@ _CHUNK = 16_384
 #: Most families of cells on a coated body in one call: of 10 to 60 kB each. Where there are more, a call has no more
 #: cases than this.
 _FAMILIES = 1024
-#: Meshes of the core, and the finer one of the last. What needs more is left to numpy, which goes on to panels.
+#: Meshes of the core, and the finer one of the last. Cases that need more are left to numpy, which goes on to panels.
 _MESHES, _FINER = LADDER[:-1], LADDER[-1]
 #: Most numbers k of a quadrature for which there is room in the core. The thinnest layer that is no film has 2,180.
 MOST_WAVES = 4096
@@ -137,13 +137,13 @@ def _inputs(cases, rtol):
 
 
 class _Callbacks:
-    """What the core asks for while it solves, and what is raised meanwhile: in a callback of C that would be lost."""
+    """The callbacks of the core, and the errors that they raise: C would lose these."""
 
     def __init__(self, s_bytes):
         self.s_bytes, self.structures, self.raised = s_bytes, [], []
 
     def address_of(self, make):
-        """A callback: the address of what `make` returns, or 0. What it has returned is there until the call ends."""
+        """A callback that returns the address of what `make` returns, or 0. The structure lives until the call ends."""
 
         def of(*key):
             try:
@@ -220,7 +220,7 @@ def _table(mesh, octave, stiffness, profile):
         return pointer(arrays[-1])
 
     def rows(mesh):
-        """Whether the product is there does not depend on the number of cases: nor do their bits."""
+        """The product is there whatever the number of cases, so that their bits do not depend on it."""
         of_mesh = table(mesh, SAMPLER, octave, stiffness, mesh.n <= _PRODUCT)
         J, phi, columns = of_mesh.J, of_mesh.phi, at(_blocks(of_mesh.phi.T))
         if mesh.n <= _PRODUCT:

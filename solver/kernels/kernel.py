@@ -1,4 +1,4 @@
-"""The protocol of a kernel L(u): what lies under the surface. One file has one kernel: :mod:`.two_layers`.
+"""The protocol of a kernel L(u), the body under the surface. One file has one kernel: :mod:`.two_layers`.
 
 :class:`~solver.body.hankel.Hankel` asks a kernel for nothing else, nor which kernel it is. A pressure with the
 Hankel transform p̂(k) moves the surface by (2/E1*) ∫ L(kh) p̂(k) J0(kr) dk. E1* is the modulus of what lies at the

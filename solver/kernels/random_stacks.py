@@ -37,5 +37,5 @@ def random_stacks(random, stiffness):
     return stacks.take(order[np.clip(place, 0, _POOL - 1)])
 
 
-#: tests/kernels/test_stack.py (test_few_nodes_determine_a_stack) finds what so many nodes leave out.
+#: tests/kernels/test_stack.py (test_few_nodes_determine_a_stack) finds the error of so many nodes.
 SAMPLER = Sampler(random_stacks, (52, 120, 240, 360, 0, 88), (200, 300, 600, 600, 0, 300), mild=30.0)

@@ -1,7 +1,7 @@
 """Stacks of layers on a half-space or a rigid base, by a recursion on five numbers.
 
 In a layer the amplitudes of a wave, the state (U, W, T, S) of displacements and tractions, obey a linear equation in
-ζ = kz. The 2x2 minors of its two solutions that fit to what lies below, x = (UW, WS, -US, WT, TS), obey dx/dζ = B x
+ζ = kz. The 2x2 minors of its two solutions that fit to the layers below, x = (UW, WS, -US, WT, TS), obey dx/dζ = B x
 (:mod:`.minors`). At the surface L = x4/((1 - nu1) x5). All of it is formed without cancellation, also at nu = 1/2.
 """
 
@@ -16,7 +16,7 @@ from .two_layers import thin_layer_coefficients
 
 #: Below this u, L - 1 is the difference of two terms, none of which is small there.
 _NEAR = 0.7
-#: Values are computed for this many cases times nodes at a time: what stands in between stays in the cache.
+#: Values are computed for this many cases times nodes at a time, so that intermediate arrays stay in the cache.
 _BLOCK = 2048
 
 
@@ -74,7 +74,7 @@ class Stack(NamedTuple):
     @property
     def stiffness(self):
         """The largest of L, and of the lengths over h1 at which L varies: the thickness of the whole, and those over
-        which plates and membranes spread what they carry, at most their thickness times their modulus over that of the
+        which plates and membranes spread their load, at most their thickness times their modulus over that of the
         softest body below."""
         softest = np.maximum((self.n[:, :1] / self.n).max(axis=1), self.L0) + self.cn.max(axis=1) / 2
         bodies = np.hstack([self.n, np.where(self.rigid, np.inf, 1.0)[:, None]])

@@ -96,7 +96,7 @@ def _flow(x, x_y):
 
 
 def _curve(y, X, x_y):
-    """That of the disc cell, and what yielding adds: exactly nothing where a spot is elastic."""
+    """The curve of the disc cell, and the part of yielding, which is exactly 0 where a spot is elastic."""
     elastic, (_, tau, f, slope, lost) = disc_cell.spot_curve(y), _spot(y, X, x_y)
     sin = 1 / np.sqrt(1 + y * y)
     t, dx = y * sin, X * sin**3
@@ -181,8 +181,8 @@ def _body_peak(y, q, rows, X, x_y, yields):
 
 
 def in_the_middle(y, rows, X, x_y, yields):
-    """Of spots on the body at y (B, 1): the elastic p_max/p*, (B,), and the part that yielding leaves of differences of
-    pressure in a spot, (B,)."""
+    """The elastic p_max/p* (B,) of spots on the body at y (B, 1), and the part (B,) of the differences of pressure in a
+    spot that yielding leaves."""
     _, tau, f, _, _ = _flow(_mean(y, rows, X)[0], x_y)
     return cell.spot_peak(y, None, rows)[:, 0], (f / (1 + tau))[:, 0]
 
@@ -206,7 +206,7 @@ def _body_end(*own):
     return np.minimum(_body_curve(cell.number(own[0], "end"), *own).q, cell.number(own[0], "most"))
 
 
-#: Of the softer of asperity and what it presses on.
+#: The strength of the softer body, the asperity or the one that it presses on.
 _STRENGTH = Parameter(interval="[1e-15, 1e15]", powers=(1, 0), instead="")
 _REST = {
     "parameters": disc_cell.PARAMETERS

@@ -342,7 +342,7 @@ def histogram(name, z, share, version):
     step = (z[-1] - z[0]) / (len(z) - 1)
     depth, shares = (z[-1] - z)[::-1] + step / 2, (share / (share.sum() * step))[::-1]
     bins = Histogram(tuple(shares.tolist()), step, float(depth @ shares * step))
-    above = (np.cumsum(share[::-1]) / np.arange(1, len(z) + 1))[-2::-1]  # the mean above each share but the last
+    above = (np.cumsum(share[::-1]) / np.arange(1, len(z) + 1))[-2::-1]  # the mean above each share except the last
     sharp = max(1.0, (share[:-1] / above).max() / _RARE)
     return law(name, bins, version=version, error=STEPPED * sharp**_SHARPER)
 

@@ -53,7 +53,7 @@ class Spots(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Law:
-    """One micro law. The functions get arrays y, q or g (B, m), and behind them what `scales` returns beside p* and A*.
+    """One micro law. The functions get arrays y, q or g (B, m), and then all that `scales` returns beside p* and A*.
 
     To travel to worker processes a law must be picklable: of functions that have a name in a module.
 
@@ -121,7 +121,7 @@ class Law:
 
     @property
     def arguments(self) -> tuple[str, ...]:
-        """Names of what `scales` gets beside E."""
+        """Names of the arguments of `scales` beside E."""
         return (*self.parameters, *["nu"] * self.poisson)
 
     def bind(self, E: np.ndarray, **values: np.ndarray) -> "Bound":
@@ -163,7 +163,8 @@ class Law:
 
 @batch.of_cases
 class Bound(NamedTuple):
-    """A law with the numbers of B cases: p* and A* (B,), and in `own`, (B, 1) each, what else its functions need."""
+    """A law with the numbers of B cases: p* and A* (B,), and in `own` the other numbers, (B, 1) each, that its
+    functions need."""
 
     law: Law
     p_star: np.ndarray

@@ -1,4 +1,4 @@
-"""A micro law from a table of one's own, ``micro = "table:mine.csv"``; docs/model.md says what stands in the file.
+"""A micro law from a table of one's own, ``micro = "table:mine.csv"``; docs/model.md describes the file.
 
 Smooth curves are laid near the rows. The law's `error` is the largest of two distances: of a row from the curve fitted
 to the others, and, between the rows, of the curve from one of a lower degree. Below the first row A is the power of p
@@ -62,7 +62,7 @@ def read(name):
 
 
 def _text_of(path):
-    """The text of a file of numbers. Raises ValueError for what is no file and for one that is too large; OSError where
+    """The text of a file of numbers. Raises ValueError where it is no file, or too large; OSError where
     it cannot be read."""
     no_table = "a table is a text file of numbers"
     try:

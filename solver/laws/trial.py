@@ -1,4 +1,4 @@
-"""What is wrong with a law of somebody else's: with its declaration, and with its functions at a few of its cases."""
+"""Mistakes in a law of somebody else: in its declaration, and in its functions at a few of its cases."""
 
 import traceback
 from contextlib import contextmanager
@@ -64,7 +64,7 @@ def going_on():
 
 
 def declaration(law):
-    """What is wrong with the declaration of the parameters of a law: a text, "" for nothing."""
+    """The mistake in the declaration of the parameters of a law, a text; "" if there is none."""
     if not isinstance(law.parameters, dict):
         return "parameters must be a dictionary, name -> Parameter"
     for name, parameter in law.parameters.items():
@@ -118,7 +118,7 @@ def tried(law, E, values):
 
 
 def _shapes(law, E, values):
-    """The law bound to its cases, and curve and area at _Y, if all of its functions return what they must."""
+    """The law bound to its cases, and curve and area at _Y, if all of its functions return arrays as they must."""
     parts = _called(law, "scales", E, **values)
     if not (isinstance(parts, (tuple, list)) and len(parts) >= 2 and all(np.shape(v) in ((), E.shape) for v in parts)):
         _refuse(law, "scales must return p*, A* and what else the functions need, each of the shape of E")

@@ -104,7 +104,7 @@ def area_rule():
 
 
 def spots_under(law, p0, p_area):
-    """What asperities of a :class:`~solver.laws.Bound` add to a smooth solution with the pressures `p0` (B,) in the
-    centre and `p_area` (B, m) at the points of :func:`area_rule`: quantity -> (B,)."""
+    """The quantities (B,), by name, that asperities of a :class:`~solver.laws.Bound` add to a smooth solution with the
+    pressures `p0` (B,) in the centre and `p_area` (B, m) at the points of :func:`area_rule`."""
     centre, (_, weights) = law.at(p0[:, None]), area_rule()
     return {"A0": centre.A[:, 0], "p_max": centre.p_max[:, 0], "Ar_An": law.at(p_area).lam @ weights}

@@ -1,4 +1,4 @@
-"""What closed forms say of rough contacts on exact layers before they are solved."""
+"""Estimates of rough contacts on exact layers by closed forms, before they are solved."""
 
 import numpy as np
 

@@ -9,7 +9,7 @@ from ..laws.cell.peak import NARROW, U
 from ..laws.cell.summits import SUMMIT
 from ..scaling import dimensionless, felt_body, law_of, of_one_law
 
-#: Of one layer the largest pressure stays in the middle where n is at most this: L - 1 is nowhere above 1.2 there, and
+#: On one layer the largest pressure stays in the middle where n is at most this: L - 1 is nowhere above 1.2 there, and
 #: it leaves at 1.6 (solver/laws/cell/peak.py).
 _HARD = 2.0
 #: The pressure in the middle of a spot falls below 0 where n is about 1e5, in no case yet where it is 1e4
@@ -44,8 +44,8 @@ def pressure_in_spots(problem, solution, lam0):
 
 
 def lifts_off(problem, lam):
-    """(B,) bool: the pressure is below 0 inside of a spot; lam : (B,), the largest λ of the contact. Of random heights
-    it is not looked for."""
+    """(B,) bool: the pressure is below 0 inside of a spot; lam : (B,), the largest λ of the contact. It is not
+    looked for under random heights."""
     lifted, felt = np.zeros(len(problem), dtype=bool), problem.feels_layer()
     problem = problem.but(base=named(problem.base))
     for index, part, body in _of_one_law(problem, felt & _may_be_hard(problem, _LIFTS)):

@@ -20,7 +20,7 @@ _ORDERS = 2
 _NUMBERS = (*JUDGED, "A0", "dP_dD", *PULLS, "p", "lam")
 #: Those whose last change is the error; of cases that stick P_off and D_off are among them.
 _JUDGED = (*JUDGED, "P_off", "D_off")
-#: p(0) of what sticks counts as at least this part of the load of pull-off over the area.
+#: p(0) of contacts that stick counts as at least this part of the load of pull-off over the area.
 _LEAST = 0.1
 #: Statuses of cases that have numbers; of the last, those of pull-off and pull-in.
 _SOLVED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET, Status.PULLED_OFF)
@@ -71,7 +71,7 @@ def _extrapolated(rows, rtol):
 
 def _change(values, before, last, name):
     """Relative change (B,) of extrapolated numbers: 0 where there is none, or the `last` solution has no number. That
-    of a load, a depth or a p(0) of what sticks is relative to those of pull-off at least."""
+    of a load, a depth or a p(0) of contacts that stick is relative to those of pull-off at least."""
     change = np.abs(values / before - 1)
     if name in ("P", "D", "p0", "p_max"):
         off = np.abs(last.D_off if name == "D" else last.P_off)
@@ -87,7 +87,7 @@ def _limits(values):
     for order in range(1, min(_ORDERS, len(values) - 1) + 1):
         before = columns[-1]
         columns.append([b + (b - a) / (4.0**order - 1) for a, b in zip(before, before[1:], strict=False)])
-    best = np.where(np.isfinite(columns[-1][-1]), columns[-1][-1], values[-1])  # not of what is infinite
+    best = np.where(np.isfinite(columns[-1][-1]), columns[-1][-1], values[-1])  # where that is not infinite
     if len(values) == 1:
         return best, best
     return best, columns[-1][-2] if len(columns[-1]) > 1 else columns[-2][-2]

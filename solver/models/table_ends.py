@@ -9,7 +9,7 @@ from ..shapes.table import PREFIX
 from ..status import Status
 from .named import solve_named
 
-#: A contact radius so near to the last row stands for the last row; rtol of what a contact up to there bears.
+#: A contact radius so near to the last row stands for the last row; rtol of the load of a contact up to there.
 _LAST, _ROUGHLY = 1 - 1e-9, 1e-4
 
 

@@ -48,7 +48,7 @@ def climb(rtol, nodes, solve_on, first=None, order=None):
     nodes : (B,) int, a fixed mesh, or 0: begin on `first`
     solve_on : ``solve_on(index, n, start) -> error, finer, answer`` solves the cases `index` on n nodes. `start` is the
         `finer` of the mesh before, None on the first. error (b,): estimated errors, NaN where there is no use in going
-        on. finer: what the next finer mesh begins with, a batch; or None. answer: passed on as it is
+        on. finer: a batch with which the next finer mesh begins, or None. answer: passed on as it is
     first : (B,) int, the mesh to begin on; None: chosen by rtol
     order : (B,) int, permutation of the cases; neighbours in it are solved together
     """

@@ -21,8 +21,8 @@ WHOLE = (0.0, 1.0)
 class Mesh:
     """Discretisation of the contact radius with n nodes.
 
-    The panels and the number of nodes on each determine all the rest. Meshes that agree in these are equal: what is
-    kept for one (solver/body/tables.py) serves the other.
+    The panels and the number of nodes on each determine all the rest. Meshes that agree in these are equal:
+    tables that are kept for one (solver/body/tables.py) serve the other.
 
     order : number of nodes of a panel
     breaks : ends of the panels in s, from 0 to 1

@@ -77,7 +77,7 @@ def unpacked(raw, most=LARGEST):
 
 
 def checked(path, most=LARGEST):
-    """The path of a file that a library may open. Raises as `opened`, :class:`TooLarge` also for what is in a zip."""
+    """The path of a file that a library may open. Raises as `opened`, :class:`TooLarge` also for a file in a zip."""
     with opened(path, most) as file:
         begins = file.read(len(_ZIP))
         file.seek(0)
@@ -93,7 +93,7 @@ def checked(path, most=LARGEST):
 
 
 def _check(status, most):
-    """Raise for an `os.stat_result` of what is no file, or too large."""
+    """Raise for the `os.stat_result` of no plain file, or of one that is too large."""
     if stat.S_ISDIR(status.st_mode):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
     if not stat.S_ISREG(status.st_mode):

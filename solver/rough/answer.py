@@ -1,4 +1,4 @@
-"""What an iteration on a mesh has found: the solution with its error and profiles, and what becomes of each case."""
+"""The answer of an iteration on a mesh: the solution with its error and profiles, and the verdict on each case."""
 
 from functools import lru_cache
 from typing import NamedTuple
@@ -28,7 +28,7 @@ _NOISE = 30.0
 
 
 class Verdict(Codes):
-    """What becomes of a case on a mesh: of these conditions the first that holds. :func:`_verdicts` has them in code.
+    """The fate of a case on a mesh, by the first of these conditions that holds. :func:`_verdicts` has them in code.
 
     ========  ==========================================================  ==============================================
     verdict   condition                                                   what happens
@@ -60,9 +60,9 @@ class Verdict(Codes):
 
 
 class Goal(NamedTuple):
-    """What the cases (B,) of a mesh want: `rtol`; `before`, their error on the mesh before, inf on the first; `free`,
+    """The goals (B,) of cases on a mesh: `rtol`; `before`, their error on the mesh before, inf on the first; `free`,
     bool, whether their mesh is chosen by rtol; `finer`, bool, whether a finer one may follow; `spent`, bool, whether
-    their budget is."""
+    their budget is spent."""
 
     rtol: np.ndarray
     before: np.ndarray
@@ -73,7 +73,7 @@ class Goal(NamedTuple):
 
 @batch.of_cases
 class Answer(NamedTuple):
-    """The solution of B cases, and what tells whether the punch lifts off and whether a finer mesh is of use.
+    """The solution of B cases, with numbers that tell whether the punch lifts off and whether a finer mesh is of use.
 
     tension : (B,), the tensile part of the load over the load
     gap : (B,) bool, there is a gap inside the contact. Gap or tension may also mean a mesh that is too coarse
@@ -115,7 +115,7 @@ def may_be_error(tension, error):
 
 
 def tensile_centre(solution):
-    """(B,) bool: p(0) < 0, and the error is too small to make it so. `solution` : what has p0 and error (B,)."""
+    """(B,) bool: p(0) < 0, and the error is too small to make it so. `solution` has p0 and error (B,)."""
     return (solution.p0 < 0) & (solution.error < _SURE)
 
 
@@ -126,7 +126,7 @@ def at_floor(error, slow, floor, rtol):
 
 
 def _verdicts(ev, closed, solution, tension, goal):
-    """:class:`Verdict` (B,) of cases whose iterations are `closed` (B,) bool; `solution` : what has p0 and error."""
+    """:class:`Verdict` (B,) of cases whose iterations are `closed` (B,) bool; `solution` has p0 and error."""
     error, rtol = solution.error, goal.rtol
     slow, doubt = error > _FALLS * goal.before, may_be_error(tension, error)
     lifted = is_tension(tension, error) | tensile_centre(solution)

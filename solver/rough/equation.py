@@ -35,7 +35,7 @@ _OPEN = 1e-5
 #: nearly cancel: rounding moves the pressure, and so the load, the more the softer the layer. The residual scatters
 #: from step to step: half are below 0.5 eps, few above 20 eps (tests/rough/test_equation.py).
 _ROUNDING = 20 * np.finfo(float).eps
-#: Rounding of the radius, over its distance from a flat end of the punch: what counts is a - b, and η = ln a. The
+#: Rounding of the radius, over its distance from a flat end of the punch: a - b counts, and η = ln a. The
 #: residual of a frustum of b = 0.012 scatters by 2.5e-13 where a/(a - b) is 1100, by 1 eps of that.
 _OF_RADIUS = 16 * np.finfo(float).eps
 #: The paper's scheme may leave no pressure in the centre, and 0/0 is no error.
@@ -76,7 +76,7 @@ class Unknowns(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class Evaluation:
     """The equation of `cases` at a state: the operator of the body and the curve of the law there, the groups X, Y, Z
-    (B, 1), K q and the residual F at the nodes (B, n), and edge @ q (B,); in both is what the edge adds."""
+    (B, 1), K q and the residual F at the nodes (B, n), and edge @ q (B,); both with the part of the edge."""
 
     cases: Cases
     state: Unknowns

@@ -75,7 +75,7 @@ class Refined(NamedTuple):
 def refine(ev, coarse):
     """:class:`Refined` of the equation at a solution with the quantities `coarse`.
 
-    Where λ bends (:meth:`~solver.laws.Bound.bent`), Ar/An is the coarse one plus what the step changes on the finer
+    Where λ bends (:meth:`~solver.laws.Bound.bent`), Ar/An is the coarse one plus the change by the step on the finer
     mesh. That the two meshes see the bends differently is no error: such cases have another quadrature
     (:func:`~.results.cornered`).
     """
@@ -182,8 +182,8 @@ def _blind(ev):
 def profile_error(ev, refined, rows, x):
     """Estimated error (b,) of the profiles at the radii x (m,) of the cases `rows` (b,), over the largest p or λ. It is
     what the step on the finer mesh changes at its nodes, most of which lie between the others. A smooth punch has no
-    pressure at the edge: so what the polynomial through the nodes has there is an error too. Under a point, the nodes
-    nearer to the axis than the least of the radii do not count."""
+    pressure at the edge: so the value of the polynomial through the nodes is an error there too. Under a point, the
+    nodes nearer to the axis than the least of the radii do not count."""
     law = ev.cases.law.take(rows)
     start, end = refined.start, refined.end
     seen = slice(None, max(1, _outside(start.mesh, x)) if pointed(ev.cases)[rows].any() else None)
@@ -202,7 +202,7 @@ def _outside(mesh, x):
 
 
 def completed(ev, Ar_An, error, rows):
-    """Ar/An (b,) of the cases `rows` (b,), and their relative error (b,), now with what both meshes may miss alike.
+    """Ar/An (b,) of the cases `rows` (b,), and their relative error (b,) with the part that both meshes may miss.
 
     Ar_An : (B,), by the quadrature of the nodes; error : (B,), of :func:`estimate`
 
@@ -231,7 +231,7 @@ def _with_bends(ev, area, error, rows):
 def _without_bends(ev, area, error, rows):
     """:func:`completed` of cases `rows` whose λ does not bend.
 
-    If λ has risen before the first node, what is missed there is counted by _UNSEEN. Where λ may rise sharply, Ar/An is
+    If λ has risen before the first node, _UNSEEN counts the missed part. Where λ may rise sharply, Ar/An is
     compared with another quadrature; where the displacement hardly depends on the pressure, with one for corners too.
     """
     law, mesh = ev.cases.law.take(rows), ev.mesh

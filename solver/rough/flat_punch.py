@@ -140,7 +140,7 @@ class Now:
 
     @property
     def closed(self):
-        """(1,) bool: only rounding is left, or what is left, far below any rtol, does not fall any more."""
+        """(1,) bool: the residual is rounding, or far below any rtol and does not fall any more."""
         return (self.missed < _CLOSED) | (self.before / 2 <= self.missed) & (self.missed < _STALLED)
 
     @property

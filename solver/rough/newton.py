@@ -20,8 +20,8 @@ LIMIT = 60
 #: (tests/rough/errors/test_counts.py).
 _STEPS, _NODES, _FEWEST = 1000, 96, 60
 #: Most work of one case (:meth:`~solver.body.operator.Body.work`): its steps on all meshes, and the meshes of panels
-#: that are made for it alone. Unlike seconds, it is the same on every machine. Of the 3,000 cases of the study
-#: extremes_layered none spends this budget, and about 1 % would spend half of it (`make extremes`).
+#: that are made for it alone. Unlike seconds, it is the same on every machine. None of the 3,000 cases of
+#: the study extremes_layered spends this budget, and about 1 % would spend half of it (`make extremes`).
 #: `python tools/fuzz/fuzz_solver.py` prints the longest time of a lone case.
 BUDGET = 1_500_000
 #: Cases that begin on panels, which follow the kinks of their shape, may take so many times as much. With it none of
@@ -38,7 +38,7 @@ class Iterated(NamedTuple):
     count: np.ndarray
 
 
-@np.errstate(all="ignore")  # what goes wrong is NaN, and `lost`
+@np.errstate(all="ignore")  # failures are NaN, and `lost`
 def iterate(start, step, limit):
     """Repeat `step` on a batch: :class:`Iterated`. A case that has closed or is lost leaves it, the others go on.
 

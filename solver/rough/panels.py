@@ -27,7 +27,7 @@ DEPTH = 30
 _LAST = np.linalg.inv(np.polynomial.legendre.legvander(2 * radau_nodes(ORDER) - 1, ORDER - 1)).T[:, -2:]
 #: Most panels: the operator is not accurate enough to resolve more.
 _MOST = 32
-#: Of punches with kinks or a point: how often a panel is halved in a round, for an error spoils panels beside it too,
+#: For punches with kinks or a point: how often a panel is halved in a round, since an error spoils panels beside it,
 #: rounds for each of GOALS, panels that each kink may have besides, and rounds in which panels follow kinks at last.
 _AT_ONCE, _ROUNDS, _MORE, _FOLLOWING = 1, 3, 8, 8
 #: Tolerances of the rounds: each solves and then halves panels. A coarse solution cannot tell where a fine one will not
@@ -48,8 +48,8 @@ _SHRINK, _LEVELS, _ON_AXIS, _TO_POINT = 0.4, 4, 6, 10
 MOST_KINKS = 12
 #: A kink so near to the edge or to the axis, in s, gets no panel of its own: rounding of its place would count.
 _AT_EDGE, _AT_AXIS = 1e-6, 1e-12
-#: Panels follow until the last step moves ln(a - b) by less than this part of rtol. What a kink in the wrong place adds
-#: to the pressure is far below its distance from the right one.
+#: Panels follow until the last step moves ln(a - b) by less than this part of rtol. A misplaced kink
+#: changes the pressure by far less than its distance from the right place.
 _SETTLED, _ROUNDING = 0.01, 1e-13
 
 
@@ -142,7 +142,7 @@ def resolve(ev, rtol):
     inside = dict(zip(pairwise(mesh.breaks), np.split(ev.state.y, len(mesh.breaks) - 1, axis=1), strict=True))
     done, room = {}, _MOST - len(inside) + _MORE * (len(ends_of(ev.cases.shape, _radius(ev))) - 2)
     levels = DEPTH + 1 if ev.cases.punch.polynomial else _AT_ONCE
-    # what the profile bends on the axis is little of the load, but much of the pressure there
+    # a bend of the profile on the axis changes the load little, but the pressure there much
     centre = max(rtol, _FLOOR) * values[:, -1] if bends_on_axis(ev.cases.shape) else np.inf
     while inside:  # panel -> y at its nodes
         halves, levels = [], levels - 1
@@ -171,8 +171,8 @@ def _tail(law, y):
 
 
 def ends_of(shape, a):
-    """Ends (tuple) in s of what is smooth, from 0 to 1, in the contact of radius a, a float, under one `shape`; (0, 1)
-    if that has no kinks."""
+    """Ends (tuple) in s, from 0 to 1, of the smooth parts of a contact of radius a, a float, under one `shape`;
+    (0, 1) if that has no kinks."""
     inside = np.array([b for b in np.unique(shape.kinks()[0]) if 0 < b < a])
     s = np.sqrt((1 - inside / a) * (1 + inside / a))
     s = np.sort(s[(s > _AT_EDGE) & (s < 1 - _AT_AXIS)])

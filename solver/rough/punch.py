@@ -1,7 +1,7 @@
-"""What the equation of a rough contact asks of the shape f(r) of the indenter: the protocol, and any shape.
+"""The punch, as the equation of a rough contact sees the shape f(r) of the indenter: the protocol, and any shape.
 
 The contact asks a punch for nothing else, nor which punch it is. Lengths are in R; a is the contact radius, x = r/a
-and s = sqrt(1 - x²). What the surface must yield at x, less that at the edge, is f(a) - f(ax). The equation of the
+and s = sqrt(1 - x²). The surface must yield f(a) - f(ax) more at x than at the edge. The equation of the
 contact is divided by a²/2, and so is this:
 
     X K[q] + Y q + Z g = drop,              drop = (2/a²) [f(a) - f(ax)],
@@ -36,7 +36,7 @@ _LEFT = 0.1
 
 
 class Punch(Protocol):
-    """The punch in B cases. What is the same for all cases may have one row in place of B.
+    """The punch in B cases. An array that is the same for all cases may have one row in place of B.
 
     take : the punch of a sub-batch, :func:`~solver.numerics.batch.take`
     polynomial : whether the drop is a polynomial in s²: then an error on one panel does not spoil those beside it

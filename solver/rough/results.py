@@ -46,21 +46,21 @@ def difference(first, second, names=JUDGED):
 
 
 def pointed(cases):
-    """(B,) bool: the punch has a point, f'(0+) > 0. What asperities under it bear is set so near to the axis, within A'
-    times the modulus, that no mesh tells it: the centre is not judged, and not reported."""
+    """(B,) bool: the punch has a point, f'(0+) > 0. The pressure of the asperities under it is decided so near to the
+    axis, within A' times the modulus, that no mesh resolves it: the centre is neither judged nor reported."""
     return cases.shape.pointed
 
 
 def judged_difference(cases, first, second):
-    """:func:`difference` (B,) in what is reported of the `cases`."""
+    """:func:`difference` (B,) in the reported numbers of the `cases`."""
     change, without = difference(first, second), pointed(cases)
     return np.where(without, difference(first, second, _AWAY_FROM_CENTRE), change) if without.any() else change
 
 
 @lru_cache(maxsize=32)
 def _between(mesh, s_bytes):
-    """What interpolates from a mesh to other points s (m,) > 0: the rows (m, n) of the Lagrange polynomials and of
-    H - H(1); and κ (:func:`interpolate`) at the points (m,) and at the nodes (n,)."""
+    """Numbers that interpolate from a mesh to other points s (m,) > 0: the rows (m, n) of the Lagrange polynomials and
+    of H - H(1); and κ (:func:`interpolate`) at the points (m,) and at the nodes (n,)."""
     s = np.frombuffer(s_bytes)
     return mesh.basis(s), mesh.rows(s), stiffness_between(mesh, s), stiffness_between(mesh, mesh.s)
 
@@ -114,7 +114,7 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
         f = slope * curve.q + weight * curve.g - right[active]
         new = law.limit(old - f / (slope * curve.dq + weight * curve.dg), old)
         y[active] = new
-        # what a step leaves is about the square of its relative size
+        # a step leaves about the square of its relative size
         return ~np.any((new - old) ** 2 > tolerance[active] * new**2, axis=1)
 
     march(step, np.arange(len(y)), most=_STEPS)
@@ -122,7 +122,7 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
 
 
 def cornered(ev, rows):
-    """Of the cases `rows` (b,) whose λ bends: Ar/An; its relative error; the part of the load that the
+    """Four numbers (b,) of the cases `rows` whose λ bends: Ar/An; its relative error; the part of the load that the
     polynomial through the nodes misses between them; the largest part that it misses from the edge to any radius.
 
     Where λ has a corner, a quadrature errs by about the cube of the distance of its points, and the nodes are too far
@@ -147,7 +147,7 @@ def cornered(ev, rows):
 
 
 def off_edge(s, rough):
-    """The points (m,) where the pressure at s (m,) > 0 is solved: those of a smooth punch are apart from the edge."""
+    """The points (m,) where the pressure at s (m,) > 0 is solved: under a smooth punch they keep off the edge."""
     return s if rough else np.maximum(s, _APART)
 
 

@@ -33,7 +33,7 @@ def guess_radius(cases):
 
 
 def _together(shape, *radii):
-    """Contact radius (B,) of what yields together, from the `radii` (B,) that each would have alone."""
+    """Contact radius (B,) of bodies, springs and asperities together, from the `radii` (B,) of each alone."""
     least = shape.least()
     a = least + sum(np.maximum(radius - least, 0.0) ** 4 for radius in radii) ** 0.25
     return np.minimum(a, (np.max(radii, axis=0) + shape.most()) / 2)

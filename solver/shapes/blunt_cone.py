@@ -13,7 +13,7 @@ from ..parameters import Parameter
 from .cone import HALF_ANGLE, cotangent
 from .shape import Kind, angle, column, half_chord, load_by_quadrature, radii_at
 
-#: Radius ρ of the tip, and what the tip is.
+#: Radius ρ of the tip, and the shape of the tip.
 TIP_RADIUS = Parameter(interval="[1e-12, 1e6]", powers=(0, 1))
 TIP = Parameter("paraboloid", ("paraboloid", "sphere"))
 
@@ -41,7 +41,7 @@ class BluntCone(NamedTuple):
 
     @property
     def side(self):
-        """Of a ball, sqrt(ρ² - b²) (B,)."""
+        """sqrt(ρ² - b²) (B,) of a ball."""
         return self.rho / np.hypot(1.0, self.cot)
 
     def height(self, r):

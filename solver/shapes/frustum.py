@@ -9,7 +9,7 @@ from ..parameters import Parameter
 from .cone import HALF_ANGLE, cotangent
 from .shape import Kind, angle, column, half_chord, radii_at
 
-#: The radius b of what is flat around the axis.
+#: The radius b of the flat part around the axis.
 FLAT_RADIUS = Parameter(interval="[1e-9, 1e3]", powers=(0, 1))
 
 

@@ -17,7 +17,7 @@ _SERIES, _TERMS = 0.3, 16
 
 @batch.of_cases
 class RoundedFlat(NamedTuple):
-    """The :class:`~.shape.Shape` of radii `b` of what is flat, and `rho` of the edge, (B,)."""
+    """The :class:`~.shape.Shape` of radii `b` of the flat part, and `rho` of the edge, (B,)."""
 
     b: np.ndarray
     rho: np.ndarray

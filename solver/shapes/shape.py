@@ -58,7 +58,7 @@ class Shape(Protocol):
         """Radii (B, K) > 0 at which f is not smooth; NaN where a case has fewer of them."""
 
     def least(self):
-        """(B,): a is larger than this: the radius of what is flat around the axis, else 0."""
+        """(B,): a is larger than this: the radius of the flat part around the axis, else 0."""
 
     def most(self):
         """(B,): a is less than this, where the profile ends; else infinite."""

@@ -130,7 +130,7 @@ class TableShape(NamedTuple):
 
 
 def _over_lines(rows, t):
-    """F/t and F' at t: of the lines as they would begin at r = 0, and of what they bend."""
+    """F/t and F' at t: of the lines as they would begin at r = 0, and of their bends."""
     knots, bend = rows.r, np.diff(rows.slopes) / np.diff(rows.r)
     start = rows.slopes[:-1] - bend * knots[:-1]
     inner = np.minimum(knots, t[..., None])

@@ -15,8 +15,8 @@ from .tension import is_tensile
 
 #: Distance of the radii in the variable of :class:`~.radius.Radii`, and how many are looked at together.
 _STEP, _TOGETHER = 0.125, 8
-#: The first radius is this part of the thickness of the first layer, or lies this part of what is flat beyond it; it is
-#: less if that bears too much, by so many steps of the second size at most. The last is this much, in the variable,
+#: The first radius is this part of the thickness of the first layer, or lies this part of the flat radius beyond it; it
+#: is less if that bears too much, by so many steps of the second size at most. The last is this much, in the variable,
 #: beyond the guess, and at most twice as much.
 _THIN, _CORNER, _DOWN, _BEYOND = 0.02, 1e-6, (60, 2.0), 4.0
 #: Width of a bracket, in the variable, in which the end of a branch is found.

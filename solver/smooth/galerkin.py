@@ -11,7 +11,7 @@ nothing cancels under stiff layers. It is linear, and y = y_F + A y_1, where y_1
 punch.
 
 Galerkin's method solves it in the basis of :mod:`.products`. Of F, which has kinks, only its projection on the basis
-counts: what is left of the kernel and what is left of F are small both, and only their product is an error.
+counts: the rest of the kernel and the rest of F are both small, and only their product is an error.
 """
 
 from typing import NamedTuple
@@ -29,14 +29,14 @@ _EPS, _TINY = np.finfo(float).eps, np.finfo(float).tiny
 _CLASSES = MILD + 1
 #: Rounding of closed forms, relative; and that of the equation, over eps times its size and the norm of its matrix.
 _ROUNDING, _FLOOR = 64 * _EPS, 16
-#: Error of what the kernel adds, by the waves at which it is looked at, from octave 1 of h/a downwards; of few waves
-#: from octave -3 on (the largest in random contacts of `python tools/errors/shape_errors.py`, times 2 to 5). Of the
-#: depth this part is enough.
+#: Error of the kernel's part by the waves at which the kernel is looked at, from octave 1 of h/a downwards; by few
+#: waves from octave -3 on (the largest in random contacts of `python tools/errors/shape_errors.py`, times 2 to 5). For
+#: the depth this part of it is enough.
 _OF_WAVES, _OF_FEW = (1e-13, 1e-13, 1e-13, 1e-13, 3e-13, 1e-12, 3e-12, 3e-12, 3e-12, 3e-12, 2e-11), 1e-11
 _OF_DEPTH = 0.3
-#: Octave from which downwards, and L(0) below which, few waves are not enough: what is left of the depth is small.
+#: Octave from which downwards, and L(0) below which, few waves are not enough: the rest of the depth is small.
 _THIN, _SOFT = -3, 0.1
-#: The error of a basis is what its last functions add, as of a geometric series, times this factor: a series whose
+#: The error of a basis is the part of its last functions, as of a geometric series, times this factor: a series whose
 #: terms fall like 1/N² or 1/N, as in films, has 2 and 2.7 times as much left; and films have no even series (8 of 9,600
 #: random numbers were up to 1.16 times as far off with 3). The terms of the series fall at least and at most by these
 #: ratios.
@@ -46,7 +46,7 @@ _BASIS, _RATIOS = 4.0, (1e-3, 0.9)
 @batch.of_cases
 class Response(NamedTuple):
     """Shapes at B radii `a`, in units R = E2* = 1. Without adhesion the load and depth are `P` and `D`; those of a flat
-    punch of radius a with A = 1 are `flat_P` and `flat_D`. All are (B,) but the last two.
+    punch of radius a with A = 1 are `flat_P` and `flat_D`. Those without a shape below are (B,).
 
     slope : dD/da without adhesion
     flat_slope : d flat_D/da
@@ -146,7 +146,7 @@ def _on_kernel(shape, body, a, products, of_waves):
     rounded = _FLOOR * _EPS * N * np.abs(matrix).sum(axis=2).max(axis=1)
     of_radius = _of_radius(a, slope)
     bends = sizes(bent)
-    share = of_waves * np.minimum(bends / np.maximum(sizes(y[:, :, :2]), _TINY), 1.0)  # y is 0 under what is flat
+    share = of_waves * np.minimum(bends / np.maximum(sizes(y[:, :, :2]), _TINY), 1.0)  # y is 0 under the flat part
     errors = []
     for j, (load, low, high) in enumerate(((P, depth, D), (flat_P, 1.0, flat_D))):
         of_load = (rounded + share[:, j]) * np.abs(load) + 2 * E * a * of_basis[:, 0, j]
@@ -164,7 +164,7 @@ def _on_kernel(shape, body, a, products, of_waves):
 
 
 def error_of_waves(sampler, octave):
-    """Error of what the kernel adds, in an octave of h/a."""
+    """Error of the kernel's part, in an octave of h/a."""
     if octave <= _THIN and has_few(sampler, octave):
         return _OF_FEW
     return _OF_WAVES[min(max(1 - octave, 0), len(_OF_WAVES) - 1)]
@@ -180,7 +180,7 @@ def left_out(products, matrix, sides, y, kinked):
     flat punch, and of y_0 and D, (B, 2, 2). kinked : (B,) bool, the shape is not smooth in r².
 
     A basis of n functions leaves the residual r, and a number that is z @ sides is off by z @ r. The last functions of
-    the basis have r, of the solution without these, and z, both of which fall with n: their product is what they add.
+    the basis have r, of the solution without these, and z, both of which fall with n: they add their product.
     The second terms are not such numbers. Where F goes on beyond the basis it moves their last functions by about as
     much as these are: the ratio is then that of half as many functions, its root.
     """
@@ -199,12 +199,12 @@ def left_out(products, matrix, sides, y, kinked):
 
 
 def _ratio(last, before, first):
-    """By which ratio three terms of a series fall, of which one may be small by chance."""
+    """The ratio by which three terms of a series fall; one of them may be small by chance."""
     return np.maximum(last / np.maximum(before, _TINY), np.sqrt(last / np.maximum(first, _TINY)))
 
 
 def _rest(ratio):
-    """What is left of a series, over its last term, whose terms fall by the `ratio`; with the factor _BASIS."""
+    """The rest of a series over its last term, if its terms fall by the `ratio`; times _BASIS."""
     ratio = np.clip(ratio, *_RATIOS)
     return _BASIS * ratio / (1 - ratio)
 

@@ -83,14 +83,14 @@ def on_thin_layer(control, value, C, rtol, nodes, x):
 
 
 def _solution(arrays):
-    """The solution with what a smooth punch adds: real contact everywhere, λ = 1 inside, p_max = p(0)."""
+    """The solution with the numbers of a smooth punch: real contact everywhere, λ = 1 inside, p_max = p(0)."""
     smooth = {"p_max": arrays["p0"], "lam": 1.0, "A0": 0.0, "Ar_An": 1.0}
     return Solution.of(*arrays["p"].shape, **arrays, **smooth)
 
 
 def _on_mesh(control, value, C, n, x):
     """Arrays of a :class:`~solver.solution.Solution` (dict) on n nodes. `error` is the larger of two: the distance, to
-    first order, to the solution on the next finer mesh, and what a ring at the edge adds that neither mesh sees."""
+    first order, to the solution on the next finer mesh, and the part of a ring at the edge that neither mesh sees."""
     mesh, modal = mesh_of(n), modes(n)
     a, steps = _radius(control, value, C, modal)
     t, S, slopes, fractions = _sums(a, C, modal)

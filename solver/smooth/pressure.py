@@ -27,7 +27,7 @@ def pressures_of(shape, response, A, x):
 
 
 def without_edge(shape, response, A, x):
-    """p (B, m) at x (m,) < 1 but for its first term, which is infinite at the edge."""
+    """p (B, m) at x (m,) < 1 without its first term, which is infinite at the edge."""
     bent = response.bent + column(A) * response.flat_bent
     of_layer = _of_basis(bent, response.size, x)
     return (on_half_space(shape, response.a, x) - of_layer / column(response.a)) / column(np.pi / response.E)

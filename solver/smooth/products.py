@@ -2,7 +2,7 @@
 
 On 0 <= τ <= 1, τ = t/a, the basis is e_m = sqrt(4m + 1) P_2m(τ), the even Legendre polynomials, which are orthonormal
 there. With κ = ka their cosine transforms are ê_m = (-1)^m sqrt(4m + 1) j_2m(κ). Those of the difference cos κτ - cos κ
-of :mod:`.galerkin` are the same but for m = 0, where it is
+of :mod:`.galerkin` are the same except for m = 0, where it is
 
     d_0 = sin κ/κ - cos κ = κ j_1(κ),       d_m = ê_m for m > 0.
 
@@ -21,8 +21,8 @@ from ..numerics.kept import Kept
 from ..numerics.quadrature import gauss_legendre
 
 #: Numbers N of functions in the basis for octaves of h/a from 3 downwards, of shapes that are smooth in r², and of all
-#: others; of thicker layers, as for octave 3. Films have those of the first for all shapes. What the edge of a film
-#: does is not resolved below 1e-4 a by any of them: the thinnest have fewer, which take less time.
+#: others; of thicker layers, as for octave 3. Films have the first for all shapes. None of them resolves the edge
+#: of a film below 1e-4 a: so the thinnest have fewer, which take less time.
 _SIZES = {
     True: (6, 8, 10, 12, 16, 22, 28, 38, 52, 70, 96, 130, 130, 150, 170, 190, 190, 190, 130),
     False: (6, 8, 11, 15, 21, 28, 40, 54, 72, 100, 144, 196),

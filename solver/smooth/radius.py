@@ -6,7 +6,7 @@ from ..numerics.batch import march
 from ..shapes.shape import column
 from .galerkin import Response, respond
 
-#: Most evaluations of a case, and the relative distance of P or D to what is given at which it is done.
+#: Most evaluations of a case, and the relative distance of P or D to the given value at which it is done.
 MOST, NEAR = 80, 1e-13
 #: Longest step of Newton's method in the variable of :class:`Radii`, a logarithm.
 _LONGEST = 3.0
@@ -14,7 +14,7 @@ _LONGEST = 3.0
 LAST = 30.0
 #: P or D that is not reached to this part is not reached: there is no such contact.
 _REACHED = 1e-9
-#: Rounding of a radius. Next to what is flat it is a larger part of a - least, on which P and D depend.
+#: Rounding of a radius. Next to the flat part it is a larger part of a - least, on which P and D depend.
 _ROUNDED = 4 * np.finfo(float).eps
 #: The first guess is right to this part of P or D, and begins at this radius, in R.
 _CLOSE, _USUAL = 0.01, 0.05

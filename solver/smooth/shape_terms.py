@@ -1,4 +1,4 @@
-"""What of an indenter's shape the equation needs: F(a) - F(t) in the basis, and the pressure of a half-space.
+"""The terms of the equation that an indenter's shape gives: F(a) - F(t) in the basis, and the pressure of a half-space.
 
 Both are integrals over t between the kinks of the shape. Beyond a kink b, and beyond t = 0 unless the shape is smooth
 in r², the variable is y in t = b + (c - b) y², where c is the next kink or a: F is smooth in y.

@@ -11,7 +11,7 @@ from .pressure import flat_pressure, pressure_changes, pressures_of
 from .radius import NEAR
 from .tension import LOOKED_AT, seen
 
-#: Where dD/da is below this part of what the shape adds to it, D has its minimum, to rounding.
+#: Where dD/da is below this part of the shape's share in it, D has its minimum, to rounding.
 _FLAT = 1e-12
 #: Rounding of a pressure over the largest one: 3e-13 at most beside kinks of the shape (tools/errors/shape_errors.py).
 _OF_PRESSURE = 5e-13
@@ -27,7 +27,7 @@ _INNER, _SLOW = 8, 4.0
 @batch.of_cases
 class State(NamedTuple):
     """Contacts, (B,) each: load and depth at the radius `a`, their derivatives dP, dD by a, and their errors. `A`, the
-    edge value, and `response` say what the pressure is. `zone` is c/a, 1 unless attraction acts in a ring."""
+    edge value, and `response` determine the pressure. `zone` is c/a, 1 unless attraction acts in a ring."""
 
     a: np.ndarray
     A: np.ndarray
@@ -59,7 +59,7 @@ class State(NamedTuple):
 
     @classmethod
     def join(cls, size, pieces):
-        """The states of `size` cases from pairs of places and the states there; what is in none is NaN."""
+        """The states of `size` cases from pairs of places and the states there; cases in none are NaN."""
         arrays = [np.full(size, np.nan) for _ in cls._fields[:-1]]
         for index, piece in pieces:
             for array, values in zip(arrays, piece, strict=False):
@@ -68,7 +68,7 @@ class State(NamedTuple):
 
 
 def pinned(part, shape, body):
-    """:class:`State` of flat punches, whose edge holds what they bear: either P or D follows from the other."""
+    """:class:`State` of flat punches, whose edge takes the load: either P or D follows from the other."""
     r = respond(shape, body, shape.least())
     unit, other = (r.flat_P, r.flat_D) if part.control == "P" else (r.flat_D, r.flat_P)
     A = part.value / unit
@@ -78,7 +78,7 @@ def pinned(part, shape, body):
 
 
 def at_corner(part, shape, body, state):
-    """The states, and which of them (B,) touch so little beyond what is flat, or less than can be told from its radius
+    """The states, and which of them (B,) touch so little beyond the flat part, or less than can be told from its radius
     b, that they are better taken for those of a flat punch of that radius. By the part by which a is larger than b, P
     and D are off then."""
     least = shape.least()
@@ -112,20 +112,20 @@ def beyond_profile(part, shape, at):
 
 
 class Scales(NamedTuple):
-    """What a load, a depth and a p(0) that may be 0 count as at least, where their errors are relative, (B,) each."""
+    """The least sizes (B,) to which errors of a load, a depth and a p(0) are relative: all three may be 0."""
 
     P: np.ndarray | float = 0.0
     D: np.ndarray | float = 0.0
     p0: np.ndarray | float = 0.0
 
 
-#: Of contacts that do not stick, where nothing is 0.
+#: For contacts that do not stick, where nothing is 0.
 NOT_STICKING = Scales()
 
 
 def answer(part, shape, state, counts, x, ring=None, scales=NOT_STICKING):
     """:class:`~..solution.Solution` of the states of a problem, and whether there is tension inside (B,). Its error is
-    that of a, P and D under the control, and of p(0) where that is finite. ``ring(x)`` is what is added to p."""
+    that of a, P and D under the control, and of p(0) where that is finite. ``ring(x)`` is added to p."""
     response, A = state.response, state.A
     radii = np.concatenate([x, [0.0], LOOKED_AT])
     p = pressures_of(shape, response, A, radii)
@@ -142,9 +142,9 @@ def answer(part, shape, state, counts, x, ring=None, scales=NOT_STICKING):
     off = np.nan_to_num(
         np.where(response.P > 0, response.P_error / response.P, response.flat_P_error / response.flat_P)
     )
-    # what waves miss is felt all over a contact, but the pull of an edge, which is exact
+    # missed waves are felt all over a contact, except in the pull of an edge, which is exact
     of_waves = off * np.where(A == 0, largest, np.abs(looked_at[:, : 2 * _INNER]).max(axis=1))
-    terms = np.abs(p0) + np.abs(A) * response.E / (np.pi * state.a)  # what the shape presses, and what the edge pulls
+    terms = np.abs(p0) + np.abs(A) * response.E / (np.pi * state.a)  # the press of the shape, and the pull of the edge
     of_p0 = np.where(shape.even, 1.0, _SLOW) * of_p[:, :_INNER].max(axis=1) + rounding * terms + along + of_waves
     error = error + np.where(np.isfinite(p0), _over(of_p0, p0, scales.p0), 0.0)
     numbers = {"a": state.a, "P": state.P, "D": state.D, part.control: part.value}
@@ -168,7 +168,7 @@ def _error(control, state, scales):
 
 
 def _size(control, state):
-    """What the shape and the edge add to the load, or depth, (B,): it is 0 nowhere."""
+    """The sum (B,) of the sizes of the parts of shape and edge in the load, or depth: it is 0 nowhere."""
     r = state.response
     number, flat = (state.P, r.flat_P) if control == "P" else (state.D, r.flat_D)
     return np.abs(number) + np.abs(state.A) * flat

@@ -1,1 +1,1 @@
-"""What is on disk is the progress: blocks, found by the keys of their cases. A results file is an export of them."""
+"""The progress of a study is on disk: blocks, found by the keys of their cases. A results file is an export of them."""

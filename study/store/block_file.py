@@ -25,7 +25,9 @@ class Damaged(OSError):
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """facts : what the numbers depend on besides the cases (JSON); keys : (n, 2) uint64; arrays : name -> (n, ...)."""
+    """facts : those on which the numbers depend besides the cases (JSON); keys : (n, 2) uint64
+    arrays : name -> (n, ...)
+    """
 
     facts: dict
     keys: np.ndarray

@@ -103,7 +103,8 @@ def count_statuses(status: np.ndarray) -> dict[int, int]:
 
 
 def facts(x: np.ndarray, inputs: tuple[str, ...] = ()) -> dict:
-    """What stored numbers depend on besides parameters: numerics version, points of profiles, inputs of derivatives."""
+    """The facts on which stored numbers depend besides parameters: the version of the numerics, the points of profiles,
+    and the inputs of derivatives."""
     about = {"numerics_version": NUMERICS_VERSION, "x": x.tolist()}
     return about | ({"inputs": list(inputs)} if inputs else {})
 
@@ -151,7 +152,7 @@ def keys_of(store: Store) -> np.ndarray:
 
 
 def _places(keys: np.ndarray, sources: list[Source], retry: tuple[int, ...]) -> tuple[np.ndarray, ...]:
-    """Source, row and status of each case, (B,) each. Of several places the one of lowest status is taken."""
+    """Source, row and status of each case, (B,) each. A case in several places has the one of lowest status."""
     parts = [(np.empty((0, 2), np.uint64), np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0, np.int8))]
     for number, source in enumerate(sources):
         row = np.flatnonzero(~np.isin(source.status, (NOT_RUN, *retry))).astype(np.int32)
@@ -253,7 +254,7 @@ def forget_other_exports(store: Store) -> None:
 
 
 def lost_cases(store: Store, digest: str) -> tuple[int, int] | None:
-    """Of the results of a study of this digest: how many cases the study as it is lacks, and how many cases there are.
+    """How many cases of the results of this digest are not in the study as it is, and how many cases the results have.
 
     None if no record says which cases these are. A record of an earlier version does not say of which study it is.
     """

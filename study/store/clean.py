@@ -15,7 +15,8 @@ OF_A_WINDOW = re.compile(r"\d{12}-[0-9a-f]{16}-")  # the beginning of the name o
 
 
 def clean(store: Store) -> list[str]:
-    """Remove the blocks that hold no case of the study as it is; says what was removed, and what stays.
+    """Remove the blocks that hold no case of the study as it is; returns sentences about the removed blocks and those
+    that stay.
 
     Raises StudyError while a run of the study is going on.
     """

@@ -1,4 +1,4 @@
-"""What is on disk of a study: the condition of the file of each window, and what that comes to."""
+"""The files of a study on disk: the condition of the file of each window, and of all together."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -67,7 +67,7 @@ class WindowFiles:
 
     @property
     def wrong(self) -> list[Condition]:
-        """Of the files that are there those that are not the results that their names say."""
+        """Conditions of the files that are there and are not the results that their names say."""
         return [condition for condition in self.conditions if not condition.good and condition.kind != "missing"]
 
     @property
@@ -173,7 +173,7 @@ def add_counts(total: dict[int, int], counts: dict[int, int]) -> None:
 
 
 def glance(store: Store) -> WindowFiles:
-    """The state by what the files say of themselves; of a file of up to LAZY bytes in memory all is read."""
+    """The state by the attributes of the files; a file of up to LAZY bytes in memory is read whole."""
     return _state(store, LAZY, lambda window, identity: examine(window.path, identity, 0))
 
 
@@ -261,6 +261,6 @@ def belongs(definition: Definition, condition: Condition) -> bool:
 
 
 def of_what(condition: Condition, definition: Definition) -> str:
-    """To what the results in an undamaged file belong that are not those of this study, see `owner_of`."""
+    """The owner of the results in an undamaged file that are not those of this study, in words (`owner_of`)."""
     same = condition.numerics == NUMERICS_VERSION
     return owner_of(condition, definition) if same else "another version of the numerics"

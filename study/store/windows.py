@@ -125,7 +125,8 @@ def divisions(definition: Definition, windows: list[Window]) -> str:
 
 
 def identities(store: Store, windows: list[Window]) -> list[Identity]:
-    """What the file of each of many windows must say of itself. One without its first case is of an earlier version."""
+    """The attributes that the file of each of many windows must have. A file without its first case is of an earlier
+    version."""
     definition, axes, divided = store.definition, axes_of(store.definition), divisions(store.definition, windows)
     expected = []
     for window in windows:

@@ -112,5 +112,5 @@ def exporting(store: Store, stock: Inventory, command: str, condition: Condition
     if not store.window:
         forget_other_exports(store)
         return
-    for path in stock.blocks:  # what is in them is in the file
+    for path in stock.blocks:  # their cases are in the file
         path.unlink(missing_ok=True)

@@ -95,7 +95,7 @@ def compute(task: Parcel) -> dict[str, np.ndarray]:
 
 
 def arrays_of(solution: Solution, results: tuple[str, ...], profiles: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """What is stored of a solution: name in the vocabulary -> (B,); of profiles (B, m)."""
+    """The stored arrays of a solution: name in the vocabulary -> (B,), profiles (B, m)."""
     special = {"lam0": solution.lam[:, 0], "nodes_used": solution.nodes}
     names = (*CONTROLS, *results, *INTEGERS)
     arrays = {name: special[name] if name in special else getattr(solution, name) for name in names}

@@ -1,4 +1,4 @@
-"""What a run would cost: time from a sample of the cases, memory and disk from their number."""
+"""The cost of a run: time from a sample of the cases, memory and disk from their number."""
 
 import time
 from dataclasses import dataclass
@@ -29,12 +29,12 @@ KEY = 16  # bytes of the key of a case, in a block and in the record of the resu
 # A results file takes HEAD bytes besides its numbers, and these take ROOM times their size: chunks are stored whole at
 # the edges of a grid. Measured on files of 3000 and of 1e6 cases.
 HEAD, ROOM = 300_000, 1.05
-TABLES = 600_000_000  # bytes that each process keeps for the exact layer: 0.4 GB of tables, and what they are made of
+TABLES = 600_000_000  # bytes that each process keeps for the exact layer: 0.4 GB of tables, and their sources
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """What a run would cost.
+    """The cost of a run, as it is expected.
 
     cases : of the study; present : those on disk; seconds : for the others
     memory : bytes at most; size : bytes of the results

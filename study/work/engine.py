@@ -1,9 +1,9 @@
 """The engine: blocks of cases are solved by the calling thread and others beside it, or by the workers of a cluster.
 
 `study.solve` and the `run` of a study are served alike, and `study.fit`, whose blocks are curves. A block has the same
-numbers wherever it is computed, so one worker and many give the same bits. What the compiled core takes is solved in
-threads (docs/threads.md), all else in the processes of `study.work.processes`. They import this package and not the
-program that calls, so a script needs no `if __name__ == "__main__"`. They stay for a while, for the next call.
+numbers wherever it is computed, so one worker and many give the same bits. Cases that the compiled core takes are
+solved in threads (docs/threads.md), all others in the processes of `study.work.processes`. They import this package and
+not the program that calls, so a script needs no `if __name__ == "__main__"`. They stay for a while, for the next call.
 """
 
 import atexit
@@ -107,8 +107,8 @@ def computed(
     storing : whether the calling thread stores the blocks. If there are MANY, it solves none itself, as those that are
         ready would wait meanwhile: processes solve all of them
 
-    When the iterator is closed, what waits is not computed, and processes end. Raises StudyError when no scheduler
-    answers, `cluster.Lost` when it is gone.
+    When the iterator is closed, blocks that wait are not computed, and processes end. Raises StudyError when no
+    scheduler answers, `cluster.Lost` when it is gone.
     """
     if scheduler is not None:
         yield from computed_there(scheduler, workers, guarded, (parcel(definition, index) for index in blocks))

@@ -1,4 +1,4 @@
-"""The order and the report of a run, and what is checked before it begins."""
+"""The order and the report of a run, and the checks before it begins."""
 
 import tempfile
 from dataclasses import dataclass, replace
@@ -28,7 +28,7 @@ from .progress import screen_of
 
 @dataclass(frozen=True)
 class Report:
-    """What a run did.
+    """The outcome of a run.
 
     path : of the results; complete : whether it is written; if not, blocks failed or other parts are missing
     cases : of the study; computed : those computed now; failures : number of a block -> why it failed
@@ -45,7 +45,7 @@ class Report:
 
 @dataclass(frozen=True, eq=False)
 class Order:
-    """What a run is asked for.
+    """The options of a run.
 
     workers, scheduler : see `engine.computed`
     part : (i, n), compute the i-th of n parts only; the part that ends last writes the results
@@ -56,7 +56,7 @@ class Order:
     yes : go on however large the study is
     command : of the user, for the history of the results
     stream : where progress is written
-    progress : where it is written without a `stream`, see `screen.screen_of`
+    progress : where it is written without a `stream`, see `progress.screen_of`
     """
 
     definition: Definition

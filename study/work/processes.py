@@ -97,17 +97,17 @@ class Threads:
         return futures
 
     def end(self) -> None:
-        """Nothing: what waits is taken from the feeders, and the blocks in work are solved to their end."""
+        """Nothing: tasks that wait are taken from the feeders, and the blocks in work are solved to their end."""
 
 
 def serve() -> None:
-    """What a worker process does: read pairs (function, its arguments) from stdin, write the results to stdout.
+    """Work as a worker process: read pairs (function, its arguments) from stdin, write the results to stdout.
 
     It ends after IDLE seconds without a task, or when stdin is closed. The system closes it when the process that runs
     the study ends, however that ends.
     """
     tasks, answers = SimpleQueue(), os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what a library prints must not be among the answers
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # prints of a library must not be among the answers
 
     def receive() -> None:
         try:

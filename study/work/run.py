@@ -31,7 +31,7 @@ BRIEF = 10.0
 
 
 def run(definition: Definition, results="results", **options) -> Report:
-    """Compute what is missing and write the results. `options` as of `Order`.
+    """Compute the missing cases and write the results. `options` as of `Order`.
 
     Raises StudyError when the folder cannot be written, or holds results that would be lost, or no scheduler answers;
     nothing has been computed then. Raises OSError when writing failed later (a full disk), or the scheduler is lost;
@@ -56,7 +56,7 @@ def run(definition: Definition, results="results", **options) -> Report:
 
 
 def _make_room(order: Order, state: WindowFiles) -> None:
-    """Remove what is in the way of the results, and say which damaged files stay under another name."""
+    """Remove files that are in the way of the results, and say which damaged files stay under another name."""
     for path in state.others:  # as --force has said
         path.unlink(missing_ok=True)
     if not order.shared:
@@ -72,7 +72,7 @@ def _make_room(order: Order, state: WindowFiles) -> None:
 
 
 def _compute(order: Order, state: WindowFiles) -> Report:
-    """Compute what is missing, this run's part of it, and write the results meanwhile."""
+    """Compute this run's part of the missing cases, and write the results meanwhile."""
     make_folder(state.windows[0].path.parent)
     with Harvest(order, state) as harvest:
         blocks = [block for _, block in harvest.blocks]
@@ -108,7 +108,7 @@ class Harvest:
         self._opened.__exit__(*error)
 
     def keep(self, number: int, arrays: dict[str, np.ndarray]) -> None:
-        """Put the columns of a block on the disk, and write what is whole then."""
+        """Put the columns of a block on the disk, and write the files that are whole then."""
         window, index = self.blocks[number]
         export, _ = self._begun.get(window.cases.start) or self._begin(window)
         is_brief = export.store.window and time.monotonic() - export.since < BRIEF
@@ -118,7 +118,8 @@ class Harvest:
         self._advance(window.cases.start)
 
     def end(self) -> None:
-        """Write what is whole, also if no case of it was missing, and the blocks of windows of which one has failed."""
+        """Write files that are whole, also if no case of them was missing, and the blocks of windows that have a failed
+        one."""
         for first, (export, _) in [*self._begun.items()]:
             self._advance(first)
             if export.pieces:

@@ -10,7 +10,7 @@ GREETING = 1_000_000  # most bytes of the first message of a scheduler; it has s
 
 
 def address_error(text: str) -> str:
-    """What is wrong with the form of an address; "" if nothing."""
+    """The mistake in the form of an address; "" if there is none."""
     parts = ADDRESS.fullmatch(text)
     if parts and (parts[3] is None or 1 <= int(parts[3]) <= 65535):
         return ""

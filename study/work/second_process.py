@@ -35,9 +35,9 @@ class SecondProcess:
             future.set_result(result)
 
     def result_of(self, name: str) -> Any:
-        """What the second process has made of a task, which may take until it is done.
+        """The result of a task of the second process, once it is done.
 
-        None if it has not begun, and will not: the caller then does it, as it does after a Failure.
+        None if the process has not begun the task, and will not: the caller then does it, as after a Failure.
         """
         with self._changing:
             self._waiting.pop(name, None)

@@ -5,9 +5,9 @@ Of the waves G != 0 of the lattice alone, with the transfer S, M of the coated b
     sz = 2 pi Nbar sum q^(G) S(Gz),   sr = st = pi Nbar sum q^(G) M(Gz).
 
 In the layer S and M are those of a half-space of its material, S = -(1 + x) e^-x, M = (x - 1 - 2 nu) e^-x, x = kz, and
-a difference that falls as waves from the interface do. Of the half-space the sum over G is the integral over all k, in
-closed form over k, and the sum less the integral of the long waves, weighted by w(k) = erfc((k - k0)/D)/2: so it needs
-few waves however near the surface.
+a difference that falls as waves from the interface do. For the half-space the sum over G is taken in two parts: the
+integral over all k, in closed form, and the sum less the integral of the long waves, weighted by w(k) =
+erfc((k - k0)/D)/2. So it needs few waves however near the surface.
 """
 
 import numpy as np

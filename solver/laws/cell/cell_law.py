@@ -32,7 +32,7 @@ EDGE = (np.pi / 2) ** (2 / 3), 2 / 3
 
 
 def rows_of(lattice, kernel, m, h, Nbar):
-    """The numbers (B, K) of the families of B cases, :meth:`.family.Family.row`: what the functions of this module get.
+    """The numbers (B, K) of the families of B cases, :meth:`.family.Family.row`, which the functions below take.
 
     lattice : "square", "hex" or "disc"; kernel, m, h : of the body, as in `on_body` of :class:`~solver.laws.law.Law`
     """

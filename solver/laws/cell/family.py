@@ -1,6 +1,6 @@
 """Families of spots on a coated body: one curve of p, A and p_max over the radius, for all P, Ra and R of a body.
 
-A family is a lattice, a pitch l over h, and what lies under the surface: its kernel and m. In units E = Ra = l = 1 its
+A family is a lattice, a pitch l over h, and the body under the surface: its kernel and m. In units E = Ra = l = 1 its
 spots of the radii b from 0 to the `reach` have
 
     p = (4/3) b³ e^P,   A = b² e^G,   p_max = (2 b/pi) e^Q,
@@ -35,9 +35,9 @@ REACH = 0.55
 #: to _ENOUGH: 1e-10 of p, A and p_max (tests/laws/cell/test_family.py). Q is that noisy of hard layers.
 _TERMS, _MORE, _ENOUGH = ((2.0, 28), (6.0, 36), (24.0, 48), (80.0, 72), (np.inf, 112)), 1.4, 220
 _LAST, _SMALL = 3, (1e-11, 1e-11, 5e-11)
-#: What follows is left out of the series: rounding.
+#: Terms below this are rounding, and left out of the series.
 _ROUNDING = 1e-13
-#: The least pitch over h, below which no wave feels what lies under the layer; and the largest, of which a family takes
+#: The least pitch over h, below which no wave feels the body under the layer; and the largest, of which a family takes
 #: seconds.
 _LEAST, MOST = 0.1, 300.0
 #: Number of terms of the inverse, and of points to which it is fitted: it is right to 1e-3, mostly to 1e-5.
@@ -219,7 +219,7 @@ def chebyshev_series(of, pitch, reach, small, numbers=_TERMS, enough=_ENOUGH):
     """Chebyshev series (K, N) in 2 v - 1 of functions of the radius, as many terms as they need.
 
     of : function of radii b (S,) -> (K, S)
-    small : what the last coefficients of each may be, over 1 or over its largest; a number or (K,)
+    small : size that the last coefficients of each may have, over 1 or over its largest; a number or (K,)
     numbers, enough : as _TERMS and _ENOUGH
     """
     terms = next(count for most, count in numbers if pitch <= most)
@@ -248,8 +248,8 @@ def solved(cell, b, N):
 
 
 def in_groups(cell, b, of, count):
-    """What a function gives, `count` arrays (s,), for radii of which the largest has few points more than the others
-    need: together (count, S)."""
+    """The results (count, S) of a function that gives `count` arrays (s,). It is called with groups of radii that need
+    about as many points as the largest of the group."""
     out, beta = np.empty((count, len(b))), b * cell.pitch if cell.L1 is not None else 0 * b
     order, ends = np.argsort(beta), [most for _, most in FEW]
     while len(order):

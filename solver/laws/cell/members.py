@@ -1,4 +1,4 @@
-"""The cells of asperities that feel their bodies, and what is kept of each family: docs/model.md."""
+"""The families of cells on coated bodies, with their peaks, which are kept: docs/model.md."""
 
 from typing import NamedTuple
 
@@ -16,8 +16,8 @@ _kept = Kept(2e7)
 
 
 class Member(NamedTuple):
-    """A family: what tells it from others, its :class:`~.spot.Cell`, and its largest radius (unit l); `known` is False
-    of a body that no law knows. `alone` : its spots have loads of their own (:mod:`.summits`)."""
+    """A family: the key that tells it from others, its :class:`~.spot.Cell`, and its largest radius (unit l); `known`
+    is False of a body that no law knows. `alone` : its spots have loads of their own (:mod:`.summits`)."""
 
     key: tuple
     cell: Cell

@@ -162,8 +162,8 @@ def _breaks(most):
 
 
 class _Largest(NamedTuple):
-    """Of pressures (B,) each: the largest, (r/b)² of its place, whether that is in a ring, and whether some are below
-    0."""
+    """The largest pressures (B,), (r/b)² of their places, whether these are in a ring, and whether some pressure is
+    below 0."""
 
     value: np.ndarray
     square: np.ndarray
@@ -269,7 +269,7 @@ def _pieces(looked_up, low, high, kind, halvings):
 
 
 def _on(low, high, x):
-    """What is at x in [-1, 1] of an interval."""
+    """The value at x in [-1, 1] of the interval from `low` to `high`."""
     return low + (high - low) * (1 + x) / 2
 
 

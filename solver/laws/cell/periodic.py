@@ -1,8 +1,8 @@
 """The micro law of a surface itself: the contact of one period of heights, by conjugate gradients.
 
 One period of N × M heights on a body with the kernel L: a pressure of the Fourier amplitudes p(k) moves its surface by
-2 L(k)/k p(k) (E1* = 1), without k = 0, whose part is the nominal contact's. Of all pressures >= 0 with the mean p the
-one is sought that makes the gap 0 where it presses (Polonsky and Keer, Wear 231, 1999, 206): a quadratic program, whose
+2 L(k)/k p(k) (E1* = 1), without k = 0, whose part is the nominal contact's. The pressure sought is >= 0, has the mean
+p, and makes the gap 0 where it presses (Polonsky and Keer, Wear 231, 1999, 206). That is a quadratic program, whose
 steps along conjugate directions cost two Fourier transforms each. The residual is divided by the kernel, so that the
 number of steps hardly grows with N.
 """
@@ -127,7 +127,7 @@ def pressed(depths, response, mean, start):
         apart = (p == 0) & (residual < 0)
         restart = bool(apart.any())
         if restart:
-            # the same step with what joins; a pressure of one size for all makes hard layers come and go for ever
+            # the same step with the points that join: one pressure for all of them makes hard layers come and go for ever
             joining = -step * eased(residual, touching | apart)
             p = np.where(apart, np.maximum(joining, _JOINS * mean), p)
         p = p * (mean / p.mean())

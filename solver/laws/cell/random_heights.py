@@ -25,7 +25,7 @@ _STEPS, _LAST, _FULL = 30, 1e-10, (np.pi / 2) ** 2
 #: Newton's method on ln q: most steps, the change that is the last, the largest change, and the relative residual above
 #: which there is no solution. So many spots are computed at a time.
 _MOST, _CLOSE, _LONGEST, _SOLVED, _AT_A_TIME = 14, 1e-9, 2.0, 1e-6, 2**14
-#: So many of the knots that are solved first are solved at a time, until the law ends. What is between knots is
+#: So many of the knots that are solved first are solved at a time, until the law ends. Values between knots are
 #: interpolated from three on each side: a table has PAST knots beyond the end of the law. From there on w + q is a
 #: power of y that is at most _SLOWER, so that δ rises.
 _AT_FIRST, PAST, _SLOWER = 20, 4, 0.98
@@ -138,7 +138,7 @@ def pressure(of, y, relief, q=None):
     if q is None:
         few, w = spread.depth(y, 0.0, relief)
         at_zero = of(np.full((1, len(y)), 1e-300), few[None])
-        # what others add may be more than all of q, at the approach without them
+        # the part of the others may exceed all of q, at the approach without them
         ratio = np.where(at_zero.rest > 0, at_zero.load / at_zero.rest, np.inf)[0]
         q = np.clip(ratio, 1e-300, w * np.sqrt(few / relief))
     q, area = q.copy(), np.full(len(y), np.nan)

@@ -6,8 +6,8 @@ In units l = Ra = E = 1, with the Abel transform phi of the pressure, q^(k) = in
     N(t, s) = [N(t + s) + N(t - s)]/2,   N = M + K of :mod:`.sums`   (K alone in the disc cell),
     p = 2 pi int phi dt,   p_max = -int phi'(t)/t dt.
 
-M is what the neighbours add on a half-space, K what the layer adds. The equation is linear in A, in the shape t² and in
-p: each has its own right-hand side, and phi(b) = 0 gives A. phi' comes from the equation differentiated by t.
+M is the part of the neighbours on a half-space, K that of the layer. The equation is linear in A, in the shape t² and
+in p: each has its own right-hand side, and phi(b) = 0 gives A. phi' comes from the equation differentiated by t.
 """
 
 from typing import NamedTuple

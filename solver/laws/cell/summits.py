@@ -1,8 +1,8 @@
 """One spot of its own radius and load on a coated body, in the mean field of others: for asperities of random heights.
 
 Its own load acts by the kernel of a lone spot on the layer, that of the others as their mean, the nominal pressure p:
-by the half-space's field outside of its cell, as in the disc cell, and by what the layer adds for the waves of the
-hexagonal lattice, less what it adds for the spot itself. With N1 of the lone spot, Nh of the lattice, and the shape s
+by the half-space's field outside of its cell, as in the disc cell, and by the part of the layer for the waves of the
+hexagonal lattice, less that for the spot itself. With N1 of the lone spot, Nh of the lattice, and the shape s
 of the spots of equal heights (of the disc cell, load 1, the same radius),
 
     pi phi(t) + 2 int_0^b phi N1 ds = A - t² + p [2 sqrt(Bbar² - t²) - 2 int_0^b s (Nh - N1) ds].

@@ -1,4 +1,4 @@
-"""Sums over a lattice of spots: what the neighbours add to the kernel of a spot, and the waves of the lattice.
+"""Sums over a lattice of spots: the part of the neighbours in the kernel of a spot, and the waves of the lattice.
 
 In units of the pitch l = 1/sqrt(Nbar). On a half-space the spots of the lattice, without the one at the origin and
 without the uniform pressure, move the surface at x = t + s or t - s by

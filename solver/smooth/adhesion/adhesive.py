@@ -19,9 +19,9 @@ from .pull import States, Turn, above_turn, below, highest, last_minimum
 
 #: A load or depth as near as this to that of pull-off is it, relative: rounding, by the units of what was returned.
 _SAME = 64 * np.finfo(float).eps
-#: Where load and depth of pull-off are off by this part, nothing is known of what is pulled off.
+#: Where load and depth of pull-off are off by this part, nothing is known of contacts that are pulled off.
 _UNKNOWN = 0.1
-#: Errors of what may be 0 are relative to this part of what adhesion takes, at least.
+#: Errors of numbers that may be 0 are relative at least to this part of the pull of adhesion.
 _LEAST = 0.1
 
 
@@ -58,7 +58,7 @@ def solve(part, shape, body, x):
 
 @batch.of_cases
 class Pulled(NamedTuple):
-    """Of B cases, what does not depend on their load or depth: what holds the punch, `holder`; its
+    """The parts of B cases that do not depend on their load or depth: the `holder` of the punch; its
     :class:`~.pull.Turn`, and the state to which the contact jumps where the punch only touches; and the Turn of a
     machine that holds the `control`."""
 
@@ -133,7 +133,7 @@ def _off(state):
 def _asked(part, curve, pulls):
     """x (B,) of the asked branch where P or D is given, NaN where it has no such state; and whether the control is at
     its minimum (B,). The largest radius with the value of the control is on the stable branch where it is beyond the
-    :class:`~.pull.Turn` of what holds the punch."""
+    :class:`~.pull.Turn` of the holder of the punch."""
     control, of_control, turn = pulls.control, pulls.of_control, pulls.turn
     least, unstable = control.of(of_control.state.P, of_control.state.D), part.branch == "unstable"
     at_turn = (np.abs(part.value - least) <= _SAME * np.abs(least)) & ~of_control.at_axis

@@ -1,4 +1,4 @@
-"""Load and depth at many radii, what the shape makes of them and what adhesion takes away, apart.
+"""Load and depth at many radii, as two terms each: one of the shape alone, and the pull of the adhesion.
 
 Along the curve of a contact that sticks P = P₀ - pull_P and D = D₀ - pull_D. All four are positive and smooth functions
 of the radius, and those of :mod:`.jkr` follow w and E as powers. So curves of many works of adhesion need them once.
@@ -24,7 +24,7 @@ _SUBLAYERS = (4, 8)
 
 class CurveTerms(NamedTuple):
     """P₀, D₀, pull_P and pull_D, in units R = E2* = 1: `values` (4, B, m), and their derivatives `slopes` (4, B, m) by
-    the variable of :class:`~..radius.Radii`. What a contact does not have is NaN."""
+    the variable of :class:`~..radius.Radii`. Numbers that a contact does not have are NaN."""
 
     values: np.ndarray
     slopes: np.ndarray

@@ -16,7 +16,7 @@ from ..state import Scales, State, answer
 
 def solve(part, shape, body, k, x):
     """:class:`~...solution.Solution` of cases of one base with w > 0 and this law in units R = E2* = 1; k (B,) is the
-    stiffness of what holds the punch."""
+    stiffness of the machine that holds the punch."""
     pull = 2 * np.pi * part.w_adhesion
     without_pull = part.value + pull if part.control == "P" else part.value
     legal = (without_pull > 0) & ((part.branch == "stable") | (part.control == "a"))

@@ -4,8 +4,8 @@ An edge that gives way when it gains the work of adhesion w for each area has th
 
     A = -sqrt(2π a w/E),
 
-where E is the modulus of what touches: of the layer at the surface and of the punch. So a radius has one load and one
-depth. The slopes of both along the curve are
+where E is the modulus of the bodies that touch, the layer at the surface and the punch. So a radius has one load and
+one depth. The slopes of both along the curve are
 
     dD/da = dD₀/da + A (flat_D/(2a) + d flat_D/da),       dP/da = S dD/da + 2 E A/flat_D,
 
@@ -34,7 +34,7 @@ class Jkr(NamedTuple):
     reaches_axis = False  # at small radii the edge pulls more than the shape presses
 
     def taken(self, state):
-        """What adhesion takes from load, depth and p(0) of states, as of a half-space, (3, B)."""
+        """The parts (3, B) that adhesion takes from load, depth and p(0) of states, as on a half-space."""
         pull = np.abs(state.A)
         r = state.response
         return np.array([pull * r.flat_P, pull * r.flat_D, pull * r.E / (np.pi * state.a)])

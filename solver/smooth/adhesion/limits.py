@@ -1,4 +1,4 @@
-"""What stands in for a contact that sticks where its equations lose their digits: narrow rings, hardly any adhesion.
+"""Stand-ins for contacts that stick where their equations lose their digits: narrow rings, hardly any adhesion.
 
 The narrower the ring of :mod:`.maugis`, the nearer are its contacts to those of :mod:`.jkr`; and there is a work of
 adhesion so small that it changes no digit of a contact.

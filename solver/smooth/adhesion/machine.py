@@ -1,4 +1,4 @@
-"""What holds a punch: a load, a depth, or a machine of some stiffness."""
+"""The holder of a punch: a load, a depth, or a machine of some stiffness."""
 
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ from ...numerics import batch
 
 @batch.of_cases
 class Holder(NamedTuple):
-    """What holds the punches: of B cases whether the load counts alone, k = 0, and the compliance 1/k else."""
+    """The holders of B punches: whether the load counts alone, k = 0, and else the compliance 1/k."""
 
     load: np.ndarray
     compliance: np.ndarray
@@ -27,6 +27,6 @@ class Holder(NamedTuple):
 
 
 def machine(part):
-    """Stiffness (B,) of what holds the punches: 0 and infinite where nothing is said, for loads and for depths."""
+    """Stiffness (B,) of the holders of the punches; by default 0 under a load and infinite under a depth."""
     usual = np.inf if part.control == "D" else 0.0
     return np.where(np.isnan(part.k_machine), usual, part.k_machine)

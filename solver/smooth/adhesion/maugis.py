@@ -51,7 +51,7 @@ class Ring(NamedTuple):
 
 
 class RingResponse(NamedTuple):
-    """What a kernel makes of a ring, B cases: y (B, N), and what it adds to D, `at_edge`, and to u(c), `moved`, (B,);
+    """How B bodies respond to a ring: y (B, N), and the parts (B,) of the kernel in D, `at_edge`, and in u(c), `moved`;
     errors (3, B) of y_0 and of these two; `changes` (B, N), by how much y may be off."""
 
     y: np.ndarray
@@ -72,7 +72,7 @@ class Maugis(NamedTuple):
     reaches_axis = True  # where the ring is wide, P and D rise with a from a = 0
 
     def taken(self, state):
-        """About what adhesion takes from load, depth and p(0) of states, (3, B)."""
+        """About the parts (3, B) that adhesion takes from load, depth and p(0) of states."""
         c = state.a * state.zone
         return np.array([np.pi * c**2 * self.sigma, 2 * c * self.sigma / self.body.E, self.sigma])
 
@@ -232,7 +232,7 @@ def ring_stress(part):
 
 
 def ring_pressure(part, zone, x):
-    """What the ring adds to the pressure (B, m) at x (m,) inside the contact, by the tension outside it."""
+    """The pressure (B, m) at x (m,) inside the contact that the tension in the ring outside it adds."""
     sigma = ring_stress(part)[:, None]
     edge = np.sqrt((zone - 1) * (zone + 1))[:, None]
     return sigma * (2 / np.pi * np.arctan2(np.sqrt((1 - x) * (1 + x)), edge) - 1)

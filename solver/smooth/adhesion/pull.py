@@ -25,7 +25,7 @@ _STEP, _TOGETHER = 0.25, 8
 #: wave; and end where what the shape adds to the slope of D is below this part of what the edge takes, and below this
 #: part of the thickness of the first layer.
 _ABOVE, _BELOW, _THIN = 4.0, 1e-3, 0.02
-#: Beyond what is flat, (a - b)/b where the search ends: there the slope of a frustum is that of its corner.
+#: Beyond the flat part, (a - b)/b where the search ends: there the slope of a frustum is that of its corner.
 _CORNER = 1e-6
 #: Waves u = kh at which the kernel is looked at.
 _WAVES = np.geomspace(1e-9, 30.0, 72)
@@ -76,7 +76,7 @@ def highest(law, radii):
 
 
 def lowest(law, x, index, radii):
-    """(b,) bool: below x Q falls, of all cases `index`; or it is next to the corner of what is flat."""
+    """(b,) bool: below x Q falls, of all cases `index`; or it is next to the corner of the flat part."""
     a, _ = radii.at(x, index)
     part, w, E = law.shape.take(index), law.w[index], law.body.E[index]
     slope = part.lifted_slope(column(a))[:, 0]
@@ -89,7 +89,7 @@ def lowest(law, x, index, radii):
 
 @batch.of_cases
 class Turn(NamedTuple):
-    """The last minimum of Q in B cases: x, the state there, and whether it is the corner of what is flat, where x is
+    """The last minimum of Q in B cases: x, the state there, and whether it is the corner of the flat part, where x is
     -inf. `above` is an x beyond every minimum. `at_axis`: it is at a = 0, and `x` the least that was looked at."""
 
     above: np.ndarray

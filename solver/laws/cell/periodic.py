@@ -127,7 +127,7 @@ def pressed(depths, response, mean, start):
         apart = (p == 0) & (residual < 0)
         restart = bool(apart.any())
         if restart:
-            # the same step with the points that join: one pressure for all of them makes hard layers come and go for ever
+            # the same step with the points that join: one pressure for all makes hard layers come and go for ever
             joining = -step * eased(residual, touching | apart)
             p = np.where(apart, np.maximum(joining, _JOINS * mean), p)
         p = p * (mean / p.mean())

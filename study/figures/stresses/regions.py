@@ -10,7 +10,7 @@ from solver.bases import is_bare
 from ...again import Again, refuse_without_stresses, strengths
 from ...data.dataset import decode
 from ...fields import extremes, stresses
-from ...in_words.inputs import is_rigid
+from ...in_words.stated_inputs import is_rigid
 from ...inputs.definition import StudyError
 
 _NEAR = np.linspace(0, 0.4, 17) ** 2 / 0.4

@@ -9,7 +9,7 @@ from solver.yields.below.central_spot import section, spot_of
 
 from ...again import Again, refuse_without_stresses
 from ...fields import residual_stress, units_of
-from ...in_words.inputs import is_rigid
+from ...in_words.stated_inputs import is_rigid
 from ...inputs.definition import StudyError
 from .regions import Region, Stresses, one_contact, yield_strengths
 

@@ -12,8 +12,8 @@ from solver.yields.protect import protection
 from ..again import Again, strengths
 from ..fields import carried, friction, refuse_both, units_of
 from ..inputs.definition import StudyError
-from .asked import contacts, of_dataset, own_materials, refuse, without_control
-from .first import about_of, labelled
+from .first_yield import about_of, labelled
+from .yielding_contacts import contacts, of_dataset, own_materials, refuse, without_control
 
 
 def h_protect(

@@ -15,8 +15,8 @@ from ..again import Again, of_all_cases, strengths
 from ..fields import carried, friction, refuse_both, residual_stress, units_of
 from ..inputs.vocabulary import CONTROLS
 from ..rules.rule import validity_attributes
-from .asked import contacts, control_of, of_dataset, own_materials, refuse, without_control
-from .beyond import said_of, validity_at
+from .model_validity import said_of, validity_at
+from .yielding_contacts import contacts, control_of, of_dataset, own_materials, refuse, without_control
 
 BODIES = {"layer": "_Y1", "body": "_Y2", "asperities": "_Ya", "punch": "_Y_punch"}
 """What may yield, in the order of the codes of `first_yield` -> the end of the names of its numbers."""

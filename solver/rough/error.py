@@ -21,14 +21,14 @@ from .results import cornered, interpolate, judged_difference, pointed, quantiti
 _UNSEEN = 8.0
 #: This error is counted if λ at the node next to the edge is above this.
 _RISEN = 0.05
-#: Near the edge asperities yield more than the body, in a ring that both meshes may miss. Where they may, the estimate
-#: is multiplied by this. Without the factor 10 % of such extreme cases on 6 nodes have an error above the estimate,
-#: with it 3 % (`python tools/errors/error_bars.py`); one that needs it is "blind" of
-#: tests/rough/errors/test_error_bars.py.
+#: Near the edge asperities yield more than the body, in a ring that both meshes may miss. The estimate of such cases is
+#: multiplied by this. Without the factor 10 % of these extreme cases on 6 nodes have an error above the estimate, with
+#: it 3 % (`python tools/errors/error_bars.py`). "blind" of tests/rough/errors/test_error_bars.py needs it.
 _BLIND = 3.0
-#: There both meshes may also place the edge alike by chance, but not the pressures near it: :func:`_moved_edge`. Where
-#: this and the estimate are of one size, both may be too small: where the edge moves by δ a, Ar/An and P change by 2 δ
-#: and 3 δ. So the smaller of the two counts _BOTH times: "edge" and "edge, a given" of the same tests.
+#: In such a ring both meshes may also agree on the edge by chance, but not on the pressures near it
+#: (:func:`_moved_edge`). Where this and the estimate are of one size, both may be too small: if the edge moves by δ a,
+#: Ar/An and P change by 2 δ and 3 δ. So the smaller of the two counts _BOTH times: "edge" and "edge, a given" of the
+#: same tests.
 _BOTH = 2.0
 #: In the centre the pressures of two meshes may agree by chance: in the case "centre" of
 #: tests/rough/errors/test_error_bars.py to a twentieth of their error. So on meshes of one panel any change of the

@@ -72,8 +72,8 @@ def _kinked_drop(shape, a, size):
 
 
 def longest(angles):
-    """The longest of panels with ends at these angles (B, K), over a right angle, in eighths: a function of the basis
-    turns by as large a part of all its waves there."""
+    """The longest of panels with ends at these angles (B, K), over a right angle, in eighths. A function of the basis
+    has this part of all its waves there."""
     widths = np.abs(np.diff(angles, axis=1)).max(axis=1)
     return np.ceil(_PARTS * widths / (np.pi / 2) - _EPS * _PARTS) / _PARTS
 
@@ -83,8 +83,8 @@ def _in_panels(shape, a, ends, size, count):
     y, w = gauss_legendre(count)
     radius, low, width = column(a), ends[:, :-1, None], np.diff(ends, axis=1)[:, :, None]
     tau = (low + width * y**2).reshape(len(a), -1)
-    rise = (width * (2 * y * w)).reshape(len(a), -1) * (shape.lifted(radius) - shape.lifted(radius * tau))
-    return np.stack([(values * rise).sum(axis=1) for values in functions(tau, size)], axis=1)
+    drop = (width * (2 * y * w)).reshape(len(a), -1) * (shape.lifted(radius) - shape.lifted(radius * tau))
+    return np.stack([(values * drop).sum(axis=1) for values in functions(tau, size)], axis=1)
 
 
 def functions(tau, size):
@@ -104,7 +104,7 @@ def legendre(tau, size):
 
 def on_half_space(shape, a, x):
     """∫ from r to a of F'(t)/sqrt(t² - r²) dt (B, m) at r = ax, x (m,) < 1: the pressure of a half-space times π/E. It
-    is infinite at r = 0 under a tip that is pointed."""
+    is infinite at r = 0 under a pointed tip."""
     out = np.empty((len(a), len(x)))
     even = shape.even
     for index in (np.flatnonzero(even), np.flatnonzero(~even)):

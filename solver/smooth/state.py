@@ -78,9 +78,9 @@ def pinned(part, shape, body):
 
 
 def at_corner(part, shape, body, state):
-    """The states, and which of them (B,) touch so little beyond the flat part, or less than can be told from its radius
-    b, that they are better taken for those of a flat punch of that radius. By the part by which a is larger than b, P
-    and D are off then."""
+    """The states, and which of them (B,) are taken for those of a flat punch of the radius b of the flat part: they
+    touch so little beyond b, or less than the radius can tell. Their P and D are off by the part by which a exceeds
+    b."""
     least = shape.least()
     with np.errstate(invalid="ignore", divide="ignore"):
         over = state.a / least - 1

@@ -93,8 +93,8 @@ def _alike(part):
 
 
 def _at_minimum(part, state, at_turn):
-    """The states; those `at_turn` (B,) are the ones of pull-off itself, whose radius is not off by what the control is
-    off there, over a slope that is 0."""
+    """The states. At pull-off itself, `at_turn` (B,), the slope of the control is infinite in place of 0, so that the
+    radius gets no error from that of the control."""
     if part.control == "a":
         return state
     name = f"d{part.control}"

@@ -76,7 +76,7 @@ def highest(law, radii):
 
 
 def lowest(law, x, index, radii):
-    """(b,) bool: below x Q falls, of all cases `index`; or it is next to the corner of the flat part."""
+    """(b,) bool of the cases `index`: Q falls everywhere below x, or x is next to the corner of the flat part."""
     a, _ = radii.at(x, index)
     part, w, E = law.shape.take(index), law.w[index], law.body.E[index]
     slope = part.lifted_slope(column(a))[:, 0]

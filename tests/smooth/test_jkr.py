@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 from rows import SMOOTH, material, rows, shape
 
 from solver import Problem, Status, solve
+from solver.smooth.adhesion import pull
 
 ROWS, SHAPES = rows("given_jkr.csv"), rows("given_jkr_shapes.csv")
 HALF_SPACE = {"base": "half_space", "w_adhesion": 1e-4} | SMOOTH
@@ -127,6 +128,21 @@ def test_thin_limits_on_a_rigid_base():
         contact = solve(Problem.of(P=0.0, h=h, n=0.5, nu1=0.3, w_adhesion=1e-4, bonding="bonded", rtol=1e-4, **SMOOTH))
         assert contact.status == Status.CONVERGED
         assert_allclose(contact.P_off, -1.5 * PULL, rtol=0.02, atol=0)
+
+
+def test_a_minimum_is_searched_from_the_slopes_at_its_ends(monkeypatch):
+    """Their ratio gives the first guess: with another one the search takes steps for nothing."""
+
+    def checked(evaluate, low, high, g_low, g_high, tolerance):
+        for x, slope in ((low, g_low), (high, g_high)):
+            assert_allclose(evaluate(x, np.arange(len(x))), slope, rtol=1e-6, atol=0)
+        sizes.append(len(low))
+        return between(evaluate, low, high, g_low, g_high, tolerance)
+
+    between, sizes = pull.between, []
+    monkeypatch.setattr(pull, "between", checked)
+    solve(Problem.of(P=0.0, h=[0.3, 1e-3], n=1e4, nu1=0.3, bonding="bonded", w_adhesion=1e-4, **SMOOTH))
+    assert max(sizes) == 2
 
 
 def test_several_minima():

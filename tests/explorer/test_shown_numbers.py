@@ -50,7 +50,7 @@ DRAWN = """
 const vm = require("vm"), fs = require("fs"), DATA = JSON.parse(fs.readFileSync(0));
 const page = vm.createContext({ DATA, atob, given: JSON.parse(process.argv[2]) });
 const read = (name) => fs.readFileSync(`${process.argv[1]}/${name}.js`, "utf-8");
-vm.runInContext(["core", "numbers", "contact", "drawing"].map(read).join("\\n"), page);
+vm.runInContext(["core", "numbers", "contact", "stress", "strength", "drawing"].map(read).join("\\n"), page);
 console.log(JSON.stringify(vm.runInContext(process.argv[3], page)));
 """
 TORNADO = """given.map((slope) => Drawing.tornado(
@@ -142,6 +142,14 @@ def test_only_words_on_a_coloured_ground_have_a_rim():
     drawn = by_node(DRAWN, contents(), json.dumps(given), "Drawing.section(Contact.solve(given), 800)")
     classes = re.findall('class="([^"]*)"', drawn)
     assert len(classes) > 5 and {*classes} == {"soft"}
+
+
+def test_stresses_are_drawn_in_the_layer_and_in_the_body_below():
+    given = {"R": "5 mm", "P": "10 N", "punch": "steel 52100", "layer": "silica", "h": "20 um", "body": "steel 52100"}
+    given |= {"micro": "smooth", "bonding": "bonded"}
+    shown = "contact = Contact.solve(given), Drawing.stresses(contact, Strength.stresses(contact), 800)"
+    drawn = by_node(DRAWN, contents(), json.dumps(given), shown)
+    assert drawn.count(">body<") == 1 and len(re.findall(">layer[^<]*<", drawn)) == 1
 
 
 #: Texts with ±: in the same unit, in another, in per cent.

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from solver_cases import LOAD, MAIN, difference
 
 from solver import Problem, Status, solve
+from solver.body import BODIES
 
 NAMES = ("P", "D", "p0", "dP_dD")
 RADIUS = 0.04
@@ -48,6 +49,17 @@ GRID = [
     for n in (1e-3, 0.05, 1.0, 10.0)
     for bonded, nu1, nu2 in ((0, 0.3, 0.3), (1, 0.0, 0.5), (1, 0.3, 0.3), (1, 0.5, 0.0), (1, 0.5, 0.5))
 ]
+
+
+@pytest.mark.parametrize("first", [1.0, 10.0, 40.0])
+@pytest.mark.parametrize("n", [0.01, 30.0])
+def test_waves_that_no_mesh_has(n, first):
+    """The shift of the edge is (h/π) ∫ |ln L(u)/L(u1)| du/u² over all u > u1 = h/(a s1²), to 1 %, by another rule."""
+    body = BODIES["layered"](Problem.of(a=[RADIUS], h=0.05, n=n, nu1=0.4, base="layered", micro="smooth"))
+    t = np.linspace(0, 1, 20_001)[1:]  # u = u1/t, and du/u² = -dt/u1
+    L = body.whole((first / t)[None])[0]
+    expected = body.h / np.pi * np.trapezoid(np.abs(np.log(L / L[-1])), t) / first
+    assert_allclose(body.unseen(np.array([RADIUS]), np.sqrt(body.h / RADIUS / first)[0]), expected / RADIUS, rtol=0.01)
 
 
 def test_fredholm_on_a_grid():

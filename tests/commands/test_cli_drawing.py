@@ -3,6 +3,7 @@
 import os
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from test_cli_options import tree
 
 from study import api, catalogue
 from study.__main__ import main
+from study.commands import drawing
 from study.figures import registry
 from study.inputs.definition import StudyError
 from study.work.plan import Report
@@ -196,6 +198,15 @@ def test_run_computes_the_studies_that_are_needed_once_and_skips_what_is_up_to_d
     Path("figures/fig05.csv").unlink()
     assert main(["plot", "--run", "fig05"]) == 1
     assert len(drawn) == 4, "not from results that are not complete"
+
+
+def test_figures_that_a_second_process_may_draw(monkeypatch):
+    """All, except with --run those that are up to date; a bare figure is kept nowhere, and drawn anew."""
+    monkeypatch.setattr(drawing, "_prepared", lambda *_: 0)
+    monkeypatch.setattr(catalogue, "outdated", lambda kind, name, *_: name == "old")
+    for run, bare, wanted in ((False, False, ["old", "new"]), (True, False, ["old"]), (True, True, ["old", "new"])):
+        options = SimpleNamespace(run=run, results="results", folder="figures")
+        assert [name for name in ("old", "new") if drawing._waits(options, "figure", name, bare)] == wanted
 
 
 def test_all_means_what_no_long_study_is_needed_for(monkeypatch):

@@ -47,6 +47,14 @@ def test_a_table_says_what_is_closest_to_its_limit(capsys):
     assert "is 1.6 times the yield strength, 63.0 ± 6.0 MPa" in capsys.readouterr().out
 
 
+def test_a_contact_without_strengths_leaves_the_column_to_the_others():
+    ball = {"R": "5 mm", "punch": "rigid", "body": "PMMA", "base": "half_space", "micro": "smooth"}
+    contacts = study.solve(**ball, P=["0.1 N", "0.2 N"], x=2)
+    heading, _, absent = columns(contacts.where(contacts.P < 0.15)).splitlines()
+    assert heading.split()[-3:] == ["status", "strength", "validity"]
+    assert absent.split()[-3:] == ["not_run", "-", "not_run"]
+
+
 def test_a_share_that_has_yielded_is_a_number(capsys):
     given = ["P=1e-5", "base=half_space", "Nbar=250000", "Ra=0.004", "micro=elastic_plastic", "hardness=0.03"]
     assert main(["point", "--json", *given]) == 0

@@ -5,6 +5,7 @@ import pytest
 
 import study
 
+SMOOTH = {"micro": "smooth", "x": 2}
 METAL_ON_RUBBER = {"R": "50 um", "E1": "70 GPa", "nu1": 0.35, "E2": "1 MPa", "nu2": 0.49, "micro": "smooth", "x": 2}
 
 
@@ -47,3 +48,11 @@ def test_a_ball_is_a_paraboloid_there():
     paraboloid, ball = (study.solve(**METAL_ON_RUBBER, **places, shape=name) for name in ("paraboloid", "sphere"))
     assert (paraboloid.validity & 32 > 0).values.tolist() == [False, True, True]
     assert (ball.validity & 32 > 0).values.tolist() == [False, True, True]
+
+
+@pytest.mark.parametrize(("half_angle", "strained"), [(89.5, False), (70.0, True)])
+def test_under_a_sharp_tip_the_mean_pressure_compresses(half_angle, strained):
+    """p(0) is infinite; the mean pressure E cot(α)/2 is 0.004 E and 0.18 E, and both depths are above h/10."""
+    cone = study.solve(a=0.2, h=0.01, n=1.0, nu1=0.3, bonding="bonded", shape="cone", half_angle=half_angle, **SMOOTH)
+    assert np.isinf(cone.p0) and 0.1 * cone.h < cone.D
+    assert (cone.validity.item() & 32 > 0) == strained

@@ -49,12 +49,13 @@ console.log(JSON.stringify(all.map((strengths) => strengths.asperities)));
 """
 DRAWN = """
 const vm = require("vm"), fs = require("fs"), DATA = JSON.parse(fs.readFileSync(0));
-const page = vm.createContext({ DATA, atob, slopes: JSON.parse(process.argv[2]) });
+const page = vm.createContext({ DATA, atob, given: JSON.parse(process.argv[2]) });
 const read = (name) => fs.readFileSync(`${process.argv[1]}/${name}.js`, "utf-8");
-vm.runInContext(["core", "numbers", "contact", "drawing"].map(read).join("\\n"), page);
-console.log(JSON.stringify(vm.runInContext(`slopes.map((slope) => Drawing.tornado(
-  { sensitivities: { h: { p0: slope, relative: 1 }, P: { p0: -slope, relative: 1 } } }, "p0", "spread", 800))`, page)));
+vm.runInContext(["core", "numbers", "contact", "stress", "strength", "drawing"].map(read).join("\\n"), page);
+console.log(JSON.stringify(vm.runInContext(process.argv[3], page)));
 """
+TORNADO = """given.map((slope) => Drawing.tornado(
+  { sensitivities: { h: { p0: slope, relative: 1 }, P: { p0: -slope, relative: 1 } } }, "p0", "spread", 800))"""
 
 pytestmark = pytest.mark.skipif(NODE is None, reason="node is not installed (make explorer-test)")
 
@@ -129,10 +130,27 @@ def test_what_is_no_number_is_said(shown):
 
 def test_the_tornado_shows_how_much_a_result_changes():
     changes = [1e-5, 0.997, 0.9951, 1.5, 12.3, 1e6]
-    for by, drawn in zip(changes, by_node(DRAWN, contents(), json.dumps(changes)), strict=True):
+    for by, drawn in zip(changes, by_node(DRAWN, contents(), json.dumps(changes), TORNADO), strict=True):
         label = re.search(r'aria-label="[^"]*: ([^"]*) %\."', drawn).group(1)
         numbers = [label, *re.findall(r">([^<]*) %<", drawn)]
         assert len(numbers) == 3 and all(is_written(number, 100 * by, 2) for number in numbers), (by, numbers)
+
+
+def test_only_words_on_a_coloured_ground_have_a_rim():
+    """The numbers of the axes stand beside it, soft and without one."""
+    given = {"R": "5 mm", "P": "1 N", "punch": "steel 52100", "body": "copper", "base": "half_space"}
+    given |= {"micro": "disc_cell", "Nbar": "1 1/um^2", "Ra": "5 um"}
+    drawn = by_node(DRAWN, contents(), json.dumps(given), "Drawing.section(Contact.solve(given), 800)")
+    classes = re.findall('class="([^"]*)"', drawn)
+    assert len(classes) > 5 and {*classes} == {"soft"}
+
+
+def test_stresses_are_drawn_in_the_layer_and_in_the_body_below():
+    given = {"R": "5 mm", "P": "10 N", "punch": "steel 52100", "layer": "silica", "h": "20 um", "body": "steel 52100"}
+    given |= {"micro": "smooth", "bonding": "bonded"}
+    shown = "contact = Contact.solve(given), Drawing.stresses(contact, Strength.stresses(contact), 800)"
+    drawn = by_node(DRAWN, contents(), json.dumps(given), shown)
+    assert drawn.count(">body<") == 1 and len(re.findall(">layer[^<]*<", drawn)) == 1
 
 
 #: Texts with ±: in the same unit, in another, in per cent.

@@ -16,7 +16,7 @@ from study.catalogue import draw, entry, names, save
 from study.data.derived import effective_modulus, peak_pressure
 from study.figures.formats import as_text
 from study.figures.registry import DataTable, column, pick
-from study.studies.evidence.validity_maps import from_layered
+from study.studies.evidence.validity_maps import error_over_thickness, from_layered
 from study.studies.paper.curves import CURVES, EXACT_LAYER
 
 
@@ -129,6 +129,8 @@ def test_validity_maps_show_the_error_and_leave_out_what_does_not_apply(figures,
     np.testing.assert_allclose(shown["h/a"][first], (found.h / a.sel(base="layered")).T.values.ravel(), rtol=1e-12)
     assert shown["n"][shown["material"] == 4].max() < 0.25 / (0.55 / 0.7), "there C <= 0"
     assert set(shown["row"]) == set(range(5)) and set(shown["material"]) == set(range(5))
+    h_a, error = error_over_thickness(found.isel(case=4, micro=0), "D")
+    assert h_a.dims == error.dims == ("n", "h") and "base" not in h_a.coords and "base" not in error.coords
     error = from_layered(found.isel(case=4), "D")
     assert error.dims == ("micro", "n", "h") and np.isnan(error.sel(n=0.95)).all() and "units" not in error.attrs
 

@@ -15,7 +15,7 @@ from same import assert_same
 import study
 from study.__main__ import main
 from study.files import results_file
-from study.files.examine import ATTRIBUTE, FORMER, Sums, examine
+from study.files.examine import ATTRIBUTE, FORMER, Sums, contents, examine
 from study.files.netcdf import File
 
 ONE = '[model]\nmicro = "smooth"\nbase = "thin_layer"\nP = 1e-5\nh = 0.02\nn = 0.5\n[output]\nx = 3\n'
@@ -210,3 +210,19 @@ def test_a_sample_of_random_flips():
     found = subprocess.run(command, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": str(ROOT)})
     assert found.returncode == 0, found.stdout + found.stderr
     assert "0 faults in 20 flips" in found.stdout and "'damaged'" in found.stdout and "'block'" in found.stdout
+
+
+def test_the_order_in_which_a_file_has_them_does_not_count(tmp_path):
+    """Variables and attributes may change places when another program copies a file."""
+    digests = []
+    for names in (("a", "b"), ("b", "a")):
+        with netCDF4.Dataset(tmp_path / f"{names[0]}.nc", "w") as file:
+            file.createDimension("n", 3)
+            for name in names:
+                variable = file.createVariable(name, "f8", ("n",))
+                variable[:] = [1.0, 2.0, 3.0]
+                variable.setncatts(dict.fromkeys(names, name))
+            file.setncatts(dict.fromkeys(names, "text"))
+        with File(tmp_path / f"{names[0]}.nc") as opened:
+            digests.append(contents(opened))
+    assert digests[0] == digests[1]

@@ -184,3 +184,12 @@ def test_few_nodes_determine_a_stack(octave, stiffness, most):
     matrix = np.einsum("bk,ki,kj->bij", left, J, phi, optimize=True)
     errors = np.abs(matrix).max(axis=(1, 2)) / scale
     assert np.median(errors) < 1e-13 and errors.max() < most
+
+
+def test_random_stacks_have_stiff_and_soft_layers():
+    """Below the layer at the surface there are stiffer and softer ones, and the base may be either."""
+    stacks = random_stacks(np.random.default_rng(1), np.full(300, 100.0))
+    n = stacks.n[~stacks.rigid.astype(bool)]
+    for ratio in (n[:, 0], n[:, 1] / n[:, 0]):
+        assert ratio.max() > 3 and ratio.min() < 1 / 3
+    assert np.median(stacks.stiffness) > 50

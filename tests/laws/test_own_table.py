@@ -135,6 +135,16 @@ WRONG = {
     "\n".join([HEAD, *ROWS[:4], "0.005,5,0.05,0.004"]): "column p_max, row 5: 0.004: must be larger than p",
     "\n".join([HEAD, *ROWS[:4], "0.005,5,0.05,0.09"]): "column p_max, row 5: 0.09: must be at least p/lam, the mean",
     "\n".join([HEAD, "0.00001,0.1,0.001,0.01", *ROWS]): "column p, row 2: 0.001: is over 30 times that of the row",
+    "\n".join(
+        [
+            HEAD,
+            "0.001,1,0.01,0.2",
+            "0.003,1.00005,0.03,0.2005",
+            "0.008,1.00006,0.08,0.201",
+            "0.022,1.026,0.22,0.2015",
+            "0.06,1.045,0.6,0.202",
+        ]
+    ): "column A: no smooth curve through the rows rises: add rows, or smooth them",
     "\n".join([HEAD, ROWS[0], *(f"{0.02 * i},{2 * 20**0.9 * i**0.5},0.5,0.9" for i in range(1, 6))]): "add rows there",
     "\n".join(
         [HEAD, *ROWS[:4], "0.005,50,0.05,0.5"]

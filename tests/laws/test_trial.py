@@ -205,6 +205,15 @@ def entries(monkeypatch):
     known.installed.laws.cache_clear()
 
 
+def test_a_file_has_parameters_of_an_installed_law(entries, tmp_path):
+    """They are read before `micro`, which names the law."""
+    entries(ours=dataclasses.replace(cones.CONES, name="ours"))
+    (tmp_path / "mine.toml").write_text(
+        '[model]\nalpha = 1.2\nNbar = 1e4\nP = 1e-5\nbase = "half_space"\nmicro = "ours"\n'
+    )
+    assert study.load(tmp_path / "mine.toml").definition.grid.values["alpha"][1] == 1.2
+
+
 def test_two_installed_laws_of_one_name_are_refused(entries):
     """Which of them a study meant cannot be told. Other laws can be used."""
     one, two, other = (dataclasses.replace(cones.CONES, name=name) for name in ("twin", "twin", "single"))

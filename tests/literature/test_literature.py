@@ -17,7 +17,7 @@ from solver import Problem, solve
 from solver.kernels.closed_form import layered_kernel
 from study.figures.registry import entry
 from study.studies.literature import compared, formulas
-from study.studies.literature.figures import SHOWN_AT, STYLES, frame
+from study.studies.literature.figures import SHOWN_AT, STYLES, errors, frame
 
 A = 0.01
 NU = (0.0, 0.3, 0.45, 0.5)
@@ -181,6 +181,18 @@ def test_what_is_decided_is_drawn_from_the_results(results):
 def test_one_colour_is_one_formula():
     colours = [colour for colour, _ in STYLES.values()]
     assert len(set(colours)) == len(colours) == 12
+
+
+def test_what_is_drawn_is_made_for_the_interface(contacts, monkeypatch):
+    """Of nearly incompressible layers that are bonded, and of layers that slide."""
+    monkeypatch.setattr(compared, "stiffness", lambda _: (None, np.ones(1), None))
+    monkeypatch.setattr(compared, "stiffness_errors", lambda _: {"Gao, Chiu and Lee 1992": np.ones((1, 1))})
+    panels = Figure().subplots(1, 3)
+    columns = errors(panels, contacts, None)
+    names = [[line.get_label().split()[0] for line in axes.lines] for axes in panels]
+    both = ["Hertz", "Dimitriadis", "Dimitriadis", "Hermanowicz", "Johnson"]
+    assert names == [[both[0], "Hayes", *both[1:3], "Garcia", *both[3:]], both, ["Gao,"]]
+    assert [np.unique(columns["curve"][columns["panel"] == panel]).size for panel in range(3)] == [7, 5, 1]
 
 
 def test_errors_are_drawn_in_percent():

@@ -6,12 +6,13 @@ import numpy as np
 import pages
 import pytest
 from conftest import opened
+from numpy.testing import assert_array_equal
 from scipy.integrate import quad
 
 from solver import Problem, solve
 from solver.kernels.closed_form import layered_kernel
 from solver.kernels.two_layers import thin_layer_coefficients
-from solver.models.thin_layer_error import edge_shift, thin_layer_error
+from solver.models.thin_layer_error import _different, edge_shift, thin_layer_error
 from study.studies.evidence.validity_maps import from_layered
 
 STATED = {  # largest |ln| of estimated over computed: of P_thin/P at given a, of a_thin/a at given P
@@ -42,6 +43,13 @@ def test_edge_shift_is_the_integral_and_what_the_solver_finds(n, nu1, nu2, bonde
     thin = solve(Problem.of(P=exact.P, h=h, base="thin_layer", rtol=1e-8, **material))
     assert (thin.a[0] - 0.04) / h == pytest.approx(kappa, rel=0.02)
     assert pytest.approx(exact.D, rel=1e-5) == thin.D and thin.p0 == pytest.approx(exact.p0, rel=1e-5)
+
+
+def test_each_material_once():
+    """As numpy finds them: each of them is integrated."""
+    columns = np.random.default_rng(6).integers(0, 3, (4, 200)).astype(float)
+    for array, expected in zip(_different(columns), np.unique(columns, axis=1, return_inverse=True), strict=True):
+        assert_array_equal(array, expected)
 
 
 @pytest.mark.parametrize(("nu1", "nu2", "bonded"), MATERIALS)

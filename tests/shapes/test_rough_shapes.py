@@ -64,6 +64,12 @@ def test_another_code(name, control):
         assert_allclose(getattr(answer, key), value, rtol=1e-8, atol=0)
 
 
+@pytest.mark.parametrize("name", GIVEN)
+def test_profiles_are_no_better_than_the_contact(name):
+    answer = of_name(name, "P", rtol=1e-8)
+    assert answer.profile_error >= answer.error
+
+
 def test_under_a_point_the_centre_is_not_known():
     """p0, p_max, A0 and λ on the axis are NaN, and nothing else; elsewhere they are as on a finer mesh."""
     coarse, fine = of_name("cone", "P", rtol=1e-4), of_name("cone", "P", rtol=1e-8)

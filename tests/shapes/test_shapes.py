@@ -140,6 +140,7 @@ def test_a_table_whose_series_would_be_off_has_none(tmp_path):
     ("text", "message"),
     [
         ("r,f\n0,0\n1,1\n2,1.5\n", "is not convex beyond the row with r = 1"),
+        ("r,f\n0,0\n1,1\n2,3\n3,4\n4,6\n", "is not convex beyond the row with r = 2: the slope of f must not fall"),
         ("r,f\n0.1,0\n1,1\n2,3\n", "must be 0 in the first row"),
         ("r,f\n0,0\n1,1\n", "3 to 1000 rows"),
         ("r [um],f [parsec]\n0,0\n1,1\n2,3\n", "must name a length"),

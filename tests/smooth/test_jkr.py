@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 from rows import SMOOTH, material, rows, shape
 
 from solver import Problem, Status, solve
+from solver.smooth.adhesion import pull
 
 ROWS, SHAPES = rows("given_jkr.csv"), rows("given_jkr_shapes.csv")
 HALF_SPACE = {"base": "half_space", "w_adhesion": 1e-4} | SMOOTH
@@ -129,6 +130,21 @@ def test_thin_limits_on_a_rigid_base():
         assert_allclose(contact.P_off, -1.5 * PULL, rtol=0.02, atol=0)
 
 
+def test_a_minimum_is_searched_from_the_slopes_at_its_ends(monkeypatch):
+    """Their ratio gives the first guess: with another one the search takes steps for nothing."""
+
+    def checked(evaluate, low, high, g_low, g_high, tolerance):
+        for x, slope in ((low, g_low), (high, g_high)):
+            assert_allclose(evaluate(x, np.arange(len(x))), slope, rtol=1e-6, atol=0)
+        sizes.append(len(low))
+        return between(evaluate, low, high, g_low, g_high, tolerance)
+
+    between, sizes = pull.between, []
+    monkeypatch.setattr(pull, "between", checked)
+    solve(Problem.of(P=0.0, h=[0.3, 1e-3], n=1e4, nu1=0.3, bonding="bonded", w_adhesion=1e-4, **SMOOTH))
+    assert max(sizes) == 2
+
+
 def test_several_minima():
     """A stiff plate: of the minima of P that with the largest radius is pull-off. The specification has 12.1 a_c for
     n = 1e4, h = 0.6 a_c, and does not say for which Poisson ratios: 3 %."""
@@ -237,3 +253,15 @@ def test_the_unstable_branch_goes_on_to_the_axis():
         again = solve(Problem.of(**case, a=unstable.a[:1]))
         np.testing.assert_allclose(getattr(again, control), values[:1], rtol=1e-12)
         np.testing.assert_allclose(unstable.a[1] / unstable.a[0], 0.01 if control == "D" else 0.1 ** (2 / 3), rtol=1e-3)
+
+
+def test_the_jump_into_contact_below_a_minimum_that_is_pressed():
+    """Of a blunt tip on a stiff plate P is positive at the last minimum: the contact that first touches goes to the
+    largest radius below it at which P rises through 0."""
+    case = {"h": 0.02, "n": 1e4, "nu1": 0.3, "bonding": "bonded", "w_adhesion": 1e-4} | SMOOTH
+    case |= {"shape": "power", "shape_power": 1.5, "shape_coefficient": 0.5}
+    off = solve(Problem.of(P=0.0, **case))
+    assert off.P_off > 0 and off.P_in == 0
+    near = solve(Problem.of(a=off.a_in * np.array([0.999, 1.001]), **case)).P
+    between = solve(Problem.of(a=np.geomspace(1.01 * off.a_in[0], off.a_off[0], 20), **case)).P
+    assert near[0] < 0 < near[1] and (between > 0).all()

@@ -8,6 +8,7 @@ from rows import SMOOTH, material, rows
 from solver import Problem, Status, solve
 from solver.body import BODIES
 from solver.shapes import shape_of
+from solver.smooth.adhesion import maugis
 from solver.smooth.adhesion.jkr import Jkr
 from solver.smooth.adhesion.maugis import Maugis
 
@@ -101,6 +102,17 @@ def test_thin_layers(h):
     for name in "PD":
         assert_allclose(getattr(ring, name), getattr(edge, name), rtol=1e-3, atol=0)
         assert getattr(ring, f"{name}_error") < 1e-3 * np.abs(getattr(ring, name))
+
+
+def test_a_basis_that_is_too_small_says_so(monkeypatch):
+    """The errors of the state cover what 16 more functions change in P and D, a hundred roundings or more."""
+    thin = {"a": [0.2], "h": 0.03, "n": 0.3, "nu1": 0.4, "bonding": "bonded", "w_adhesion": 1e-4, "sigma0": 0.1}
+    exact, size_of = states(**thin)[0], maugis.size_of
+    monkeypatch.setattr(maugis, "size_of", lambda *octave: size_of(*octave) - 16)
+    coarse, _ = states(**thin)
+    for name in "PD":
+        off = np.abs(getattr(coarse, name) / getattr(exact, name) - 1)
+        assert 2e-14 < off < getattr(coarse, f"{name}_error") / np.abs(getattr(exact, name)) < 1e3 * off
 
 
 def test_a_depth():

@@ -211,7 +211,8 @@ def test_formats_that_state_their_lengths(tmp_path):
     scan = read(tmp_path, SDF.format(200, 1, 0, 5) + text(whole) + "*\n", "a.sdf", huge=True)
     assert_allclose(np.delete(scan.z, 7), np.delete(P, 7) * 1e-6, atol=1e-9)
     assert any("1 of 200" in note for note in scan.notes)
-    for name, content in (("a.smd", SMD), ("a.prf", PRF)):
+    finer = PRF.replace("MM 1.0e+000", "MM 5.0e-001").replace("2.5e-004", "5.0e-004")  # the factor of x
+    for name, content in (("a.smd", SMD), ("a.prf", PRF), ("b.prf", finer)):
         scan = read(tmp_path, content, name)
         assert_allclose(scan.z, P * 1e-9, rtol=1e-9)
         assert_allclose(scan.steps, 0.25e-6, rtol=1e-12)

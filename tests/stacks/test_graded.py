@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solver import Problem, Status, solve
-from solver.body.graded import cuts
+from solver.body.graded import contrast, cuts, graded_first
 from solver.body.stacked import kernel_of
 
 SMOOTH, ROUGH = {"micro": "smooth"}, {"Nbar": 250000, "Ra": 0.004}
@@ -41,6 +41,18 @@ def test_a_graded_layer_is_many_uniform_ones():
         off[count] = np.array([getattr(contact, name) / getattr(exact, name) - 1 for name in ("P", "D")])
     assert np.all(np.abs(off[8]) > 3e-4)
     assert np.all((off[8] / off[16] > 2) & (off[8] / off[16] < 4))
+
+
+def test_how_much_the_modulus_of_the_first_layer_changes():
+    """ln of the largest over the smallest; nothing in a uniform layer, however the second one changes, nor in none."""
+    first, second = (
+        {"h": 0.06, "n": n, "profile": "exponential", "bonding": "bonded"} for n in ([1.0, 4.0], [2.0, 9.0])
+    )
+    layers = [[first, second], [second | {"n": 3.0, "profile": "uniform"}, first], [first | {"n": [4.0, 1.0]}]]
+    problems = [Problem.of(a=0.05, layers=stack, **ROUGH) for stack in layers]
+    problems.append(Problem.of(a=0.05, base="half_space", **ROUGH))
+    assert_allclose([contrast(problem)[0] for problem in problems], [np.log(4), 0, np.log(4), 0], rtol=1e-12, atol=0)
+    assert [graded_first(problem)[0] for problem in problems] == [True, False, True, False]
 
 
 def test_graded_layers_stick():

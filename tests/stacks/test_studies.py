@@ -251,6 +251,10 @@ BAD = {
     "three moduli": ({"layers": [PURE[0] | {"n": [1, 2, 3], "profile": "linear"}]}, "must be [top, bottom]"),
     "one modulus": ({"layers": [PURE[0] | {"profile": "linear"}]}, "layers.1.n = 2.0: of a graded layer must be [top"),
     "no file": ({"layers": [{"h": 0.1, "profile": "table:no.csv"}]}, "layers.1: profile table:no.csv: cannot be read"),
+    "no file on an axis": (
+        {"layers": [PURE[0] | {"profile": "linear", "n": [1.0, 2.0]}], "layers.1.profile": ["linear", "table:no.csv"]},
+        "solve: layers: profile table:no.csv: cannot be read",
+    ),
     "a table": ({"layers": [PURE[0] | {"profile": "cubic"}]}, 'or "table:FILE.csv"'),
     "no layers": ({"layers": {}}, "layers = {}: must be a list of layers"),
     "from 0": ({"layers": PURE, "layers.0.h": 0.1}, "layers count from 1 at the surface"),

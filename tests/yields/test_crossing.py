@@ -19,3 +19,17 @@ def test_the_stress_itself_decides_near_the_strength():
     crossing = first_crossing(stress, start, np.full(12, 10.0))
     assert crossing.crossed.all()
     assert_allclose(crossing.at, 1.0, rtol=2e-7)
+
+
+def test_a_stress_that_rises_ever_more_steeply_takes_few_steps():
+    """Without the halved value at the place above, which stays, false position is given up."""
+    start, calls = np.geomspace(0.2, 0.9, 12), np.zeros(12, dtype=int)
+
+    def stress(index, at, coarse):
+        calls[index] += 1
+        none = np.zeros(len(at))
+        return np.exp(at**40 - 1), none, none, SimpleNamespace(**dict.fromkeys(NUMBERS, at))
+
+    crossing = first_crossing(stress, start, np.full(12, 10.0))
+    assert crossing.crossed.all() and calls.max() < 30, calls
+    assert_allclose(crossing.at, 1.0, rtol=2e-7)

@@ -10,6 +10,7 @@ from solver import Problem, solve
 from solver.fields.contact import of_contacts as fields_of
 from solver.yields import spots
 from solver.yields.asperities import hertz_part, stress_on_axis
+from solver.yields.first import first_yield as first_crossing
 from solver.yields.peaks import chebyshev_nodes
 
 ROUGH = {"Nbar": 250000.0, "Ra": 0.004}
@@ -76,6 +77,15 @@ def test_first_yield_of_asperities():
     assert spots.of_contacts(at, solve(at))[0, 0] == pytest.approx(0.05, rel=1e-6)
     plastic = study.first_yield(hardness=2.84 * 0.05, micro="elastic_plastic", **own)
     assert plastic.P_Ya.item() == pytest.approx(found.P_Ya.item(), rel=1e-6)
+
+
+def test_first_yield_of_the_body_is_under_the_law_of_the_contact():
+    """Asperities that yield spread the load: the body yields under more of it than below elastic ones."""
+    case = {"base": "half_space", "Nbar": 1e6, "Ra": 1e-3, "micro": ["disc_cell", "elastic_plastic"], "hardness": 0.02}
+    crossing = first_crossing(Problem.of(P=1.0, **case), "body", np.full(2, 0.01))
+    contact = solve(Problem.of(a=crossing.at, **case))
+    assert_allclose(contact.P, crossing.numbers["P"], rtol=1e-6, atol=0)
+    assert abs(contact.P[1] / contact.P[0] - 1) > 0.01
 
 
 def test_asperities_are_as_strong_as_the_softer_material():

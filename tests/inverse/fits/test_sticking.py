@@ -13,7 +13,7 @@ from study.inverse.fits.curve import MeasuredCurves
 from study.inverse.fits.question import read_question
 from study.inverse.fits.tables.branch import branch
 from study.inverse.fits.tables.sticking_points import StickingPoints
-from study.inverse.fits.tables.term_table import TermTable
+from study.inverse.fits.tables.term_table import LENGTH, TermTable
 
 GEL = {"R": "5 um", "punch": "rigid", "nu1": 0.45, "E2": "20 kPa", "nu2": 0.45, "h": "3 um", "bonding": "bonded"}
 GEL |= {"micro": "smooth"}
@@ -43,12 +43,14 @@ def fitted(depths, P, free, **inputs):
     return study.fit({"D": (depths, "m"), "P": (P, "N")}, free=free, progress=False, **inputs)
 
 
+USUAL = {"contact_point": True, "baseline": True, "tilt": False, "sigma": None, "loss": "linear"}
+USUAL |= {"intervals": "profile", "level": 0.95, "plan": False}
+
+
 def curve_of(inputs, free, **options):
     """The MeasuredCurves of a call at DEPTHS, and its unknowns (1, k) at the values of the call."""
-    usual = {"contact_point": True, "baseline": True, "tilt": False, "sigma": None, "loss": "linear"}
-    usual |= {"intervals": "profile", "level": 0.95, "plan": False} | options
     inputs = {name: value for name, value in inputs.items() if value is not None}
-    question = read_question(free, inputs, "D", "P", usual)
+    question = read_question(free, inputs, "D", "P", USUAL | options)
     model = question.model
     p = [float(model.coordinate(name, model.value(name))) for name in model.unknowns]
     curve = MeasuredCurves(TermTable(model), DEPTHS[None], np.array([1e-6]), np.array([1e-8]), question.shifts)
@@ -66,6 +68,15 @@ def test_the_table_has_the_loads_of_the_solver(inputs):
         there = DEPTHS > 0
     assert there.sum() > 15
     assert_allclose((curve.contact(p)[0][0] * 1e-8)[there], P[there], rtol=0, atol=3e-5 * np.ptp(P))
+
+
+def test_the_last_tile_is_the_one_in_which_the_largest_depth_is():
+    """The depth is larger at its end and not at the end of the tile before: each tile takes as long as many curves."""
+    question = read_question(["E1"], GEL | {"E1": "20 kPa", "w_adhesion": "2 mJ/m^2", "h": "5 um"}, "D", "P", USUAL)
+    deepest = np.geomspace(2e-8, 2e-6, 9)
+    terms = np.exp(TermTable(question.model).rows({"E1": np.full((9, 1), 20e3)}, deepest)[0, :, :4])
+    depth = terms[:, 1] - terms[:, 3]
+    assert (depth[:, -1] > deepest).all() and (depth[:, -1 - LENGTH // 6] <= deepest).all()
 
 
 @pytest.mark.parametrize("inputs", [GEL, SPHERE, CONE], ids=["gel", "sphere", "cone"])

@@ -52,3 +52,11 @@ def test_summits_between_two_lags_need_both(first):
     z = np.cos(np.add.outer(np.arange(40.0), 2 * np.arange(40.0)) / 4)
     z[first::2] = np.nan
     assert scan_peaks.counted_summits(z, (1.0, 1.5)) is None
+
+
+def test_a_summit_between_two_lags_must_be_one_for_both():
+    """The only one at lag 1 has a higher point two rows away, in the last row, which is none."""
+    z = np.full((5, 3), -1.0)
+    z[:, 1] = [0.0, 1.0, 0.0, 2.0, 3.0]
+    assert scan_peaks.counted_summits(z, (1.0, 1.0)).counted == 1
+    assert scan_peaks.counted_summits(z, (1.0, 1.5)) is None

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from line_study import load
 
+from roughcoat.elsewhere import Packed
 from study import StudyError
 from study.work import cluster
 from study.work.cases import NUMERICS_VERSION, Failure, parcel
@@ -159,6 +160,29 @@ def test_what_comes_of_the_blocks_of_a_cluster(client):
     assert number == 2.5 and failure.message == "ValueError: could not convert string to float: 'many'"
     with pytest.raises(Lost, match="^the scheduler is gone$"):
         list(computed_there(ADDRESS, None, float, [None]))
+
+
+class Waiting(Computed):
+    """A future of dask that does not end."""
+
+    def add_done_callback(self, called): ...
+
+    def cancel(self):
+        self.status = "cancelled"
+
+
+def test_only_blocks_whose_workers_have_all_gone_are_placed_anew(client, monkeypatch):
+    monkeypatch.setattr(client, "submit", lambda self, call, **options: Waiting(call), raising=True)
+    there = cluster.Cluster(client("there", 1, False))
+    for number, workers in enumerate([("one", "gone"), ("gone",), ()]):
+        there.submit(number, Packed(float, number), workers)
+    futures = [future for future, *_ in there.under_way.values()]
+    for threads, places in (({}, ("gone",)), ({"one": 2, "two": 3}, ("one", "two"))):
+        client.threads = threads
+        there._place_anew()
+        blocks = {number: workers for _, number, _, workers in there.under_way.values()}
+        assert blocks == {0: ("one", "gone"), 1: places, 2: ()}
+        assert [future.status == "cancelled" for future in futures] == [False, bool(threads), False]
 
 
 def test_a_cluster_needs_its_package(monkeypatch):

@@ -6,6 +6,7 @@ import sys
 import threading
 from multiprocessing.process import BaseProcess as Run
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from children import PATIENCE, command, held, lines, stored, wait_for
@@ -177,6 +178,16 @@ class Recorder:
         self.ended = True
 
     end = shutdown
+
+
+def test_a_pool_does_not_wait_for_what_its_processes_compute():
+    """They are ended, which ends the threads that feed them."""
+    pool, ended = engine._Pool(), threading.Event()
+    pool.count, pool._owner, pool._processes = 1, engine.os.getpid(), SimpleNamespace(end=ended.set)
+    pool._threads = engine.ThreadPoolExecutor(1)
+    feeder = pool._threads.submit(ended.wait, 5)
+    pool.end()
+    assert feeder.result() and pool.count == 0
 
 
 def test_a_forked_process_has_no_workers_and_leaves_those_of_its_parent_alone(monkeypatch):

@@ -51,10 +51,8 @@ class Contacts(NamedTuple):
         dims, shape = dataset["status"].dims, dataset["status"].shape
         scene = _scene(inputs, dataset.attrs.get("scale", "R"), lexicon) if "R" in inputs else None
         numbers = scene.parameters if scene else inputs
-        names = [name for name in lexicon.parameters_of(numbers) if name in numbers]
         try:
-            columns = {name: of_all_cases(numbers[name], dims, shape) for name in names}
-            problem = Problem.of(known=lexicon.known, **columns)
+            problem = lexicon.problem({name: of_all_cases(value, dims, shape) for name, value in numbers.items()})
         except ValueError as error:
             raise StudyError([f"{who}: {error}"]) from None
         return cls(dataset, problem, numbers, scene, dims, shape)

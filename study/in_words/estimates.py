@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver import Problem
 from solver.bases import may_be_layered
 from solver.known import Known
 from solver.models.estimate import estimate
@@ -12,6 +11,7 @@ from solver.models.estimate import estimate
 from ..data.dataset import validity_of_rows
 from ..inputs.definition import Definition
 from ..inputs.grid import along, columns
+from ..inputs.lexicon import lexicon_of
 from ..rules.rule import RULES, broken, have
 
 #: A contact is far outside if it exceeds the limit of an assumption this many times. The estimate is right to about
@@ -53,5 +53,5 @@ def _exceeded(parameters: dict[str, np.ndarray], known: Known) -> dict[str, np.n
     """Name of each assumption -> (n,) bool: the contact exceeds its limit FAR times, by an estimate."""
     size = len(parameters["micro"])
     unknown = {"status": np.zeros(size), "model_used": np.full(size, np.nan), "model_error": np.full(size, np.nan)}
-    estimated = estimate(Problem.of(known=known, **parameters))
+    estimated = estimate(lexicon_of(known).problem(parameters))
     return broken(validity_of_rows(parameters | unknown | estimated, known, FAR))

@@ -134,10 +134,6 @@ class Draft:
             rows = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in request.rows]
             self.errors += equal_cases(rows)
 
-    def put(self, name: str, dims: tuple[str, ...], array: np.ndarray) -> None:
-        """A number that follows from others, over its dimensions."""
-        self.values[name] = dims, self.checked(name, array.ravel().tolist()).reshape(array.shape)
-
     def put_dimensions(self) -> None:
         """Note the lengths of dimensions, and the coordinates of dimensions that are no inputs."""
         request = self.request

@@ -15,6 +15,7 @@ from ...terminal import on_one_line
 from ..punch.sticking import hint, row_of
 from ..request import Input
 from ..vocabulary import SCENE, allowed, bodies_of
+from .layers import moduli_of
 from .scales import with_unit
 from .scene import Scene
 
@@ -29,7 +30,8 @@ def beyond_bounds(scene: Scene, inputs: dict[str, Input]) -> list[str]:
     """
     with_units = [name for name in scene.values if name not in SCENE and scene.lexicon.rows[name].powers != (0, 0)]
     messages = [_message(scene, inputs[name], place) for name in with_units for place in _first_outside(scene, name)]
-    for modulus, _, ratio in bodies_of(scene.values).values():
+    moduli = {ratio: modulus for modulus, _, ratio in (*bodies_of(scene.values).values(), *moduli_of(scene.values))}
+    for ratio, modulus in moduli.items():
         for place in _first_outside(scene, ratio) if ratio and modulus in scene.values else ():
             entry, value = scene.lexicon.rows[ratio], _at(scene.parameters[ratio], place)
             modulus_text = f"{modulus} = {readable(_at(scene.values[modulus], place), 'Pa')}"

@@ -74,8 +74,8 @@ def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scen
     make_dimensionless(scene)
     errors += moving_tables(scene) + beyond_bounds(scene, inputs)
     draft.sizes |= scene.sizes(axes)
-    for name, value in scene.parameters.items() if not errors else ():
-        draft.put(name, getattr(value, "dims", ()), np.asarray(value))
+    if not errors:  # each has been checked, with its unit or without
+        draft.values |= {name: (getattr(v, "dims", ()), np.asarray(v)) for name, v in scene.parameters.items()}
     return scene
 
 

@@ -22,7 +22,7 @@ from .punch import asperities, shapes, sticking
 from .punch.laws import fitted, wants_a_fit
 from .request import Input, Request
 from .sample import sampled, values_of_axis
-from .scene.names import INFINITE
+from .scene.scene import INFINITE
 
 #: Inputs that are names of objects.
 _WORDS = ("micro", "shape")

@@ -5,7 +5,7 @@ import xarray as xr
 
 from ..data.dataset import decode
 from ..derivatives import QUANTITIES, sensitivities
-from ..inputs.scene.names import is_ratio
+from ..inputs.scene.scene import is_ratio
 from ..inputs.vocabulary import NOT_RUN
 from ..specimen.quantities import readable
 from .design_cases import Wanted

@@ -11,7 +11,7 @@ from solver import Status
 from ...in_words.fits import NAMES_OF_SHIFTS
 from ...in_words.inputs import given
 from ...in_words.sentences import assumed
-from ...inputs.scene.layers import moduli_of
+from ...inputs.scene.stacks import moduli_of
 from ...inputs.vocabulary import NOT_RUN, ROWS
 from ...rules.rule import RULES
 from ...solving import solve, unsolved

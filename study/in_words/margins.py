@@ -29,7 +29,7 @@ from ..rules.yield_bounds import stress_below_one
 from ..specimen import materials
 from ..specimen.quantities import readable
 from ..terminal import rounded
-from .inputs import is_rigid
+from .stated_inputs import is_rigid
 
 #: Below this modulus in Pa a material is a rubber or a gel, which tears and does not yield. Nearly all have a Poisson
 #: ratio close to 0.5.

@@ -13,8 +13,8 @@ from ..data.body_strengths import strengths
 from ..data.contacts import Contacts
 from ..fields import carried, friction, refuse_both
 from ..inputs.definition import StudyError
-from .asked import of_dataset, of_inputs, own_materials, refuse, without_control
-from .first import about_of, labelled
+from .first_yield import about_of, labelled
+from .yielding_contacts import of_dataset, of_inputs, own_materials, refuse, without_control
 
 
 def h_protect(

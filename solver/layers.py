@@ -1,20 +1,171 @@
-"""The layers of a stack: their names in the table of parameters, and a list of layers as such parameters.
+"""A list of layers as one name for each number of a layer, in problems, calls and study files alike.
 
 The first layer, at the surface, is the one of a case with one layer: h, n, nu1 and bonding are its numbers, and n = 0
 is a rigid base here too. What it has besides, and all of the others, is called layers.2.h, counted from 1.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from .bases import is_exact, is_stack
 from .numerics import profiles
-from .parameters import FIRST, LAYER, MOST, full_name, numbers_of, row
-from .parameters import NAME_OF_LAYER as _NAME
+from .parameters import FIRST, LAYER, MOST, NAME_OF_LAYER, full_name, numbers_of, row
 
 __all__ = ["LAYER", "MOST", "expanded", "full_name", "numbers_of", "row"]
+
+RIGID = "rigid_base"
+#: A base -> what it is called when there are layers.
+_BASES = {"auto": "stack", "thin_layer": "thin_stack"}
+
+
+@dataclass(frozen=True)
+class LayerWords:
+    """What a list of layers may say, and how messages quote it.
+
+    keys : that a layer may have
+    first : key of the first layer -> its name in a case with one layer
+    beside : names that are refused beside a list of layers
+    rigid : inputs by which a base is rigid without `rigid_base`
+    example : of a list, for a message
+    shown : a value as a message quotes it
+    hint : the end of a message about a key that no layer has
+    arrays : whether a number may be an array, with a value for each case
+    """
+
+    keys: Collection[str]
+    first: Mapping[str, str]
+    beside: Collection[str]
+    rigid: Collection[str]
+    example: str
+    shown: Callable[[Any], str]
+    hint: Callable[[str], str]
+    arrays: bool
+
+    def name(self, number: int, key: str) -> str:
+        """The name of a number of a layer: "nu1" of (1, "nu")."""
+        return full_name(number, key, self.first)
+
+    def short(self, name: Any) -> Any:
+        """The name that results have: "h" of "layers.1.h", all others as they are."""
+        key = name.removeprefix("layers.1.") if isinstance(name, str) else name
+        return name if key == name else self.name(1, key)
+
+    def list_of(self, layers: Any) -> tuple[dict[str, Any], list[str]]:
+        """The numbers of a list of layers by their names, and messages about what is wrong with the list."""
+        is_list = hasattr(layers, "__len__") and not isinstance(layers, (str, Mapping)) and len(layers)
+        if not is_list or not all(isinstance(layer, Mapping) for layer in layers):
+            return {}, [f"layers = {self.shown(layers)}: must be a list of layers, {self.example}"]
+        if len(layers) > MOST:
+            return {}, [_too_many(len(layers))]
+        numbers, errors = {}, []
+        for number, layer in enumerate(layers, 1):
+            try:
+                fields = fields_of(layer, number)
+            except ValueError as error:
+                errors.append(str(error) if str(error).startswith("layers") else f"layers.{number}: {error}")
+                continue
+            for key, value in fields.items():
+                name = f"layers.{number}.{key}"
+                if key not in self.keys:
+                    errors.append(f"{name}: is not a key of a layer{self.hint(str(key))}")
+                elif not self.arrays and isinstance(value, (list, tuple, range)):
+                    errors.append(f"{name} has several values: an axis stands beside layers, as {self.shown(name)}")
+                else:
+                    numbers[self.name(number, key)] = value
+        return numbers, errors
+
+    def flat(
+        self,
+        parameters: dict[str, Any],
+        errors: list[str],
+        elsewhere: Collection[str] = (),
+        listed: tuple[dict[str, Any], list[str]] | None = None,
+    ) -> dict[str, Any]:
+        """Parameters with one name for each number of a layer, and the base of a stack.
+
+        errors : messages are appended here
+        elsewhere : names of parameters that stand elsewhere, and so in place of what the list of layers says
+        listed : the list of layers as `list_of` has it, where that is there already
+        """
+        if not any(map(is_of_layers, (*parameters, *elsewhere))):
+            return parameters
+        errors += self.twice(parameters)
+        named = {name: value for name, value in parameters.items() if name.startswith("layers.")}
+        others = {name: v for name, v in parameters.items() if name not in ("layers", RIGID) and name not in named}
+        stack = {}
+        if "layers" in parameters:
+            errors += self.beside_list(others)
+            others = {name: value for name, value in others.items() if name not in self.beside}
+            stack, wrong = listed or self.list_of(parameters["layers"])
+            errors += wrong
+        stack = {name: value for name, value in stack.items() if name not in elsewhere}
+        stack |= {self.short(name): value for name, value in named.items()}
+        stack |= self._on_base(parameters.get(RIGID, False), others | dict.fromkeys(elsewhere) | stack, errors)
+        count = max(numbers_of((*stack, *elsewhere)), 1)
+        if count > MOST:
+            errors.append(_too_many(count))
+            return others
+        base = others.get("base", "stack")
+        if "base" not in elsewhere and (isinstance(base, str) or not self.arrays):
+            others = others | {"base": base_of_layers(base, errors)}
+        return others | stack | {"sublayers": others.get("sublayers", 0)}
+
+    def twice(self, names: Collection[str]) -> list[str]:
+        """Messages about numbers of the first layer that are among the `names` under both of theirs."""
+        both = [(self.short(name), name) for name in names if self.short(name) != name]
+        return [f"{name} is {short}, which is given too: leave out one" for short, name in both if short in names]
+
+    def beside_list(self, names: Collection[str]) -> list[str]:
+        """A message about the first of the `names` that a list of layers takes the place of."""
+        wrong = [name for name in self.beside if name in names]
+        return [f"{name} is given beside layers: each of the layers has its own" for name in wrong[:1]]
+
+    def _on_base(self, rigid: Any, numbers: dict[str, Any], errors: list[str]) -> dict[str, float]:
+        """n = 0 on a rigid base, which must be one for all cases; {} on another."""
+        if not isinstance(rigid, (bool, np.bool_)):
+            errors.append(f"{RIGID} = {self.shown(rigid)}: must be true or false")
+        if not isinstance(rigid, (bool, np.bool_)) or not rigid:
+            return {}
+        if any(name in numbers for name in self.rigid):
+            errors.append(f'{RIGID} is for studies without units: give E2 = "rigid"')
+            return {}
+        n = numbers.get("n", 1)
+        if not (np.all(np.asarray(n) == 1) if self.arrays else isinstance(n, (int, float)) and n == 1):
+            errors.append(f"layers.1.n = {self.shown(n)}: on a rigid base n is E_j*/E1*, and that of the first layer 1")
+        return {"n": 0.0}
+
+
+def is_of_layers(name: Any) -> bool:
+    """Whether the name of a parameter says that there is a stack of layers."""
+    return isinstance(name, str) and (name in ("layers", RIGID, "sublayers") or name.startswith("layers."))
+
+
+def base_of_layers(base: Any, errors: list[str]) -> Any:
+    """What a base, or each of a list of bases, is called when there are layers.
+
+    errors : a message about the base of one layer is appended here
+    """
+    several = base if isinstance(base, (list, tuple)) else [base]
+    if any(isinstance(word, str) and is_exact(word) and not is_stack(word) for word in several):
+        errors.append('base = "layered" has one layer: of layers it is "stack"')
+    words = [_BASES.get(word, word) if isinstance(word, str) else word for word in several]
+    return words if isinstance(base, (list, tuple)) else words[0]
+
+
+#: The words of :meth:`solver.problem.Problem.of`.
+_WORDS = LayerWords(
+    keys=LAYER,
+    first=FIRST,
+    beside=tuple(FIRST.values()),
+    rigid=(),
+    example="each like {'h': 0.01, 'n': 2.0}",
+    shown=lambda value: f"{value!r:.60}",
+    hint=lambda key: f"; known: {', '.join(LAYER)}",
+    arrays=True,
+)
 
 
 def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
@@ -43,43 +194,17 @@ def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
     >>> expanded({"P": 1e-4, "layers": layers})["layers.2.n"]
     0.5
     """
-    named = {name: value for name, value in parameters.items() if name.startswith("layers.")}
-    parameters = {"sublayers": 0} | parameters if named or "layers" in parameters else parameters
-    if "layers" not in parameters and "rigid_base" not in parameters and not named:
+    if not any(name in ("layers", RIGID) or name.startswith("layers.") for name in parameters):
         return parameters
-    others = {name: v for name, v in parameters.items() if name not in ("layers", "rigid_base") and name not in named}
-    beside = [name for name in FIRST.values() if name in others]
-    if beside and "layers" in parameters:
-        raise ValueError(f"{beside[0]} is given beside layers: each of the layers has its own")
-    stack = _of_list(parameters.get("layers", [])) | {_short(name): value for name, value in named.items()}
-    count = numbers_of(f"layers.{name}" if name[0].isdigit() else name for name in named) or 1
-    count = max(count, len(parameters.get("layers", [])))
-    if count > MOST:
-        raise ValueError(f"layers: {count} layers: at most {MOST}")
-    return _with_base(others) | _on_base(stack, parameters.get("rigid_base", False))
-
-
-def _short(name):
-    """ "layers.1.h" as "h", all others as they are. ValueError for a name that no layer has."""
-    match = _NAME.fullmatch(name)
-    if not match:
-        raise ValueError(
-            f"{name}: a number of a layer is layers.NUMBER.KEY, NUMBER from 1, KEY one of {', '.join(LAYER)}"
-        )
-    return full_name(int(match[1]), match[2])
-
-
-def _of_list(layers):
-    if isinstance(layers, (str, Mapping)) or not hasattr(layers, "__len__"):
-        raise ValueError(f"layers = {layers!r:.60}: must be a list of layers, each like {{'h': 0.01, 'n': 2.0}}")
-    if len(layers) > MOST:
-        raise ValueError(f"layers: {len(layers)} layers: at most {MOST}")
-    stack = {}
-    for number, layer in enumerate(layers, 1):
-        if not isinstance(layer, Mapping):
-            raise ValueError(f"layers[{number}] = {layer!r:.60}: must be like {{'h': 0.01, 'n': 2.0}}")
-        stack |= {full_name(number, field): value for field, value in fields_of(layer, number).items()}
-    return stack
+    for name in parameters:
+        if name.startswith("layers.") and not NAME_OF_LAYER.fullmatch(name):
+            keys = ", ".join(LAYER)
+            raise ValueError(f"{name}: a number of a layer is layers.NUMBER.KEY, NUMBER from 1, KEY one of {keys}")
+    errors: list[str] = []
+    flat = _WORDS.flat(parameters, errors)
+    if errors:
+        raise ValueError(errors[0])
+    return flat
 
 
 def fields_of(layer: Mapping, number: int) -> dict[str, Any]:
@@ -126,22 +251,5 @@ def fields_of(layer: Mapping, number: int) -> dict[str, Any]:
     return fields
 
 
-def _with_base(others):
-    words = {"auto": "stack", "thin_layer": "thin_stack"}
-    base = others.get("base", "stack")
-    if isinstance(base, str):
-        others = others | {"base": words.get(base, base)}
-        if is_exact(base) and not is_stack(base):
-            raise ValueError('base = "layered" has one layer: layers are for base = "stack"')
-    return others
-
-
-def _on_base(stack, rigid):
-    """The parameters with n = 0 where the base is rigid, which must be one for all cases."""
-    if isinstance(rigid, str) or np.ndim(rigid) or rigid not in (False, True):
-        raise ValueError(f"rigid_base = {rigid!r:.60}: must be true or false, for all cases alike")
-    if not rigid:
-        return stack
-    if "n" in stack and not np.all(np.asarray(stack["n"]) == 1):
-        raise ValueError(f"layers.1.n = {stack['n']}: on a rigid base n is E_j*/E1*, so that of the first layer is 1")
-    return stack | {"n": 0.0}
+def _too_many(count: int) -> str:
+    return f"layers: {count} layers: at most {MOST} are allowed"

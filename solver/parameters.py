@@ -1,7 +1,7 @@
 """What describes a case: the one table of bounds, defaults and choices, and of which cases need and use a parameter."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -166,13 +166,14 @@ FIRST = {"h": "h", "n": "n", "nu": "nu1", "bonding": "bonding"}
 NAME_OF_LAYER = re.compile(rf"layers\.([1-9]\d?)\.({'|'.join(LAYER)})")
 
 
-def full_name(number: int, field: str) -> str:
+def full_name(number: int, field: str, first: Mapping[str, str] = FIRST) -> str:
     """The name of a parameter of a layer.
 
     Parameters
     ----------
     number : of the layer, 1 at the surface
     field : a key of `LAYER`
+    first : key of the first layer -> its name in a case with one layer
 
     Returns
     -------
@@ -183,7 +184,7 @@ def full_name(number: int, field: str) -> str:
     >>> full_name(1, "nu"), full_name(2, "nu")
     ('nu1', 'layers.2.nu')
     """
-    return FIRST[field] if number == 1 and field in FIRST else f"layers.{number}.{field}"
+    return first[field] if number == 1 and field in first else f"layers.{number}.{field}"
 
 
 def numbers_of(names) -> int:

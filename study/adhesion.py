@@ -80,9 +80,9 @@ def _asked(parameters: dict[str, Any]) -> tuple[Any, Problem]:
     if definition.grid.sizes:
         several = ", ".join(definition.grid.sizes)
         raise StudyError([f"effective_work: {several} has several values: one surface at a time"])
-    names = {name: value for name, value in scene.parameters.items() if name in scene.lexicon.parameters}
-    names["base"] = {"auto": "layered"}.get(word := names.get("base", "layered"), word)
-    rigid = with_rigid_punch(Problem.of(known=scene.lexicon.known, **names))
+    base = scene.parameters.get("base", "layered")
+    problem = scene.lexicon.problem(scene.parameters, base="layered" if base == "auto" else base)
+    rigid = with_rigid_punch(problem)
     return scene, dimensionless(rigid).but(E2=rigid.E2)
 
 

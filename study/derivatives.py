@@ -16,9 +16,8 @@ from .data.contacts import Contacts, of_all_cases
 from .inputs.definition import StudyError
 from .inputs.lexicon import lexicon_of
 from .inputs.scene.changes import SCALES, changes
-from .inputs.scene.layers import moduli_of
-from .inputs.scene.names import is_ratio
-from .inputs.scene.scene import Scene
+from .inputs.scene.scene import Scene, is_ratio
+from .inputs.scene.stacks import moduli_of
 from .inputs.vocabulary import VOCABULARY, bodies_of
 
 #: Results that have sensitivities.

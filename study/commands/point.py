@@ -25,7 +25,7 @@ from ..in_words.stated_inputs import all_inputs
 from ..in_words.text import columns
 from ..inputs.definition import StudyError
 from ..inputs.lexicon import lexicon_in
-from ..inputs.scene.names import INFINITE
+from ..inputs.scene.scene import INFINITE
 from ..solving import solve, solve_one
 from ..terminal import answer, say
 from .arguments import SWITCH, assignment

@@ -14,10 +14,9 @@ from ..inputs.definition import StudyError
 from ..inputs.lexicon import Lexicon, lexicon_in
 from ..inputs.punch.shapes import MICROMETRE, in_metres
 from ..inputs.punch.stresses import DECIDE, without_stresses
-from ..inputs.scene.layers import moduli_of
-from ..inputs.scene.names import is_ratio
 from ..inputs.scene.scales import make_dimensionless
-from ..inputs.scene.scene import Scene, over
+from ..inputs.scene.scene import Scene, is_ratio, over
+from ..inputs.scene.stacks import moduli_of
 from ..inputs.vocabulary import CONTROLS, NUMERICS, SCENE, scene_of
 from ..rules.rule import has_units
 from ..terminal import shown
@@ -51,10 +50,8 @@ class Contacts(NamedTuple):
         dims, shape = dataset["status"].dims, dataset["status"].shape
         scene = _scene(inputs, dataset.attrs.get("scale", "R"), lexicon) if "R" in inputs else None
         numbers = scene.parameters if scene else inputs
-        names = [name for name in lexicon.parameters_of(numbers) if name in numbers]
         try:
-            columns = {name: of_all_cases(numbers[name], dims, shape) for name in names}
-            problem = Problem.of(known=lexicon.known, **columns)
+            problem = lexicon.problem({name: of_all_cases(value, dims, shape) for name, value in numbers.items()})
         except ValueError as error:
             raise StudyError([f"{who}: {error}"]) from None
         return cls(dataset, problem, numbers, scene, dims, shape)

@@ -11,7 +11,7 @@ from inspect import cleandoc
 
 import numpy as np
 
-from solver import Model, Problem
+from solver import Model
 from solver.bases import is_bare
 from solver.kernels.two_layers import layer_modulus
 from solver.known import Known
@@ -20,7 +20,7 @@ from solver.problem import feels
 from solver.scaling import law_of, of_one_law
 
 from ..arrays import xarray_later as xr
-from ..inputs.lexicon import lexicon_in
+from ..inputs.lexicon import Lexicon, lexicon_in
 from ..inputs.punch.asperities import USED
 from ..inputs.scene.scales import without_unit
 from ..inputs.vocabulary import CONTROLS, NUMERICS, ROWS, VOCABULARY, attributes
@@ -199,13 +199,13 @@ def _peaks_on_bodies(dataset: xr.Dataset, p: xr.DataArray, unit, R) -> xr.DataAr
               for name, v in zip(names, values, strict=True)]  # fmt: skip
     dims = [["x"], *[[]] * len(values)]
     options = {"input_core_dims": dims, "output_core_dims": [["x"]], "dask": "parallelized", "output_dtypes": [float]}
-    return xr.apply_ufunc(partial(_at_bodies, lexicon.known, names), p, *values, **options)
+    return xr.apply_ufunc(partial(_at_bodies, lexicon, names), p, *values, **options)
 
 
-def _at_bodies(known: Known, names: list[str], p: np.ndarray, *values: np.ndarray) -> np.ndarray:
+def _at_bodies(lexicon: Lexicon, names: list[str], p: np.ndarray, *values: np.ndarray) -> np.ndarray:
     """p_max at p (..., m), of parameters by name (...)."""
     flat = {name: np.broadcast_to(v, p.shape[:-1]).ravel() for name, v in zip(names, values, strict=True)}
-    problem = Problem.of(a=1.0, **flat, asperities_on="layer", known=known)
+    problem = lexicon.problem(flat, a=1.0, asperities_on="layer")
     pressures = p.reshape(-1, p.shape[-1])
     peaks = np.full(pressures.shape, np.nan)
     index = np.flatnonzero(problem.can_feel())

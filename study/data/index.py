@@ -7,7 +7,7 @@ import xarray as xr
 from xarray.indexes import PandasIndex
 
 from ..inputs.lexicon import default, lexicon_in
-from ..inputs.scene.names import si
+from ..inputs.scene.scene import si
 from ..specimen.quantities import has_unit
 
 

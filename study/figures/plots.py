@@ -15,7 +15,7 @@ from scipy.interpolate import PchipInterpolator
 
 from ..data.derived import QUANTITIES
 from ..inputs.definition import StudyError
-from ..inputs.scene.layers import short
+from ..inputs.scene.stacks import short
 from ..inputs.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
 from .figure_results import check_size, drawable, why_none

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver import Problem, Status
+from solver import Status
 from solver.bases import is_bare, may_be_layered
 from solver.known import Known
 from solver.models.estimate import estimate
@@ -15,6 +15,7 @@ from ..data.dataset import flag_words, validity_of_rows
 from ..data.si import ASSUMED
 from ..inputs.definition import Definition
 from ..inputs.grid import along, columns
+from ..inputs.lexicon import lexicon_of
 from ..inputs.vocabulary import VOCABULARY, bodies_of
 from ..rules import rule
 from ..rules.rule import RULES, broken, have
@@ -80,7 +81,7 @@ def _exceeded(parameters: dict[str, np.ndarray], known: Known) -> dict[str, np.n
     """Name of each assumption -> (n,) bool: the contact exceeds its limit FAR times, by an estimate."""
     size = len(parameters["micro"])
     unknown = {"status": np.zeros(size), "model_used": np.full(size, np.nan), "model_error": np.full(size, np.nan)}
-    estimated = estimate(Problem.of(known=known, **parameters))
+    estimated = estimate(lexicon_of(known).problem(parameters))
     return broken(validity_of_rows(parameters | unknown | estimated, known, FAR))
 
 

@@ -5,7 +5,6 @@ from functools import partial
 
 import numpy as np
 
-from solver import Problem
 from solver.bases import STACKS
 from solver.laws import untried
 from solver.parameters import one_of
@@ -203,7 +202,7 @@ def slips_of_laws(grid: Grid) -> list[str]:
         indices = {dim: indices.get(dim, np.linspace(0, size - 1, 3).astype(int)) for dim, size in grid.sizes.items()}
         cases = {name: array[tuple(indices[dim] for dim in over)] for name, (over, array) in grid.values.items()}
         try:
-            law_of(dimensionless(Problem.of(known=known, **cases)))
+            law_of(dimensionless(grid.lexicon.problem(cases)))
         except ValueError as error:
             messages.append(str(error))
     return messages

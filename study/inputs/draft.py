@@ -22,7 +22,7 @@ from .punch import asperities, shapes, sticking
 from .punch.laws import fitted, wants_a_fit
 from .request import Input, Request
 from .sample import sampled, values_of_axis
-from .scene.names import INFINITE
+from .scene.scene import INFINITE
 
 #: Inputs that are names of objects.
 _WORDS = ("micro", "shape")
@@ -133,10 +133,6 @@ class Draft:
         if not self.errors:
             rows = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in request.rows]
             self.errors += equal_cases(rows)
-
-    def put(self, name: str, dims: tuple[str, ...], array: np.ndarray) -> None:
-        """A number that follows from others, over its dimensions."""
-        self.values[name] = dims, self.checked(name, array.ravel().tolist()).reshape(array.shape)
 
     def put_dimensions(self) -> None:
         """Note the lengths of dimensions, and the coordinates of dimensions that are no inputs."""

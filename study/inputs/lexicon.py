@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from solver import Problem
 from solver.known import PACKAGE as OF_SOLVER
 from solver.known import RESERVED, Known, names_of
 from solver.known import default as known_by_default
@@ -75,6 +76,16 @@ class Lexicon:
     def parameters_of(self, names: Iterable[str]) -> list[str]:
         """Names of all parameters that inputs may have, those of the layers too which are among the `names` of some."""
         return [*self.parameters, *parameters_of_layers(names)]
+
+    def problem(self, numbers: Mapping[str, Any], **changed: Any) -> Problem:
+        """The problem of numbers by name, such as those of a scene or of cases of a grid: one value, or (B,), each.
+
+        numbers : what is no parameter among them counts for nothing
+        changed : parameters with other values; a control takes the place of that of the numbers
+        """
+        left_out = {*changed, *(CONTROL if {*changed} & {*CONTROL} else ())}
+        names = [name for name in self.parameters_of(numbers) if name in numbers and name not in left_out]
+        return Problem.of(known=self.known, **{name: numbers[name] for name in names}, **changed)
 
     def cases_with(self, name: str, values) -> np.ndarray:
         """bool: the cases that have a parameter.

@@ -24,7 +24,7 @@ from .punch import asperities, sticking
 from .punch.laws import results_of
 from .punch.stresses import none_in
 from .request import MOST_MESSAGES, Request
-from .scene.layers import axes_in, in_layers
+from .scene.stacks import axes_in, in_layers
 from .vocabulary import NUMERICS, absent, names, suggest
 
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
@@ -92,7 +92,7 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
     if request.physical:
         # imported here, since they load xarray, which pure numbers do not need
         from .scene.changes import inputs_of
-        from .scene.reading import read as read_scene
+        from .scene.physical_inputs import read as read_scene
 
         scene = read_scene(request, draft, spreads is True, axes_in(tables))
     else:

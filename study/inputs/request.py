@@ -11,7 +11,7 @@ from .grid import LONGEST_AXIS, equal_values
 from .lexicon import Lexicon, default, lexicon_for, lexicon_of
 from .punch.shapes import ANGLES, in_degrees
 from .sample import LIMITS
-from .scene.layers import in_call, in_tables
+from .scene.stacks import in_call, in_tables
 from .vocabulary import BODIES, NUMERICS, SCENE, no_parameter
 
 MOST_MESSAGES = 30  # that are shown for a study at a time

@@ -11,7 +11,7 @@ from ..terminal import shown
 from .grid import LONGEST_AXIS, axis_values, check_range, quoted
 from .lexicon import Lexicon
 from .scene.bodies import of_names
-from .scene.names import si
+from .scene.scene import si
 from .vocabulary import BODIES, Parameter, check, si_unit
 
 KEYS = ("start", "stop", "spacing", "over")  # of a range

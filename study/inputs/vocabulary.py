@@ -12,7 +12,7 @@ from decimal import Decimal
 from functools import cache
 from importlib.resources import files
 
-from solver.parameters import FIRST, LAYER, MOST, NamedRows, Parameter
+from solver.parameters import FIRST, LAYER, MOST, NamedRows, Parameter, full_name
 from solver.parameters import allowed as are_within
 
 from ..terminal import shown
@@ -118,7 +118,7 @@ _SYMBOLS = {"h": "h", "n": "n", "nu": "ν", "cn": "cn", "ct": "ct", "n_bottom": 
 
 def name_in_stack(number: int, field: str) -> str:
     """The name of an input of a layer, `number` from 1 at the surface."""
-    return FIRST_LAYER[field] if number == 1 and field in FIRST_LAYER else f"layers.{number}.{field}"
+    return full_name(number, field, FIRST_LAYER)
 
 
 @cache

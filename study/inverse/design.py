@@ -13,7 +13,7 @@ from ..data.dataset import decode
 from ..derivatives import QUANTITIES, sensitivities
 from ..in_words import beside_rules, doubts
 from ..inputs.definition import StudyError
-from ..inputs.scene.names import is_ratio
+from ..inputs.scene.scene import is_ratio
 from ..inputs.vocabulary import NOT_RUN
 from ..specimen.foreign import plain
 from ..specimen.quantities import readable

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from solver import Problem, solve
+from solver import solve
 from solver.laws.trial import going_on
 from solver.numerics.kept import once
 from solver.status import Status
@@ -93,10 +93,8 @@ class Wanted:
             others |= {self.name: self.x_of(t)}
         if self._refits:
             others |= _fits(others["Nbar"], others["Ra"])
-        lexicon = self.definition.grid.lexicon
-        names = [key for key in lexicon.parameters_of(others) if key in others]
         with going_on():
-            solution = solve(Problem.of(known=lexicon.known, **{key: others[key] for key in names}))
+            solution = solve(self.definition.grid.lexicon.problem(others))
         solved = np.isin(solution.status, _WITH_PULL_OFF) if self.target == "P_off" else solution.status == 0
         numbers = np.where(solved, getattr(solution, self.target), np.nan)
         return with_unit(numbers, VOCABULARY[self.target].powers, unit, R)

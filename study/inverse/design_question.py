@@ -7,8 +7,8 @@ from ..derivatives import QUANTITIES
 from ..inputs.definition import Definition, StudyError
 from ..inputs.lexicon import lexicon_for
 from ..inputs.reading import from_call
-from ..inputs.scene.layers import short
-from ..inputs.scene.names import si
+from ..inputs.scene.scene import si
+from ..inputs.scene.stacks import short
 from ..inputs.vocabulary import NUMERICS, ROWS, SCENE, VOCABULARY, finite, no_parameter, suggest
 from ..specimen.foreign import plain
 from ..specimen.quantities import has_unit

@@ -6,7 +6,7 @@ from solver.bases import is_bare
 from solver.shapes import PARABOLOID
 
 from .rule import rule
-from .strength import again
+from .strength import solved
 
 SLOPE = 0.4
 """Largest slope f'(a) of a shape other than the paraboloid: Tabor's representative strain 0.2 f'(a) is then 8 %. A
@@ -56,7 +56,7 @@ def interior_tension(v, times):
     index = np.flatnonzero(np.broadcast_to((v["w_adhesion"] > 0) & (v["status"] == 0), shape))
     found = np.zeros(shape, bool)
     if len(index):
-        _, solution = again(v, index, _RADII)
+        _, solution = solved(v, index, _RADII)
         found.flat[index] = rises_from_tension(solution.p)
     return found
 

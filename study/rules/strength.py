@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solver import Problem, Status, solve
+from solver import Status, solve
 from solver.laws.elastic_plastic import TABOR
 from solver.models.spot_pressure import lifts_off
 from solver.parameters import one_of
@@ -140,7 +140,7 @@ def _exceeded(limit, low, high, stress):
 
 def _stress(v, name, index, limit):
     """The largest stress of a body, where it is near the limit; elsewhere that of the coarse grid."""
-    problem, solution = again(v, index)
+    problem, solution = solved(v, index)
     value = of_contacts(problem, solution, names=(name,), coarse=True)[name][0]
     near = np.flatnonzero((value < (1 + _MORE) * limit) & (value > (1 - _MISSED) * limit))
     if len(near):
@@ -153,7 +153,7 @@ def _stress_of_spots(v, index):
     shape = v["status"].shape
     alone = np.broadcast_to(yield_bounds.spot_alone(v), shape).flat[index]
     least = np.broadcast_to(yield_bounds.one_asperity(v), shape).flat[index]
-    problem, solution = again(v, index)
+    problem, solution = solved(v, index)
     value = spots.of_contacts(problem, solution)[0]
     return np.fmin(np.where(np.isnan(value), alone, value), least)
 
@@ -161,15 +161,14 @@ def _stress_of_spots(v, index):
 def problem_of(v, index):
     """The problem of some of the cases, given by their radii."""
     shape = v["status"].shape
-    names = lexicon_of(v["known"]).parameters_of(v)
-    own = {name: v[name] for name in names if name in v and name not in (*NUMERICS, *CONTROLS)}
-    own = {name: np.broadcast_to(values, shape).ravel()[index] for name, values in {"a": v["a"], **own}.items()}
-    return Problem.of(known=v["known"], **own)
+    lexicon = lexicon_of(v["known"])
+    names = [name for name in lexicon.parameters_of(v) if name in v and name not in (*NUMERICS, *CONTROLS)]
+    return lexicon.problem({name: np.broadcast_to(v[name], shape).ravel()[index] for name in ("a", *names)})
 
 
-def again(v, index, x=(0.0, 1.0)):
+def solved(v, index, x=(0.0, 1.0)):
     """The problem of some of the cases, given by their radii, and what it was solved with; profiles at the radii x."""
     problem = problem_of(v, index)
-    solution, solved = solve(problem, x), v["status"].ravel()[index] == Status.CONVERGED
-    solution.status[~solved] = Status.INVALID_INPUT
+    solution, there = solve(problem, x), v["status"].ravel()[index] == Status.CONVERGED
+    solution.status[~there] = Status.INVALID_INPUT
     return problem, solution

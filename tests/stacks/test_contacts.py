@@ -171,6 +171,12 @@ def test_a_batch_of_many_kinds():
         assert_allclose(alone.P, together.P[i], rtol=1e-12) and assert_allclose(alone.D, together.D[i], rtol=1e-9)
 
 
+def test_one_layer_on_a_rigid_base():
+    """It needs no list."""
+    listed = solve(Problem.of(a=0.05, layers=[{"h": 0.1, "n": 1.0}], rigid_base=True, **SMOOTH))
+    assert solve(Problem.of(a=0.05, h=0.1, rigid_base=np.True_, **SMOOTH)).P == listed.P
+
+
 def test_a_batch_travels():
     problem = Problem.of(a=0.05, layers=[{"h": 0.01, "n": 1.0}, {"h": 0.02, "n": 0.5}], **SMOOTH)
     assert solve(pickle.loads(pickle.dumps(problem))).P == solve(problem).P
@@ -186,6 +192,10 @@ BAD = {
     "rigid": ({"layers": [{"h": 0.01, "n": 2.0}], "rigid_base": True}, "layers.1.n = 2.0"),
     "layered": ({"layers": [{"h": 0.01, "n": 2.0}], "base": "layered"}, "has one layer"),
     "no list": ({"layers": 3}, "must be a list of layers"),
+    "one that is none": ({"layers": [{"h": 0.01, "n": 1.0}, 3]}, "must be a list of layers"),
+    "no layers": ({"layers": []}, "must be a list of layers"),
+    "both names": ({"layers.1.h": 0.01, "h": 0.1, "n": 1.0}, "layers.1.h is h, which is given too"),
+    "a ratio on a rigid base": ({"rigid_base": True, "h": 0.1, "n": 0.5}, "layers.1.n = 0.5"),
 }
 
 

@@ -259,9 +259,18 @@ BAD = {
     "no layers": ({"layers": {}}, "layers = {}: must be a list of layers"),
     "from 0": ({"layers": PURE, "layers.0.h": 0.1}, "layers count from 1 at the surface"),
     "a ratio on a rigid base": ({"rigid_base": True, "h": 0.1, "n": 0.5}, "layers.1.n = 0.5: on a rigid base n is"),
+    "a hard bottom": (
+        {"layers": [{"h": "1 um", "E1": ["1 GPa", "1e15 GPa"], "profile": "exponential"}], **BALL},
+        "layers.1.E1_bottom = 1e+15 GPa: ratio of the reduced moduli of the bottom of layer 1",
+    ),
     "nothing": ({"base": "stack"}, 'layers are missing: base = "stack" needs them'),
     "a tuple": ({"layer": ("DLC a-C:H", "CrN"), "h": "1 um", **BALL}, "is a tuple: a list is an axis"),
 }
+
+
+def test_layers_that_are_no_list_in_a_file():
+    with pytest.raises(study.StudyError, match="layers = 3: must be a list of layers"):
+        from_tables({"model": {"a": 0.05, "micro": "smooth", "layers": 3}}, "x", "", "x")
 
 
 @pytest.mark.parametrize("kind", BAD)

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 import study
-from study.inputs.scene.names import si
+from study.inputs.scene.scene import si
 from study.inputs.vocabulary import ROWS
 
 DRAWS = 10_000

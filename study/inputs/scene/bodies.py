@@ -13,7 +13,7 @@ from ...terminal import shown
 from ..grid import equal_values
 from ..lexicon import PACKAGE
 from ..vocabulary import BODIES, absent, bodies_of, finite
-from .names import RIGID_TEXTS
+from .scene import RIGID_TEXTS
 
 _MAY_BE_RIGID = ("punch", "body")
 #: Shapes that people give as `punch`, which is a material. A proposal of materials with like names would mislead.

@@ -9,10 +9,9 @@ from ..grid import Grid
 from ..identity import acts
 from ..punch.laws import slopes_of_fit
 from ..vocabulary import CONTROLS, SCENE
-from .layers import moduli_of
-from .names import is_ratio
 from .scales import make_dimensionless
-from .scene import Scene
+from .scene import Scene, is_ratio
+from .stacks import moduli_of
 
 SCALES = ("length", "modulus")
 """The radius and the modulus that are 1 for the solver; they stand beside the solver's inputs."""

@@ -15,8 +15,8 @@ from solver.bases import is_bare
 from ...arrays import xarray_later as xr
 from ..lexicon import PACKAGE
 from ..vocabulary import SCENE
-from .layers import moduli_of
 from .scene import Scene
+from .stacks import moduli_of
 
 #: Default of the Poisson ratio of a punch, that of the other bodies.
 _POISSON = PACKAGE.parameter("nu1").default

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from solver import Problem, solve
+from solver import solve
 from solver.parameters import COMMON as LIMITS
 from solver.parameters import ends
 from solver.shapes import PARABOLOID
@@ -166,11 +166,9 @@ class CurveModel:
         A tile of a table may reach beyond the end of a law of asperities: only the fitted contacts are judged.
         """
         changed = self.scene_of(values)
-        numbers = {name: value for name, value in changed.parameters.items() if name in self.scene.lexicon.parameters}
         unit, R = changed.unit, changed.R
         control = with_unit(x, tuple(-power for power in VOCABULARY[self.x].powers), unit, R)
-        numbers = {name: value for name, value in numbers.items() if name not in ("P", "a", "D")} | {"rtol": _RTOL}
-        problem = Problem.of(**{self.x: control}, known=self.scene.lexicon.known, **numbers)
+        problem = self.scene.lexicon.problem(changed.parameters, rtol=_RTOL, **{self.x: control})
         solution = solve(problem, np.array([0.0]), extrapolate=True)
         y = with_unit(getattr(solution, self.y), VOCABULARY[self.y].powers, unit, R)
         return np.where(solution.status == 0, y, np.nan)

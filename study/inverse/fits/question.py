@@ -14,7 +14,7 @@ from ...inputs.definition import Definition, StudyError
 from ...inputs.lexicon import Lexicon, lexicon_for
 from ...inputs.punch.shapes import ANGLES
 from ...inputs.reading import from_call
-from ...inputs.scene.layers import short
+from ...inputs.scene.stacks import short
 from ...inputs.vocabulary import BODIES, CONTROLS, ROWS, scene_of, suggest
 from ...specimen.quantities import has_unit, quantity
 from ...terminal import shown

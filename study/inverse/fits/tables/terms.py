@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from solver import Problem
 from solver.shapes import PARABOLOID
 from solver.smooth.adhesion.curve_terms import curve_terms
 
@@ -103,10 +102,10 @@ class Terms(NamedTuple):
         model = self.model
         count = len(next(iter(values.values()), np.zeros(1)))
         changed = model.scene_of(values)
-        names = {name: value for name, value in changed.parameters.items() if name in changed.lexicon.parameters}
-        names = {name: value for name, value in names.items() if name not in ("P", "a", "D", "k_machine", "branch")}
-        names["base"] = {"auto": "layered"}.get(word := names.get("base", "layered"), word)
-        problem = Problem.of(known=changed.lexicon.known, **names, a=np.full(count, 0.01))
+        names = {name: v for name, v in changed.parameters.items() if name not in ("k_machine", "branch")}
+        base = names.get("base", "layered")
+        base = "layered" if base == "auto" else base
+        problem = changed.lexicon.problem(names, base=base, a=np.full(count, 0.01))
         shift = np.log(names["h"]) if self.length == "h" else 0.0
         terms = curve_terms(problem, np.broadcast_to(x + np.reshape(shift, (-1, 1)), (count, len(x))))
         factors = np.broadcast_to(self.factors(values).reshape(4, -1), (4, count))

@@ -20,12 +20,10 @@ from ..punch.shapes import LENGTHS, MICROMETRE, in_metres
 from ..request import NEEDS_NAMES, Input, Request
 from ..vocabulary import SCENE, bodies_of
 from .bodies import assumed, with_materials
-from .bounds import beyond_bounds
-from .checks import impossible, missing, moving_tables, same_cases
-from .names import dim_of, is_ratio, si
+from .mistakes import beyond_bounds, impossible, missing, moving_tables, same_cases
 from .pieces import correlate, none_alike
 from .scales import make_dimensionless
-from .scene import Scene
+from .scene import Scene, dim_of, is_ratio, si
 
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
 #: Bounds of inputs from which others are derived: (must be above, must be at most, words for a message).
@@ -74,8 +72,8 @@ def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scen
     make_dimensionless(scene)
     errors += moving_tables(scene) + beyond_bounds(scene, inputs)
     draft.sizes |= scene.sizes(axes)
-    for name, value in scene.parameters.items() if not errors else ():
-        draft.put(name, getattr(value, "dims", ()), np.asarray(value))
+    if not errors:  # each has been checked, with its unit or without
+        draft.values |= {name: (getattr(v, "dims", ()), np.asarray(v)) for name, v in scene.parameters.items()}
     return scene
 
 

@@ -20,7 +20,7 @@ from ..laws import Curve
 from ..numerics import batch
 from ..numerics.linalg import solve_stack
 from ..numerics.mesh import panel_mesh
-from ..rough.equation import Evaluation, State, evaluate, jacobian
+from ..rough.equation import Evaluation, Unknowns, evaluate, jacobian
 from ..rough.panels import ends_of, followed
 from ..rough.results import quantities
 from .inputs import STEP
@@ -71,10 +71,10 @@ def _after_steps(start, cases, eta, operator, count):
     times, before = len(eta) // len(start.tangent), start.at
     y, tangent = np.tile(before.state.y, (times, 1)), np.tile(start.tangent, (times, 1))
     curve = moved_curve(cases.law, before.cases.law, before.state.y, before.curve)
-    now = evaluate(cases, State(y, eta), operator.mesh, operator, curve)
+    now = evaluate(cases, Unknowns(y, eta), operator.mesh, operator, curve)
     for _ in range(count):
         y = cases.law.limit(y - start.removes(now.F / now.X) / now.curve.dq, y)
-        now = evaluate(cases, State(y, eta), operator.mesh, operator)
+        now = evaluate(cases, Unknowns(y, eta), operator.mesh, operator)
     diagonal, dF_deta = jacobian(now)
     missed = operator.products(tangent)[0] + diagonal * tangent + dF_deta
     return Moved(now, tangent - start.removes(missed))

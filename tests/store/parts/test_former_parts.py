@@ -7,7 +7,7 @@ from same import assert_same_numbers
 
 import study
 from study.inputs.reading import from_tables
-from study.store import former, windows
+from study.store import former_parts, windows
 
 PLAIN = """
 [model]
@@ -110,7 +110,7 @@ def test_a_damaged_part_is_not_taken(tmp_path):
 def test_nothing_is_removed_before_what_is_taken_is_on_the_disk(tmp_path, monkeypatch):
     written(tmp_path, PLAIN).run()
     there = sorted(path.name for path in (tmp_path / "big").iterdir())
-    monkeypatch.setattr(former, "put", lambda *_: 1 / 0)
+    monkeypatch.setattr(former_parts, "put", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         written(tmp_path, PLAIN, LONGER).run(force=True)
     assert sorted(path.name for path in (tmp_path / "big").iterdir()) == there

@@ -22,7 +22,7 @@ from ..inputs.identity import find
 from ..inputs.reading import from_tables
 from .block_file import Block
 from .blocks import facts, keys_of, put, usable
-from .state import State
+from .window_files import WindowFiles
 from .windows import Store, Window, divisions, identities, windows_of, within
 
 log = logging.getLogger(__name__)
@@ -30,14 +30,14 @@ log = logging.getLogger(__name__)
 UNREADABLE = (StudyError, ValueError, OSError, RecursionError)
 
 
-class Former(NamedTuple):
+class FormerPart(NamedTuple):
     """A part of the study before it was edited: the values of its axes, and its cases."""
 
     labels: dict[str, np.ndarray]
     block: Block
 
 
-def take_over(state: State, former: list[Condition]) -> int:
+def take_over(state: WindowFiles, former: list[Condition]) -> int:
     """Write the cases of former parts that windows without results have too as blocks; returns how many.
 
     They are on the disk when this returns: then the parts may be removed. Cases with derivatives are not taken, because
@@ -70,7 +70,7 @@ def _overlap(labels: dict[str, np.ndarray], others: dict[str, np.ndarray]) -> bo
     return all(np.isin(values, others[dim]).any() for dim, values in labels.items() if dim in others)
 
 
-def _parts(store: Store, former: list[Condition]) -> Iterator[Former]:
+def _parts(store: Store, former: list[Condition]) -> Iterator[FormerPart]:
     """Those that can be read, one at a time: a part may have a million cases."""
     studies = dict[str, dict[str, tuple[Store, Window]]]()
     for condition in former:
@@ -98,7 +98,7 @@ def _windows_of_study(store: Store, condition: Condition) -> dict[str, tuple[Sto
     return {window.path.name: (within(before, window, divided), window) for window in windows}
 
 
-def _part(store: Store, window: Window, condition: Condition) -> Former | None:
+def _part(store: Store, window: Window, condition: Condition) -> FormerPart | None:
     """The part, if its file holds the cases of the window, undamaged."""
     definition = store.definition
     if store.window is None or examine(condition.path).kind != "sound":
@@ -107,7 +107,7 @@ def _part(store: Store, window: Window, condition: Condition) -> Former | None:
     if not all(dim in dataset.coords and np.array_equal(dataset[dim], values) for dim, values in labels.items()):
         return None
     block = Block(facts(definition.x), keys_of(store), _columns(definition, dataset))
-    return Former(labels, block)
+    return FormerPart(labels, block)
 
 
 def _columns(definition: Definition, dataset: xr.Dataset) -> dict[str, np.ndarray]:

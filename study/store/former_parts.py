@@ -7,7 +7,6 @@ its numbers depend on is the same, whatever has become of the grid.
 import logging
 import tomllib
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -23,39 +22,51 @@ from ..inputs.reading import from_tables
 from .block_file import Block
 from .blocks import facts, keys_of, put, usable
 from .window_files import WindowFiles
-from .windows import Store, Window, divisions, identities, windows_of, within
+from .windows import Store, Window, divisions, identities, is_large, windows_of, within
 
 log = logging.getLogger(__name__)
 #: What goes wrong while the text of a former study is read: it may need a law, or a file, that is not there any more.
 UNREADABLE = (StudyError, ValueError, OSError, RecursionError)
+#: The values of the axes of some cases.
+Labels = dict[str, np.ndarray]
 
 
-class FormerPart(NamedTuple):
-    """A part of the study before it was edited: the values of its axes, and its cases."""
-
-    labels: dict[str, np.ndarray]
-    block: Block
-
-
-def take_over(state: WindowFiles, former: list[Condition]) -> int:
+def take_over(files: WindowFiles, former: list[Condition]) -> int:
     """Write the cases of former parts that windows without results have too as blocks; returns how many.
 
     They are on the disk when this returns: then the parts may be removed. Cases with derivatives are not taken, because
     results do not contain these.
     """
-    taken, windows = 0, state.absent
-    labels = [identity.coordinates for identity in identities(state.store, windows)]
-    for part in _parts(state.store, former):
-        for window, values in zip(windows, labels, strict=True):
-            if _overlap(part.labels, values):
-                taken += _take(state.store_of(window), part.block)
+    taken, labelled_windows = 0, _with_labels(files, files.absent)
+    for condition, store in _stores(files.store, former):
+        block = store and _block(store, condition)
+        if block and usable(files.store.definition, block):
+            labels = axes_of(store.definition)
+            windows = (window for window, others in labelled_windows if _overlap(labels, others))
+            taken += sum(_take(files.store_of(window), block) for window in windows)
     return taken
+
+
+def are_all_kept(files: WindowFiles, former: list[Condition]) -> bool:
+    """Whether every case of the former parts is one of the study, and can be taken, unless its file is damaged."""
+    labelled_windows = _with_labels(files, files.windows)
+    for _, store in _stores(files.store, former):
+        if store is None:
+            return False
+        definition, keys, labels = store.definition, keys_of(store), axes_of(store.definition)
+        if not usable(files.store.definition, Block(facts(definition.x), keys[:0], not_run(definition, 0))):
+            return False
+        kept = np.zeros(len(keys), dtype=bool)
+        for window in (window for window, others in labelled_windows if _overlap(labels, others)):
+            there = keys_of(files.store_of(window))
+            kept |= find(keys, there, np.zeros(len(there))) >= 0
+        if not kept.all():
+            return False
+    return True
 
 
 def _take(store: Store, block: Block) -> int:
     """Write the cases of a block that a window has; returns how many."""
-    if not usable(store.definition, block):
-        return 0
     keys = keys_of(store)
     rows = find(keys, block.keys, np.zeros(len(block.keys)))
     index = np.flatnonzero(rows >= 0)
@@ -65,49 +76,52 @@ def _take(store: Store, block: Block) -> int:
     return len(index)
 
 
-def _overlap(labels: dict[str, np.ndarray], others: dict[str, np.ndarray]) -> bool:
+def _with_labels(files: WindowFiles, windows: list[Window]) -> list[tuple[Window, Labels]]:
+    """Windows, each with the values of its axes."""
+    labels = [identity.coordinates for identity in identities(files.store, windows)]
+    return list(zip(windows, labels, strict=True))
+
+
+def _overlap(labels: Labels, others: Labels) -> bool:
     """Whether cases with these labels may be the same: along no axis that both have is every value different."""
     return all(np.isin(values, others[dim]).any() for dim, values in labels.items() if dim in others)
 
 
-def _parts(store: Store, former: list[Condition]) -> Iterator[FormerPart]:
-    """Those that can be read, one at a time: a part may have a million cases."""
-    studies = dict[str, dict[str, tuple[Store, Window]]]()
+def _stores(store: Store, former: list[Condition]) -> Iterator[tuple[Condition, Store | None]]:
+    """Each former part with the store of its cases; None if the study that it is of cannot be read any more."""
+    studies = dict[str, dict[str, Store]]()
     for condition in former:
         if condition.digest not in studies:
             studies[condition.digest] = _windows_of_study(store, condition)
-        place = studies[condition.digest].get(condition.path.name)
-        part = place and _part(*place, condition)
-        if part:
-            yield part
+        yield condition, studies[condition.digest].get(condition.path.name)
 
 
-def _windows_of_study(store: Store, condition: Condition) -> dict[str, tuple[Store, Window]]:
-    """Name of the file -> each window of the study that a part is of; {} if that study cannot be read any more."""
+def _windows_of_study(store: Store, condition: Condition) -> dict[str, Store]:
+    """Name of the file -> the store of each window of the study that a part is of; {} if that cannot be read any more,
+    or has derivatives."""
     try:
         tables = tomllib.loads(condition.text)
         definition = from_tables(tables, store.definition.name, condition.text, store.definition.name)
     except UNREADABLE as error:
         log.debug("%s: %s", condition.path, error)
         return {}
-    if definition.digest != condition.digest or definition.inputs:
+    if definition.digest != condition.digest or definition.inputs or not is_large(definition):
         return {}
     before = Store(definition, store.results)
     windows = windows_of(before)
     divided = divisions(definition, windows)
-    return {window.path.name: (within(before, window, divided), window) for window in windows}
+    return {window.path.name: within(before, window, divided) for window in windows}
 
 
-def _part(store: Store, window: Window, condition: Condition) -> FormerPart | None:
-    """The part, if its file holds the cases of the window, undamaged."""
-    definition = store.definition
-    if store.window is None or examine(condition.path).kind != "sound":
+def _block(store: Store, condition: Condition) -> Block | None:
+    """The cases of a former part, if its file is undamaged and holds those of its window."""
+    if examine(condition.path).kind != "sound":
         return None
-    labels, dataset = axes_of(definition), read(condition.path)
-    if not all(dim in dataset.coords and np.array_equal(dataset[dim], values) for dim, values in labels.items()):
-        return None
-    block = Block(facts(definition.x), keys_of(store), _columns(definition, dataset))
-    return FormerPart(labels, block)
+    definition, dataset = store.definition, read(condition.path)
+    for dim, values in axes_of(definition).items():
+        if dim not in dataset.coords or not np.array_equal(dataset[dim], values):
+            return None
+    return Block(facts(definition.x), keys_of(store), _columns(definition, dataset))
 
 
 def _columns(definition: Definition, dataset: xr.Dataset) -> dict[str, np.ndarray]:

@@ -59,7 +59,7 @@ def run(definition: Definition, results="results", **options) -> Report:
 def _make_room(order: Order, state: WindowFiles) -> None:
     """Remove what is in the way of the results, and say which damaged files stay under another name. Of parts of the
     study as it was the cases that it still has are kept, as blocks."""
-    if state.others:  # as --force has said
+    if state.others:  # as --force has said, or none of their cases is lost
         make_folder(order.store.folder)
         take_over(state, state.rivals())
     for path in state.others:

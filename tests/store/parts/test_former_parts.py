@@ -91,11 +91,24 @@ def test_an_edited_study_takes_what_still_fits(tmp_path, text, edits, computed):
         assert_same_numbers(edited.open(), anew.open())
 
 
+def test_a_study_that_is_larger_needs_no_force(tmp_path):
+    """No case of the former parts is lost. Of the study as it was before, some are."""
+    written(tmp_path, PLAIN).run()
+    larger = written(tmp_path, PLAIN, ("2e-5]", "2e-5, 4e-5]"), TURNED, ("0.07,", "0.07, 0.01,"))
+    assert larger.dry_run().refused is None
+    report = larger.run()
+    assert report.complete and report.computed == 4 * 6 * 4 - 60 and larger.verify().kind == "sound"
+    assert written(tmp_path, PLAIN).dry_run().refused
+
+
 def test_a_study_with_spreads_is_computed(tmp_path):
     """Its results do not contain the derivatives that its blocks have."""
     text = UNITS.replace("2 GPa", "2 ± 0.1 GPa")
     written(tmp_path, text).run()
-    assert written(tmp_path, text, ("30 um", "40 um")).run(force=True).computed == 60
+    edited = written(tmp_path, text, ("30 um", '30 um", "40 um'))
+    with pytest.raises(study.StudyError, match="--force removes them"):
+        edited.run()
+    assert edited.run(force=True).computed == 80
 
 
 def test_a_damaged_part_is_not_taken(tmp_path):

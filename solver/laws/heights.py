@@ -122,8 +122,9 @@ _TABLES: dict[tuple, np.ndarray] = {}
 def _tables(density, field, sigma, cut):
     """Tables (G, 2, KNOTS) of ln q and ln λ for the G different pairs of sigma and cut (B, 1), and the table of each
     case (B,). A histogram has _FINE KNOTS."""
-    pairs, group = np.unique(np.concatenate([sigma, cut], axis=1), axis=0, return_inverse=True)
-    keys = [(density, field, *pair) for pair in pairs.tolist()]
+    # as complex numbers, pairs are sorted in a tenth of the time
+    pairs, group = np.unique(np.concatenate([sigma, cut], axis=1).view(complex)[:, 0], return_inverse=True)
+    keys = [(density, field, pair.real, pair.imag) for pair in pairs.tolist()]
     rows = {key: _TABLES.get(key) for key in keys}
     missing, fine = [key for key, row in rows.items() if row is None], density.fine
     at_once = _AT_ONCE // fine**2  # fine tables are larger, and of more pieces

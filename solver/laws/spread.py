@@ -182,7 +182,7 @@ def look_up(table, group, y, step=STEP):
     knot = np.clip(place.astype(int), 2, count - 4)
     t = np.clip(place - knot, 0.0, 1.0)
     start = knot + count * group[:, None]
-    around = [table.ravel()[start + beside] for beside in range(-2, 4)]
+    around = [table.take(start + beside) for beside in range(-2, 4)]
     value, slope = np.zeros_like(t), np.zeros_like(t)
     for row in _WEIGHTS.T[::-1]:  # Horner's scheme
         slope = slope * t + value

@@ -172,11 +172,11 @@ def groups(cases, eta):
     return X[:, None], (2 * cases.body.C * p_star / a**2)[:, None], (2 * cases.law.A_star / a**2)[:, None]
 
 
-def evaluate(cases, state, mesh, near=None):
+def evaluate(cases, state, mesh, near=None, curve=None):
     """:class:`Evaluation` of `cases` at `state`. `near`: their operator at another state or on another mesh, of which
-    what still holds is used again."""
+    what still holds is used again. `curve`: that of their law at `state`, if it is at hand."""
     X, Y, Z = groups(cases, state.eta)
-    curve, a = cases.law.evaluate(state.y), np.exp(state.eta)
+    curve, a = cases.law.evaluate(state.y) if curve is None else curve, np.exp(state.eta)
     operator = cases.body.at(a, mesh, near)
     Kq, edge_q = operator.products(curve.q)
     F = X * Kq + Y * curve.q + Z * curve.g - cases.punch.drop(a, mesh.s)

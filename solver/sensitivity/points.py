@@ -4,6 +4,7 @@ import numpy as np
 
 from ..numerics.mesh import gauss_rule
 from ..rough.results import interpolate, off_edge, stiffness_between
+from .step import moved_curve
 
 #: Gauss points between any two nodes at which a λ that bends is summed. With 5 points the derivatives of Ar/An are as
 #: right as the other ones (tests/sensitivity/test_sensitivities.py).
@@ -24,8 +25,8 @@ def between(start, contacts, s):
     curve = ev.cases.law.evaluate(y)
     (linear, yields), (moved_linear, moved_yields) = _at(ev, inside), _at(now, inside)
     right = np.tile(linear * curve.q + ev.Z * curve.g - yields, (blocks, 1)) + moved_yields
+    curve = moved_curve(law, ev.cases.law, y, curve)
     y = np.tile(y, (blocks, 1))
-    curve = law.evaluate(y)
     missed = moved_linear * curve.q + now.Z * curve.g - right
     change = law.limit(y - missed / (moved_linear * curve.dq + now.Z * curve.dg), y) - y
     q, y = curve.q + curve.dq * change, y + change

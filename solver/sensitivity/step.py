@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..laws import Curve
 from ..numerics import batch
 from ..numerics.linalg import solve_stack
 from ..numerics.mesh import panel_mesh
@@ -67,15 +68,32 @@ def moved_contacts(start, cases, eta, count=1):
 
 
 def _after_steps(start, cases, eta, operator, count):
-    times = len(eta) // len(start.tangent)
-    y, tangent = np.tile(start.at.state.y, (times, 1)), np.tile(start.tangent, (times, 1))
-    now = evaluate(cases, Unknowns(y, eta), operator.mesh, operator)
+    times, before = len(eta) // len(start.tangent), start.at
+    y, tangent = np.tile(before.state.y, (times, 1)), np.tile(start.tangent, (times, 1))
+    curve = moved_curve(cases.law, before.cases.law, before.state.y, before.curve)
+    now = evaluate(cases, Unknowns(y, eta), operator.mesh, operator, curve)
     for _ in range(count):
         y = cases.law.limit(y - start.removes(now.F / now.X) / now.curve.dq, y)
         now = evaluate(cases, Unknowns(y, eta), operator.mesh, operator)
     diagonal, dF_deta = jacobian(now)
     missed = operator.products(tangent)[0] + diagonal * tangent + dF_deta
     return Moved(now, tangent - start.removes(missed))
+
+
+def moved_curve(law, before, y, curve):
+    """The :class:`~solver.laws.law.Curve` of moved laws at the y (B, c) at which the solved ones, `before`, have
+    `curve`: computed anew for the blocks in which the numbers of the law have changed. It is most of the work of a law
+    that is a table."""
+    size, blocks = len(y), len(law.p_star) // len(y)
+    changed = np.zeros(blocks, dtype=bool)
+    for values, old in zip(law.own, before.own, strict=True):
+        changed |= np.any(values.reshape(blocks, size, -1) != old, axis=(1, 2))
+    parts, rows = [np.tile(part, (blocks, 1)) for part in curve], np.flatnonzero(np.repeat(changed, size))
+    if len(rows):
+        anew = law.take(rows).evaluate(np.tile(y, (np.count_nonzero(changed), 1)))
+        for part, values in zip(parts, anew, strict=True):
+            part[rows] = values
+    return Curve(*parts)
 
 
 def on_kinks(ev):
@@ -140,6 +158,8 @@ def _operator(ev, cases, eta, mesh, changed):
     """The operator of moved cases on a mesh: anew of the blocks that have `changed`, (m,) bool, and else that of the
     solved ones."""
     size = len(ev.state.eta)
+    if cases.body.kernel is None:  # one operator for all bodies and radii
+        return cases.body.at(np.exp(eta), mesh)
     places = np.arange(len(changed) * size).reshape(-1, size)
     anew, same = places[changed].ravel(), places[~changed]
     operators, where = [ev.operator] * len(same), [*same]

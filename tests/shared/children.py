@@ -18,7 +18,7 @@ PATIENCE = 300  # seconds for what takes one or two: a busy machine makes a test
 SLOW = 0.01  # seconds that a block takes at least: moments to kill it in
 
 # Nothing waits for the disk, here and in the processes below: a run of 60 blocks flushes 124 times, and waited for that
-# as long as it computed on a busy machine. No test cuts the power; tests/files/test_atomic.py asks what is flushed.
+# as long as it computed on a busy machine. tests/store/parts/test_power_cuts.py has a disk of its own.
 os.fsync = lambda file: None
 
 

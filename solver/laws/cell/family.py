@@ -72,7 +72,7 @@ NUMBERS = (
 class Family(NamedTuple):
     """Series of P, G and Q, Chebyshev coefficients (N,) each, and of the inverse (GUESS,); pitch over h, and the
     largest radius (unit l). `known` is False of a family that no law has, of a pitch above MOST. `disc` : whether it is
-    of disc cells; digest : a whole number that other families do not have."""
+    of disc cells; digest : a whole number that other families do not have; numbers : the NUMBERS."""
 
     pitch: float
     reach: float
@@ -83,6 +83,7 @@ class Family(NamedTuple):
     known: bool = True
     disc: bool = False
     digest: float = 0.0
+    numbers: np.ndarray | None = None
 
     @property
     def terms(self):
@@ -95,8 +96,13 @@ class Family(NamedTuple):
         return 4 / 3 * b**3 * P, b**2 * G, 2 * b / np.pi * Q
 
     def row(self, terms):
-        """The numbers of the family, (len(NUMBERS) + 3 `terms` + GUESS,): NUMBERS, then the series, zeros behind each.
-        Radii are in units of Bbar = 1/sqrt(pi Nbar)."""
+        """The numbers of the family, (len(NUMBERS) + 3 `terms` + GUESS,): NUMBERS, the series, zeros behind each."""
+        series = [np.append(row, np.zeros(terms - len(row))) for row in (self.P, self.G, self.Q)]
+        return np.concatenate([self.numbers, *series, self.inverse])
+
+    def with_numbers(self):
+        """The family with its NUMBERS, which take a hundred times as long as a row. Radii are in units of Bbar =
+        1/sqrt(pi Nbar)."""
         Bbar = 1 / np.sqrt(np.pi)
         scale, end = self.pitch * Bbar, self.reach / Bbar
         end_r = end * np.exp(self.P.sum() / 3)
@@ -109,16 +115,8 @@ class Family(NamedTuple):
         widths = 1 / np.arcsinh(scale * end), 1 / np.arcsinh(scale * end_r)
         most = 2 / np.pi * end_r**3 if self.known else 0.0
         turn = _turn(scale, end, self.P) if self.disc else (end, 0.0)
-        series = [
-            np.append(coefficients, np.zeros(terms - len(coefficients))) for coefficients in (self.P, self.G, self.Q)
-        ]
-        return np.concatenate(
-            [
-                [scale, widths[0], end, widths[1], end_r, *slopes, *bends, settles, most, *turn, self.digest],
-                *series,
-                self.inverse,
-            ]
-        )
+        numbers = scale, widths[0], end, widths[1], end_r, *slopes, *bends, settles, most, *turn, self.digest
+        return self._replace(numbers=np.array(numbers))
 
 
 def half_space(t):
@@ -172,7 +170,11 @@ def _is_array(field):
 def family(key, kernel, m, i):
     """The :class:`Family` of case i with this key, kept for the next time. It is a function of the case alone."""
     digest = float(int.from_bytes(hashlib.blake2b(repr(key).encode(), digest_size=6).digest()))
-    return _kept.get(key, lambda: Family(*_made(key[0], key[2], kernel.take([i]), float(m[i])))._replace(digest=digest))
+
+    def make():
+        return Family(*_made(key[0], key[2], kernel.take([i]), float(m[i])), digest=digest).with_numbers()
+
+    return _kept.get(key, make)
 
 
 def rounded(pitch):

@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from ..kernels.transfer import Kind, radial_sum
+from ..kernels.transfer import radial_sum
 from .half_space import integrals
 from .waves import Load
 
 
-def amplitudes(kind, bodies, X, x, v):
+def amplitudes(waves, row, z):
     """Of sr + st, sr - st, sz, trz, 2 G ur and 2 G uz."""
-    u, w, S, T = v
-    return radial_sum(v, bodies.nu2 if kind == Kind.BODY else bodies.nu1), -u, S, T, u, w
+    u, w, S, T = v = waves.state(row.region, z, row.less)
+    return radial_sum(v, waves.nu[:, row.region, None, None]), -u, S, T, u, w
 
 
 def in_closed_form(pressure, r, z, nu, displacements=True):

@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 
 from ..arrays import xarray_later as xr
-from ..data.dataset import decode
+from ..data.dataset import as_dataset, decode
 from ..data.derived import QUANTITIES
-from ..data.one_case import as_dataset
 from ..derivatives import spread_of_formula
 from ..in_words import SHOWN, FarOutside, doubts, summary
 from ..in_words.inputs import all_inputs

@@ -7,8 +7,7 @@ import re
 import numpy as np
 
 from ..arrays import xarray_later as xr
-from ..data.dataset import decode
-from ..data.one_case import as_dataset, is_contact
+from ..data.dataset import as_dataset, decode, is_contact
 from ..inputs.lexicon import lexicon_in
 from ..inputs.vocabulary import NOT_RUN, VOCABULARY
 from ..specimen.pictures import curve, with_picture

@@ -29,7 +29,7 @@ def in_closed_form(pressure, r, z, nu, displacements=True):
 
 
 NAMES = ("sr", "st", "sz", "trz", "ur", "uz")
-NORMAL = Load((-1.0, 0.0), (0, 2, 0, 1, 1, 0), 4, amplitudes, in_closed_form)
+LOAD = NORMAL = Load((-1.0, 0.0), (0, 2, 0, 1, 1, 0), 4, amplitudes, in_closed_form)
 
 
 def components(whole, G2=None):

@@ -45,7 +45,7 @@ def in_closed_form(pressure, r, z, nu, displacements=True):
 
 
 NAMES = ("sr_c", "st_c", "sz_c", "srt_s", "sxz_0", "sxz_2", "uz_c", "ux_0", "ux_2")
-SLIDING = Load((0.0, 1.0), (1, 1, 3, 1, 0, 2, 1, 0, 2), 6, amplitudes, in_closed_form)
+LOAD = SLIDING = Load((0.0, 1.0), (1, 1, 3, 1, 0, 2, 1, 0, 2), 6, amplitudes, in_closed_form)
 
 
 def components(whole, G2=None):

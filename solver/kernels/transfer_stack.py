@@ -22,8 +22,8 @@ from .transfer import THIN, carried, decaying, growing
 class StackWaves(NamedTuple):
     """Waves k (K,) in B stacks of N layers; regions are counted from 0, the first layer, to N, the body.
 
-    k : ascending; tops : (B, N + 1), the depth of the top of each region; nu : (B, N + 1), Poisson ratios
-    thin : (N,), so many of the waves, the longest, find the layer thin
+    tops : (B, N + 1), the depth of the top of each region; nu : (B, N + 1), Poisson ratios
+    thin : (N, K) bool, the layer is thin for the wave
     tractions : (N + 1, 2, B, K), S and T at the top of each region
     displacements : (N, 2, B, K), u and w at the top of each layer, where it is thin
     down, up : (N, 2, B, K), tractions of the wave that decays downwards from the top of a layer, less `tractions`, and
@@ -49,17 +49,18 @@ class StackWaves(NamedTuple):
         nu, x = self.nu[:, region, None, None], self.k * (z - self.tops[:, region, None])[..., None]
         if region == len(self.thin):
             return np.array(decaying(x, nu, *self.tractions[region][:, :, None]))
-        thin, thick = slice(self.thin[region]), slice(self.thin[region], None)
+        thin = self.thin[region]
+        thick = ~thin
         made = np.empty((4, *x.shape))
-        S, T = self.tractions[region][:, :, None, thin]
+        S, T = self.tractions[region][:, :, None][..., thin]
         here = x[..., thin]
-        made[..., thin] = carried(here, nu, (*self.displacements[region][:, :, None, thin], S, T))
+        made[..., thin] = carried(here, nu, (*self.displacements[region][:, :, None][..., thin], S, T))
         if less:
             made[..., thin] -= decaying(here, nu, S, T)
         y = (self.k * (self.tops[:, region + 1, None] - z)[..., None])[..., thick]
         down = self.down[region] if less else self.down[region] + self.tractions[region]
-        made[..., thick] = decaying(x[..., thick], nu, *down[:, :, None, thick])
-        made[..., thick] += growing(y, nu, *self.up[region][:, :, None, thick])
+        made[..., thick] = decaying(x[..., thick], nu, *down[:, :, None][..., thick])
+        made[..., thick] += growing(y, nu, *self.up[region][:, :, None][..., thick])
         return made
 
     def antiplane(self, region, z, less=False):
@@ -80,7 +81,7 @@ class StackWaves(NamedTuple):
 
 
 def stack_waves(stack, k, h, load):
-    """:class:`StackWaves` of waves k (K,), ascending, in the unit 1/h.
+    """:class:`StackWaves` of waves k (K,).
 
     stack : :class:`~.stack.Stack` of B cases; h : (B,), thickness of the first layer; the thickness of no layer differs
         by more than a factor of 2 between cases
@@ -89,22 +90,21 @@ def stack_waves(stack, k, h, load):
     N, u = stack.n.shape[1], k * h[:, None]
     G, nu = stack.shear / stack.shear[:, :1], stack.poisson
     thickness = h[:, None] * stack.depth
-    thin = np.searchsorted(k, THIN / np.sqrt(thickness.min(axis=0) * thickness.max(axis=0)))
+    thin = k * np.sqrt(thickness.min(axis=0) * thickness.max(axis=0))[:, None] < THIN
     tractions = np.zeros((N + 1, 2, *u.shape))
     tractions[0] += np.array(load)[:, None, None]
     displacements, down, up = np.zeros((3, N, 2, *u.shape))
     above = _minors(stack, u, G, nu)
     for j in range(N):
         X, (at_top, at_bottom) = k * thickness[:, j, None], above[j]
-        few, many = slice(thin[j]), slice(thin[j], None)
-        t, ratio = tractions[j], nu[:, j, None]
-        displacements[j, ..., few] = _moved(at_top[..., few], t[..., few])
-        state = (*displacements[j, ..., few], *t[..., few])
-        tractions[j + 1, ..., few] = carried(X[:, few], ratio, state)[2:]
-        c, up[j, ..., many] = _two_waves(at_bottom[..., many], X[:, many], ratio, t[..., many])
-        down[j, ..., many] = c - t[..., many]
-        tractions[j + 1, ..., many] = np.array(decaying(X[:, many], ratio, *c)[2:]) + up[j, ..., many]
-        tractions[j + 1, 1] = np.where(stack.free[:, j, None], 0.0, tractions[j + 1, 1])
+        few, many, ratio = thin[j], ~thin[j], nu[:, j, None]
+        t, below, moved = tractions[j], tractions[j + 1], displacements[j]
+        moved[..., few] = _moved(at_top[..., few], t[..., few])
+        below[..., few] = carried(X[:, few], ratio, (*moved[..., few], *t[..., few]))[2:]
+        c, b = _two_waves(at_bottom[..., many], X[:, many], ratio, t[..., many])
+        down[j][..., many], up[j][..., many] = c - t[..., many], b
+        below[..., many] = np.array(decaying(X[:, many], ratio, *c)[2:]) + b
+        below[1] = np.where(stack.free[:, j, None], 0.0, below[1])
     shear, yields = _antiplane(stack, u, k * thickness.T[..., None], G)
     return StackWaves(k, stack.tops(h), nu, thin, tractions, displacements, down, up, shear, yields)
 

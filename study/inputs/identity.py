@@ -77,7 +77,8 @@ def digest_of(definition) -> str:
     }
     content["values"] = {name: digests for name, digests in content["values"].items() if digests}
     content |= {"shapes": _OF_SHAPES} if {"shape", "w_adhesion"} & {*content["values"], *grid.sizes} else {}
-    compared = [name for name in STRENGTHS if name in grid.values and name not in grid.sizes]
+    given = [*STRENGTHS, *(name for name in sorted(grid.values) if name.startswith("layers.") and name.endswith(".Y"))]
+    compared = [name for name in given if name in grid.values and name not in grid.sizes]
     strengths = {name: digest_of_array(along(grid, name)) for name in compared}
     content |= {"strengths": strengths | {"masks": _OF_STRENGTHS}} if compared else {}
     content |= {"stresses": [_OF_STRESSES, *_digest_of_ratios(grid)]} if definition.stresses else {}

@@ -229,7 +229,7 @@ def extremes(
         variables[f"{name}_r"] = _labelled(contacts, r, axes, place)
         variables[f"{name}_z"] = _labelled(contacts, z, axes, {"long_name": f"{long_name}: its depth over a"})
     if contacts.problem.feels_layer().any():
-        for name, (value, z) in below_spots(contacts.problem, solution, mu, residual).items():
+        for name, (value, z) in below_spots(contacts.problem, solution, mu, residual[:, 0]).items():
             long_name = VOCABULARY[name].long_name
             variables[name] = _labelled(contacts, value * unit, (), _about(contacts, long_name, "Pa"))
             variables[f"{name}_z"] = _labelled(contacts, z, (), {"long_name": f"{long_name}: its depth over a"})

@@ -218,6 +218,7 @@ def test_bases_of_one_call():
     assert used == ["smooth_stack", "smooth_half_space", "smooth_thin_stack"]
 
 
+@pytest.mark.filterwarnings("ignore:this contact is beyond")
 def test_strengths_beside_a_stack():
     """Each layer and the body set the mask by their own strength; strong ones do not."""
     inputs = BALL | {"layers": DLC, "P": "1000 N"}

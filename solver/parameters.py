@@ -149,7 +149,7 @@ MOST = 16
 #: more, until the answers do not change.
 _SUBLAYERS = Parameter(0, whole=True, interval="[1, 512]", also=(0,), needed_by=STACKED)
 #: What a layer has -> its row in the table of parameters. cn, ct : compliance of the interface below it, across and
-#: along it, length over pressure; 0 is a perfect bond, and without friction ct has no effect.
+#: along it, length over pressure; 0 is a perfect bond, and without friction ct has no effect. Y : yield strength.
 LAYER = {
     "h": Parameter(interval="[1e-12, 1e6]", powers=(0, 1)),
     "n": Parameter(interval="[1e-9, 1e9]"),
@@ -160,9 +160,10 @@ LAYER = {
     "profile": Parameter("uniform", profiles.WORDS),
     "n_bottom": Parameter(interval="[1e-9, 1e9]", instead=""),
     "nu_bottom": Parameter(interval="(-1, 0.5]", instead=""),
+    "Y": STRENGTH,
 }
 #: Names of the first layer that are those of a case with one layer.
-FIRST = {"h": "h", "n": "n", "nu": "nu1", "bonding": "bonding"}
+FIRST = {"h": "h", "n": "n", "nu": "nu1", "bonding": "bonding", "Y": "Y1"}
 NAME_OF_LAYER = re.compile(rf"layers\.([1-9]\d?)\.({'|'.join(LAYER)})")
 
 

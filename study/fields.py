@@ -14,9 +14,10 @@ from solver.fields.contact import of_contacts as fields_of
 from solver.fields.invariants import invariants
 from solver.fields.sliding import in_plane
 from solver.fields.waves import farthest
+from solver.layers import full_name, numbers_of
 from solver.yields.below.central_spot import of_contacts as below_spots
 from solver.yields.contact import of_contacts as extremes_of
-from solver.yields.extremes import EXTREMES
+from solver.yields.stacked import largest as of_stacks
 
 from .data.contacts import Contacts
 from .inputs.definition import StudyError
@@ -65,15 +66,17 @@ def stresses(
     r, z : radii and depths >= 0 in units of a, one-dimensional; with mu > 0 r may be negative: behind the contact. The
         largest radius is 27,000 h, or 5.6 a if that is more; without a layer 1e9 a
     mu : >= 0; with mu > 0 the punch slides in full, and the plane y = 0 is given: r is x, trz is sxz, ur is ux
-    sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where the contact has units
+    sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where the contact has units. Of stacks
+        that of all layers, or a list of one for each
     parameters : those of `study.solve`, in place of the contact
 
     Returns
     -------
     xarray.Dataset : over the dimensions of the contact, `r` and `z`: sr, st, sz, trz, ur, uz, the principal stresses
-        s1, s2, s3, mises, tresca; NAME_above and NAME_below at the interface, in the layer and in the body; and
-        `stress_error`, of any stress relative to the largest. NaN of cases that have not converged, in a rigid body,
-        and at an interface that is not there. At the edge of a flat punch and of what sticks they are infinite
+        s1, s2, s3, mises, tresca; NAME_above and NAME_below at the interface, in the layer and in the body, of stacks
+        over `interface`, 1 below the first layer; and `stress_error`, of any stress relative to the largest. NaN of
+        cases that have not converged, in a rigid body, and at an interface that is not there. At the edge of a flat
+        punch and of what sticks they are infinite
 
     Raises
     ------
@@ -96,15 +99,19 @@ def stresses(
     solution = _solved(contacts)
     _refuse_far_away(r, contacts, solution)
     fields = fields_of(contacts.problem, solution, np.abs(r), z, mu)
-    residual, bare = residual_stress(sigma_res, contacts) / unit, is_bare(contacts.problem.base)
-    within = (z <= (contacts.problem.h / solution.a)[:, None]) & ~bare[:, None]
+    residual, bare = residual_stresses(sigma_res, contacts), is_bare(contacts.problem.base)
+    residual = np.where(bare[:, None], 0.0, np.pad(residual, ((0, 0), (0, 1))))  # the last is that of the body
+    layer = np.sum(z[:, None] > (_ends(contacts) / solution.a[:, None])[:, None], axis=2)  # in which z is, from 0
+    at_places = np.take_along_axis(residual, layer, axis=1), residual[:, :-1], residual[:, 1:]
     compressible, variables = np.where(bare, contacts.problem.nu2, contacts.problem.nu1) < 0.5, {}
-    places = ("", "r", "z"), ("_above", "r"), ("_below", "r")
-    for (end, *axes), field in zip(places, fields[:3], strict=True):
+    stacked = numbers_of(contacts.problem.parameters) > 0
+    at_interface = ("r", "interface") if stacked else ("r",)
+    places = ("", "r", "z"), ("_above", *at_interface), ("_below", *at_interface)
+    for (end, *axes), field, added in zip(places, fields[:3], at_places, strict=True):
         field = in_plane(field, r < 0) if mu > 0 else field
-        layer = within[..., None] if not end else np.full((len(bare), 1), end == "_above")
         for name in ("sr", "st"):
-            field[name] = field[name] + np.where(layer, residual[:, None, None] if not end else residual[:, None], 0.0)
+            field[name] = field[name] + added[..., None]
+        field = {name: values if len(axes) > 1 else values[:, 0] for name, values in field.items()}
         field |= invariants(*(field[name] for name in ("sr", "st", "sz", "trz")))._asdict()
         tips = np.isinf(field["sz"]) & np.expand_dims(compressible, tuple(range(1, field["sz"].ndim)))
         for name in ("mises", "tresca"):  # a difference of infinite stresses
@@ -113,17 +120,41 @@ def stresses(
             length = name.startswith("u")
             values = field[name] * ((size if length else 1) * (1 if length else unit))[(...,) + (None,) * len(axes)]
             about = _about(contacts, long_name + _WHERE[end], "m" if length else "Pa")
-            variables[f"{name}{end}"] = _labelled(contacts, values.swapaxes(1, -1), axes, about)
+            axes = ("interface", "r") if "interface" in axes else axes
+            values = values if "interface" in axes else values.swapaxes(1, -1)
+            variables[f"{name}{end}"] = _labelled(contacts, values, axes, about)
     about = {"long_name": "error of any stress, relative to the largest"}
     variables["stress_error"] = _labelled(contacts, fields.error, (), about)
     coords = {"r": ("r", r, {"long_name": "radius over a" if mu == 0 else "x over a, behind the contact < 0"})}
     coords["z"] = ("z", z, {"long_name": "depth over a"})
+    coords |= numbered(contacts, "interface") if stacked else {}
     if contacts.scene:
         lengths = (solution.a * size)[:, None]
         for name, axis in (("r", r), ("z", z)):
             about = {"long_name": "radius" if name == "r" else "depth", "units": "m"}
             coords[f"{name}_length"] = _labelled(contacts, lengths * axis, (name,), about)
     return carried(contact, variables).assign_coords(coords)
+
+
+def _ends(contacts: Contacts) -> np.ndarray:
+    """Depths of the interfaces (B, N) in the unit of the solver."""
+    numbers = range(1, max(1, numbers_of(contacts.problem.parameters)) + 1)
+    return np.cumsum([getattr(contacts.problem, full_name(number, "h")) for number in numbers], axis=0).T
+
+
+def with_numbered_layers(contacts: Contacts) -> Contacts:
+    """The contacts with the material of the first layer of their stacks called as that of the others, so that `layer`
+    can be the number of a layer."""
+    names = {"layer": "layers.1.material"} if "layer" in (*contacts.dataset.coords, *contacts.dims) else {}
+    dims = tuple(names.get(dim, dim) for dim in contacts.dims)
+    return contacts._replace(dataset=contacts.dataset.rename(names), dims=dims)
+
+
+def numbered(contacts: Contacts, *dims: str) -> dict:
+    """Coordinates of layers and interfaces of stacks, counted from 1 at the surface."""
+    numbers = np.arange(1, numbers_of(contacts.problem.parameters) + 1)
+    words = {"layer": "layer, from the surface down", "interface": "interface, below the layer of the same number"}
+    return {dim: (dim, numbers, {"long_name": words[dim]}) for dim in dims}
 
 
 def _refuse_far_away(r: np.ndarray, contacts: Contacts, solution: Any) -> None:
@@ -150,7 +181,8 @@ def extremes(
     ----------
     contact : results of `study.solve` or of a results file, in SI units or dimensionless; a selected part too
     mu : >= 0; with mu > 0 the punch slides in full, and the extremes are those in the plane y = 0
-    sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where the contact has units
+    sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where the contact has units. Of stacks
+        that of all layers, or a list of one for each
     parameters : those of `study.solve`, in place of the contact
 
     Returns
@@ -161,7 +193,9 @@ def extremes(
         shear that is not there is 0 at the place NaN. NaN of cases that have not converged and of bodies that are
         rigid or not there. Where asperities feel the layer besides: mises1_spot, mises2_spot and sr_interface1_spot
         below the middle of the central spot, sz_interface_spot_max and tau_interface_spot up to half of the pitch
-        beside it, each with its depth NAME_z; the stresses of the nominal pressure are in them
+        beside it, each with its depth NAME_z; the stresses of the nominal pressure are in them. Of stacks mises_layer,
+        tresca_layer and s1_layer over `layer`, sr_interface, tau_interface, sz_interface_max and sz_interface_min over
+        `interface`, both counted from 1 at the surface, beside s1_surface, mises2 and tresca2
 
     Raises
     ------
@@ -179,22 +213,59 @@ def extremes(
     contacts = Contacts.of(contact, "extremes")
     contacts.refuse_without_stresses("extremes")
     unit, _ = contacts.units
-    residual = residual_stress(sigma_res, contacts) / unit
+    residual = residual_stresses(sigma_res, contacts)
     solution = _solved(contacts)
-    values, variables = extremes_of(contacts.problem, solution, mu, residual), {}
-    for name in EXTREMES:
-        long_name = VOCABULARY[name].long_name
-        value, r, z = values[name]
+    values, variables = extremes_of(contacts.problem, solution, mu, residual[:, 0]), {}
+    stacked = numbers_of(contacts.problem.parameters) > 0
+    if stacked:
+        values = _with_stacks(values, of_stacks.of_contacts(contacts.problem, solution, mu, residual))
+        contacts = with_numbered_layers(contacts)
+    for name, (value, r, z) in values.items():
+        axes = _axes_of(name) if stacked else ()
+        long_name = _OF_STACKS[name] if stacked and name in _OF_STACKS else VOCABULARY[name].long_name
         place = {"long_name": f"{long_name}: its {'radius' if mu == 0 else 'x, behind the contact < 0,'} over a"}
-        variables[name] = _labelled(contacts, value * unit, (), _about(contacts, long_name, "Pa"))
-        variables[f"{name}_r"] = _labelled(contacts, r, (), place)
-        variables[f"{name}_z"] = _labelled(contacts, z, (), {"long_name": f"{long_name}: its depth over a"})
+        value = value * unit.reshape(-1, *[1] * len(axes))
+        variables[name] = _labelled(contacts, value, axes, _about(contacts, long_name, "Pa"))
+        variables[f"{name}_r"] = _labelled(contacts, r, axes, place)
+        variables[f"{name}_z"] = _labelled(contacts, z, axes, {"long_name": f"{long_name}: its depth over a"})
     if contacts.problem.feels_layer().any():
-        for name, (value, z) in below_spots(contacts.problem, solution, mu, residual).items():
+        for name, (value, z) in below_spots(contacts.problem, solution, mu, residual[:, 0]).items():
             long_name = VOCABULARY[name].long_name
             variables[name] = _labelled(contacts, value * unit, (), _about(contacts, long_name, "Pa"))
             variables[f"{name}_z"] = _labelled(contacts, z, (), {"long_name": f"{long_name}: its depth over a"})
-    return carried(contact, variables)
+    variables = carried(contacts.dataset, variables)
+    return variables.assign_coords(numbered(contacts, "layer", "interface") if stacked else {})
+
+
+#: What the extremes of stacks are called.
+_OF_STACKS = {
+    "mises_layer": "largest von Mises stress of each layer",
+    "tresca_layer": "largest Tresca stress of each layer",
+    "s1_layer": "largest tension in each layer",
+    "sr_interface": "largest radial tension at the lower side of each layer",
+    "tau_interface": "largest shear stress at each interface",
+    "sz_interface_max": "largest axial tension at each interface",
+    "sz_interface_min": "largest axial compression at each interface",
+}
+#: Of a stack of one layer the names of one layer -> the same over layers.
+_OF_ONE_LAYER = {"mises1": "mises_layer", "tresca1": "tresca_layer", "sr_interface1": "sr_interface"}
+
+
+def _axes_of(name: str) -> tuple:
+    """The dimension of an extreme of stacks beside those of the contacts."""
+    dim = of_stacks.DIMENSION[of_stacks.EXTREMES[name][1]] if name in of_stacks.EXTREMES else None
+    return (dim,) if dim else ()
+
+
+def _with_stacks(others: dict, values: dict) -> dict:
+    """The extremes of stacks, and of contacts beside them that have no layers; of one layer by its own names too."""
+    made = {
+        name: parts if _axes_of(name) else np.where(np.isnan(parts[0]), others[name], parts)
+        for name, parts in values.items()
+    }
+    if values["mises_layer"].shape[2] == 1:
+        made |= {name: values[same][..., 0] for name, same in _OF_ONE_LAYER.items()}
+    return made
 
 
 def _solved(contacts: Contacts) -> Any:
@@ -253,6 +324,20 @@ def _axis(name: str, values: Any, signed: bool) -> np.ndarray:
         bound = "" if signed else ", and at least 0" + (" where mu is 0" if name == "r" else "")
         raise StudyError([f"{wrong}: must be one-dimensional, of finite numbers in units of a{bound}"])
     return values
+
+
+def residual_stresses(sigma_res: Any, contacts: Contacts) -> np.ndarray:
+    """The residual stress (B, N) of each layer in the unit of the solver, N = 1 without a stack. Raises StudyError.
+
+    sigma_res : of all layers, or a list of one for each layer of a stack
+    """
+    layers, (unit, _) = numbers_of(contacts.problem.parameters), contacts.units
+    if not isinstance(sigma_res, (list, tuple)) and not np.ndim(sigma_res):
+        return np.repeat((residual_stress(sigma_res, contacts) / unit)[:, None], max(1, layers), axis=1)
+    if len(sigma_res) != layers:
+        many = f"one for each of the {layers} layers" if layers else "one number"
+        raise StudyError([f"sigma_res = {shown(sigma_res)}: must be {many}"])
+    return np.stack([residual_stress(value, contacts) / unit for value in sigma_res], axis=1)
 
 
 def residual_stress(sigma_res: Any, contacts: Contacts) -> float:

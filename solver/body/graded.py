@@ -52,7 +52,7 @@ def refined(layers, sublayers, tables, octaves=_OCTAVES):
     They are the thinner the nearer they are to the top of the layer, as many in each octave of the depth: short waves
     then find the gradient as well resolved as long ones.
     """
-    graded = (layers["profile"] != "uniform").any(axis=0)
+    graded = graded_among(layers)
     if not graded.any():
         return layers
     count = int(sublayers[0]) or _USUAL
@@ -63,15 +63,42 @@ def refined(layers, sublayers, tables, octaves=_OCTAVES):
     return {name: np.concatenate([piece[name] for piece in pieces], axis=1) for name in pieces[0]}
 
 
+def graded_among(layers):
+    """(N,) bool: which of the `layers` of :func:`.stacked.layers_of` are graded in some case."""
+    return (layers["profile"] != "uniform").any(axis=0)
+
+
+def sublayers_of(layers, sublayers, octaves=_OCTAVES):
+    """(N,) int: into how many uniform layers :func:`refined` cuts each; arguments as there."""
+    count = int(sublayers[0]) or _USUAL
+    deep = np.array([octaves] + [_DEEPER] * (len(layers["h"][0]) - 1))
+    return np.where(graded_among(layers), count * (deep + 1), 1)
+
+
+def at_depths(layers, j, z, tables):
+    """E_j*/E2* and the Poisson ratio (B, Z) of layer j, from 0, at depths z (B, Z) over its thickness, without cuts."""
+    part, profile, bottoms = _ends_of(layers, j)
+    return _moduli(profile, part["n"], bottoms["n"], z, tables), _linear(part, bottoms, "nu", z)
+
+
+def _ends_of(layers, j):
+    """Layer j as it is at its top, its profile, and its modulus and Poisson ratio at the bottom."""
+    part, profile = _as_it_is(layers, j), layers["profile"][:, j : j + 1]
+    bottoms = {name: layers[f"{name}_bottom"][:, j : j + 1] for name in ("n", "nu")}
+    return (
+        part,
+        profile,
+        {name: np.where(np.isnan(v) | (profile == "uniform"), part[name], v) for name, v in bottoms.items()},
+    )
+
+
 def _as_it_is(layers, j):
     return {name: layers[name][:, j : j + 1] for name in ("h", "n", "nu", "bonding", "cn", "ct")}
 
 
 def _cut(layers, j, count, octaves, tables):
     """Layer j as uniform ones."""
-    part, profile = _as_it_is(layers, j), layers["profile"][:, j : j + 1]
-    bottoms = {name: layers[f"{name}_bottom"][:, j : j + 1] for name in ("n", "nu")}
-    bottoms = {name: np.where(np.isnan(v) | (profile == "uniform"), part[name], v) for name, v in bottoms.items()}
+    part, profile, bottoms = _ends_of(layers, j)
     ends = _depths(profile, part["n"], bottoms["n"], cuts(count, octaves))
     middle, last = (ends[:, 1:] + ends[:, :-1]) / 2, np.arange(ends.shape[1] - 1) == ends.shape[1] - 2
     n = _moduli(profile, part["n"], bottoms["n"], middle, tables)

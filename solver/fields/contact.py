@@ -6,7 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..bases import is_bare, is_stack
+from ..body.graded import is_graded
 from ..kernels.two_layers import TwoLayers, layer_modulus
+from ..layers import numbers_of
 from ..numerics.ladder import STACK
 from ..numerics.threads import one_blas_thread
 from ..rough.answer import answer
@@ -21,6 +23,7 @@ from . import normal, sliding
 from .field import integrals
 from .pressure import Pressure
 from .shaped import corners, shaped_pressures
+from .stacks.section import SUBLAYERS, Section
 from .waves import MISSED, THINNEST
 
 #: The pressure is solved again with at most this rtol, whatever that of the contact was.
@@ -28,6 +31,9 @@ _RTOL = 1e-8
 #: Least error of the stresses: `profile_error` says less than that where it may be twice too small
 #: (tools/errors/stress_errors.py).
 _LEAST = 1e-10
+#: The stresses in a graded layer change by at most this times as much as the load with the number of sublayers
+#: (tests/fields/test_contacts_on_stacks.py).
+_OF_GRADED = 3.0
 #: Numbers in an array of the integrals of several cases.
 _AT_ONCE = 4_000_000
 
@@ -37,7 +43,8 @@ class Fields(NamedTuple):
 
     inside : name -> (B, Z, R), at the depths and radii that were asked for: sr, st, sz, trz, ur, uz; with mu > 0 also
         the amplitudes of :func:`~.polynomial.of_pressure`
-    above, below : the same at the interface, (B, R), in the layer and in the body; NaN without a layer
+    above, below : the same at the interfaces, (B, J, R), J the most layers of a case: in the layer above and in what is
+        below; NaN without a layer
     error : (B,), of any stress, over the largest
     """
 
@@ -61,11 +68,13 @@ def of_contacts(problem, solution, r, z, mu=0.0):
     """
     r, z = np.asarray(r, dtype=float), np.asarray(z, dtype=float)
     names = [*normal.NAMES, *(sliding.NAMES if mu > 0 else ())]
-    made = {name: np.full((len(problem), len(z) + 2, len(r)), np.nan) for name in names}
+    J = max(1, numbers_of(problem.parameters))
+    made = {name: np.full((len(problem), len(z) + 2 * J, len(r)), np.nan) for name in names}
     error, index = np.full(len(problem), np.nan), np.flatnonzero(have_fields(problem, solution))
     if len(index):
         part, ended = problem.take(index), solution.take(index)
         scaled, a = dimensionless(part), ended.a / part.R
+        ended = replace(ended, P=ended.P / (part.E2 * part.R**2))
         film = ~is_bare(scaled.base) & (scaled.h / a < THINNEST)
         for rows, pressure, missed in pressures_of(scaled, ended, a):
             here = index[rows]
@@ -73,22 +82,28 @@ def of_contacts(problem, solution, r, z, mu=0.0):
             error[here] = np.maximum(missed, np.where(film[rows], in_film, 0.0))
             for some, field in _of_pressures(scaled.take(rows), a[rows], pressure, r, z, mu):
                 units = problem.E2[here[some], None, None], solution.a[here[some], None, None]
+                depths = np.append(np.arange(len(z)), len(z) + _ends(field["sr"].shape[1] - len(z), J))
                 for name, values in field.items():
-                    made[name][here[some]] = values * units[name.startswith("u")]
-        on_surface = np.isin(np.arange(len(z) + 2), np.flatnonzero(z == 0))[:, None]
+                    made[name][here[some, None], depths] = values * units[name.startswith("u")]
+        on_surface = np.isin(np.arange(len(z) + 2 * J), np.flatnonzero(z == 0))[:, None]
         at_tip = on_surface & (r == corners(scaled, a)[:, None])[:, None]
         made["sz"][index] = np.where(at_tip, -np.inf, made["sz"][index])
         infinite = np.isinf(made["sz"])
         for name in ("sr", "st"):
             made[name] = np.where(infinite, made["sz"], made[name])
-    parts = (slice(None, len(z)), len(z), len(z) + 1)
+    parts = (slice(len(z)), slice(len(z), len(z) + J), slice(len(z) + J, None))
     return Fields(*({name: values[:, part] for name, values in made.items()} for part in parts), error)
 
 
+def _ends(rows, J):
+    """Of `rows` at interfaces, first those above and then those below, their places among J of each."""
+    return np.concatenate([np.arange(rows // 2), J + np.arange(rows // 2)])
+
+
 def have_fields(problem, solution):
-    """(B,) bool: solved contacts of which there are stresses. There are none yet of stacks, of what attracts outside
-    of the contact, and of rough punches of other shapes than the paraboloid."""
-    without = is_stack(problem.base) | ((problem.w_adhesion > 0) & (problem.adhesion != "jkr"))
+    """(B,) bool: solved contacts of which there are stresses. There are none yet of what attracts outside of the
+    contact, and of rough punches of other shapes than the paraboloid."""
+    without = (problem.w_adhesion > 0) & (problem.adhesion != "jkr")
     return (solution.status == Status.CONVERGED) & ~without & ~(shaped(problem) & problem.rough())
 
 
@@ -98,7 +113,16 @@ def are_infinite(problem):
 
 
 def pressures_of(scaled, solution, a):
-    """Yield indices of cases, their :class:`~.pressure.Pressure` in units of E2*, and its error (b,)."""
+    """Yield indices of cases, their :class:`~.pressure.Pressure` in units of E2*, and its error (b,). That on a graded
+    layer is the one of its sublayers, whose load differs from that of the solution by about as much as the stresses."""
+    graded = is_graded(scaled)
+    if graded.any():
+        cut = scaled.but(sublayers=np.where(graded, SUBLAYERS, scaled.sublayers))
+        for rows, pressure, missed in pressures_of(cut, solution, a):
+            load = 2 * np.pi * a[rows] ** 2 * pressure.mean(np.ones(1))[:, 0]
+            change = _OF_GRADED * np.abs(load / solution.P[rows] - 1)
+            yield rows, pressure, missed + np.where(graded[rows], change, 0.0)
+        return
     of_basis = by_equation(scaled, "basis")
     with_shape = np.flatnonzero(of_basis)
     depths = solution.D[with_shape] / scaled.R[with_shape]
@@ -137,8 +161,29 @@ def bodies_of(scaled, bare):
 
 
 def _of_pressures(scaled, a, pressure, r, z, mu):
-    """Yield indices of cases of one kind, and their fields, name -> (b, Z + 2, R): at z, and on both sides of the
-    interface."""
+    """Yield indices of cases of one kind, and their fields, name -> (b, Z + 2J, R): at z, at all interfaces in what is
+    above, and in what is below."""
+    stacked = is_stack(scaled.base)
+    for i in np.flatnonzero(stacked):
+        yield np.array([i]), _of_stack(scaled.take([i]), a[[i]], pressure.take([i]), r, z, mu)
+    others = np.flatnonzero(~stacked)
+    if len(others):
+        for some, field in _of_layers(scaled.take(others), a[others], pressure.take(others), r, z, mu):
+            yield others[some], field
+
+
+def _of_stack(scaled, a, pressure, r, z, mu):
+    """The same fields (1, Z + 2N, R) of one case on a stack of N layers."""
+    section = Section.of(scaled, a, pressure, mu, np.zeros(max(1, numbers_of(scaled.parameters))))
+    ends = section.ends
+    N = len(ends)
+    numbers = np.concatenate([section.numbers(z), np.arange(N), np.arange(1, N + 1)])
+    field = section.field(r, np.concatenate([z, ends, ends]), numbers)
+    return {name: values[None] for name, values in field.items()}
+
+
+def _of_layers(scaled, a, pressure, r, z, mu):
+    """The same fields (b, Z + 2, R) of cases with one layer, or none."""
     bare = is_bare(scaled.base)
     h = np.where(bare, 1.0, scaled.h / a)
     depths = np.concatenate([np.tile(z, (len(h), 1)), h[:, None], h[:, None]], axis=1)

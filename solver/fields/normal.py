@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from ..kernels.transfer import Kind, radial_sum
+from ..kernels.transfer import radial_sum
 from .half_space import integrals
 from .waves import Load
 
 
-def amplitudes(kind, bodies, X, x, v):
+def amplitudes(waves, row, z):
     """Of sr + st, sr - st, sz, trz, 2 G ur and 2 G uz."""
-    u, w, S, T = v
-    return radial_sum(v, bodies.nu2 if kind == Kind.BODY else bodies.nu1), -u, S, T, u, w
+    u, w, S, T = v = waves.state(row.region, z, row.less)
+    return radial_sum(v, waves.nu[:, row.region, None, None]), -u, S, T, u, w
 
 
 def in_closed_form(pressure, r, z, nu, displacements=True):
@@ -29,7 +29,7 @@ def in_closed_form(pressure, r, z, nu, displacements=True):
 
 
 NAMES = ("sr", "st", "sz", "trz", "ur", "uz")
-NORMAL = Load((-1.0, 0.0), (0, 2, 0, 1, 1, 0), 4, amplitudes, in_closed_form)
+LOAD = NORMAL = Load((-1.0, 0.0), (0, 2, 0, 1, 1, 0), 4, amplitudes, in_closed_form)
 
 
 def components(whole, G2=None):

@@ -1,14 +1,15 @@
 """The field of a pressure that is a polynomial in sqrt(1 - x²)."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..kernels.two_layers import TwoLayers, layer_modulus
+from ..kernels.stack import Stack
+from ..kernels.two_layers import TwoLayers
 from ..numerics.mesh import mesh_of
 from ..numerics.threads import one_blas_thread
-from ..parameters import BONDINGS, COMMON, allowed
+from ..parameters import BONDINGS, COMMON, LAYER, MOST, allowed
 from . import normal, sliding
 from .field import integrals
 from .pressure import Pressure
@@ -31,18 +32,21 @@ def of_pressure(
     r: ArrayLike,
     z: ArrayLike,
     *,
-    h: float,
-    n: float,
-    nu1: float,
-    nu2: float,
-    bonding: str,
+    h: float | None = None,
+    n: float | None = None,
+    nu1: float | None = None,
+    nu2: float | None = None,
+    bonding: str | None = None,
+    layers: Sequence[tuple[float, float, float]] | None = None,
+    interfaces: Sequence[str | tuple[float, float]] | None = None,
+    rigid_base: bool = False,
     mu: float = 0.0,
-    side: str | None = None,
+    side: str | int | None = None,
 ) -> Mapping[str, np.ndarray]:
-    """Stresses and displacements in a layer and the body below it under a pressure p(x), x <= 1, of contact radius 1.
+    """Stresses and displacements in layers and the body below them under a pressure p(x), x <= 1, of contact radius 1.
 
     z points down from the surface; tension is positive, and p > 0 presses. A half-space is n = 1, nu1 = nu2, bonded,
-    with any h. The equations are in docs/stresses.md.
+    with any h. One layer is h, n, nu1 and bonding, several are `layers`. The equations are in docs/stress_fields.md.
 
     Parameters
     ----------
@@ -52,16 +56,21 @@ def of_pressure(
     n : E1*/E2* of layer and body, >= 0; 0 is a rigid body
     nu1, nu2 : Poisson ratios of layer and body in (-1, 0.5]
     bonding : "bonded" or "frictionless", the interface
+    layers : in place of h, n, nu1 and bonding, at most 16 layers (h, n, nu), the one at the surface first
+    interfaces : below each of the layers: "bonded" (all of them, by default), "frictionless", or compliances (cn, ct)
+        of springs, >= 0, across and along it, in units of the contact radius over E2*
+    rigid_base : whether the body under the layers is rigid; n is then E_j*/E_1*, 1 of the first layer
     mu : >= 0; with mu > 0 the field of the traction mu p along x, in full sliding, is added as amplitudes
-    side : "layer" or "base", in which of the two a point at z = h is; None: the layer
+    side : in which of two bodies a point at an interface is: "layer" or "base" at z = h; with `layers` the number of
+        the body, 1 at the surface, len(layers) + 1 below the last layer. None: the upper one
 
     Returns
     -------
     dict : name -> array of the shape of r and z. sr, st, sz, trz, in units of p, are the stresses by p; ur, uz the
         displacements, in units of p times the contact radius over E2* (E1* on a rigid body, in which all is NaN). With
         mu > 0, of the friction alone: sr_c, st_c, sz_c and uz_c are to be multiplied by cos th, srt_s by sin th; sxz is
-        sxz_0 + sxz_2 cos 2th, ux is ux_0 + ux_2 cos 2th. ux_0 is NaN over a frictionless interface: nothing holds the
-        layer
+        sxz_0 + sxz_2 cos 2th, ux is ux_0 + ux_2 cos 2th. ux_0 is NaN with a frictionless interface: nothing holds what
+        is above
 
     Raises
     ------
@@ -73,44 +82,133 @@ def of_pressure(
     >>> field = of_pressure(hertz, 0.0, [0.0, 0.48], h=1.0, n=1.0, nu1=0.3, nu2=0.3, bonding="bonded")
     >>> (field["sr"] - field["sz"]).round(6).tolist()
     [0.2, 0.62004]
+    >>> field = of_pressure(hertz, 0.0, 0.3, layers=[(0.2, 8.0, 0.2), (0.1, 0.5, 0.4)], nu2=0.3, side=3)
+    >>> print(f"{field['sz'].item():.6f}")
+    -0.881689
     """
-    layers = _layers(h, n, nu1, nu2, bonding)
+    one = {"h": h, "n": n, "nu1": nu1, "bonding": bonding}
+    if layers is None:
+        layered, h = _layer(one, nu2), np.array([float(h)])
+        _refuse({"interfaces": interfaces, "rigid_base": rigid_base or None}, "only beside layers")
+    else:
+        _refuse(one, "each of the layers has its own")
+        layered, h = _stack(layers, interfaces, nu2, rigid_base)
     r, z = (_checked(name, value) for name, value in (("r", r), ("z", z)))
     if not (np.ndim(mu) == 0 and np.isfinite(mu) and mu >= 0):
         raise ValueError(f"mu = {mu}: must be finite and at least 0")
-    if r.max(initial=0.0) > farthest(h):
-        raise ValueError(f"r = {r.max():g}: must be at most {farthest(h):.3g}: farther away the field takes minutes")
-    if side not in (None, "layer", "base"):
-        raise ValueError(f'side = "{side}": must be None, "layer" or "base"')
+    if r.max(initial=0.0) > (far := farthest(h[0])):
+        raise ValueError(f"r = {r.max():g}: must be at most {far:.3g}: farther away the field takes minutes")
+    number = _number(side, None if layers is None else len(layers))
     shape = np.broadcast_shapes(r.shape, z.shape)
     points = np.broadcast_to(r, shape).ravel(), np.broadcast_to(z, shape).ravel()
     pressure = _interpolated(p)
-    at_interface = np.abs(points[1] - h) <= _AT * h
-    below = np.where(at_interface, side == "base", points[1] > h)
+    region = _region(points[1], layered.tops(h)[0, 1:], number)
     names = {}
     for load, components, factor in (
         (normal.NORMAL, normal.components, 1.0),
         (sliding.SLIDING, sliding.components, mu),
     ):
         if factor:
-            whole = _at_points(load, layers, np.array([float(h)]), pressure, *points, below)
-            G2 = np.where(below, (1 - nu2) + 0.0, layer_modulus(n) * (1 - nu1))
+            whole = _at_points(load, layered, h, pressure, *points, region)
+            G2 = layered.shear[0, region]
             names |= {name: factor * v.reshape(shape) for name, v in components(whole, G2).items()}
-    if "ux_0" in names and bonding == "frictionless":
+    if "ux_0" in names and layered.slips[0]:
         names["ux_0"] = np.full(shape, np.nan)
     return names
 
 
-def _layers(h, n, nu1, nu2, bonding):
+def _refuse(values, reason):
+    """Raise ValueError for a value that is not None."""
+    for name, value in values.items():
+        if value is not None:
+            raise ValueError(f"{name} is given: {reason}")
+
+
+def _layer(one, nu2):
     """:class:`TwoLayers` of one case; ValueError for a number out of bounds."""
-    for name, value in {"h": h, "n": n, "nu1": nu1, "nu2": nu2}.items():
-        good = np.ndim(value) == 0 and np.isfinite(value)
-        if not good or (value <= 0 if name == "h" else not allowed(COMMON[name], value)):
-            bounds = "> 0" if name == "h" else f"in {COMMON[name].interval}" + " or 0" * (name == "n")
-            raise ValueError(f"{name} = {value}: must be a finite number {bounds}")
+    h, n, nu1, bonding = one.values()
+    _check({"h": (h, None), "n": (n, COMMON["n"]), "nu1": (nu1, COMMON["nu1"]), "nu2": (nu2, COMMON["nu2"])})
     if bonding not in BONDINGS:
         raise ValueError(f'bonding = "{bonding}": must be one of {", ".join(BONDINGS)}')
     return TwoLayers(*(np.array([float(v)]) for v in (n, nu1, nu2)), np.array([bonding == "bonded"]))
+
+
+def _check(numbers):
+    """Raise ValueError for a number that is missing or out of the bounds of its row; without one they are > 0."""
+    for name, (value, row) in numbers.items():
+        good = np.ndim(value) == 0 and isinstance(value, (int, float, np.number)) and np.isfinite(value)
+        if not good or (value <= 0 if row is None else not allowed(row, value)):
+            bounds = "> 0" if row is None else f"in {row.interval}" + " or 0" * (0 in row.also)
+            raise ValueError(f"{name} = {value}: must be a finite number {bounds}")
+
+
+def _stack(layers, interfaces, nu2, rigid):
+    """:class:`Stack` of one case, and the thickness (1,) of its first layer; ValueError."""
+    if isinstance(layers, str) or not isinstance(layers, Sequence) or not 1 <= len(layers) <= MOST:
+        raise ValueError(f"layers = {layers!r:.60}: must be a list of 1 to {MOST} layers (h, n, nu)")
+    for number, layer in enumerate(layers, 1):
+        if isinstance(layer, str) or np.shape(layer) != (3,):
+            raise ValueError(f"layers[{number}] = {layer!r:.60}: must be (h, n, nu)")
+        h, n, nu = layer
+        _check(
+            {
+                f"layers[{number}]: {name}": pair
+                for name, pair in {"h": (h, None), "n": (n, LAYER["n"]), "nu": (nu, LAYER["nu"])}.items()
+            }
+        )
+    if rigid and layers[0][1] != 1:
+        raise ValueError(
+            f"layers[1]: n = {layers[0][1]}: on a rigid base n is E_j*/E1*, so that of the first layer is 1"
+        )
+    if not rigid:
+        _check({"nu2": (nu2, COMMON["nu2"])})
+    h, n, nu = np.array(layers, dtype=float).T[:, None]
+    free, cn, ct = _interfaces(interfaces, len(layers))
+    unit = n[:, :1] / h[:, :1]
+    nu2, rigid = np.array([0.0 if rigid else float(nu2)]), np.array([bool(rigid)])
+    return Stack(n, nu, h / h[:, :1], free, cn * unit, ct * unit, nu2, rigid), h[:, 0]
+
+
+def _interfaces(interfaces, count):
+    """Whether each interface is frictionless, and its compliances, (1, N) each."""
+    interfaces = ["bonded"] * count if interfaces is None else interfaces
+    if isinstance(interfaces, str) or not isinstance(interfaces, Sequence) or len(interfaces) != count:
+        raise ValueError(f"interfaces = {interfaces!r:.60}: must be a list of {count}, one below each layer")
+    springs = np.zeros((count, 2))
+    for number, interface in enumerate(interfaces, 1):
+        if isinstance(interface, str) or np.shape(interface) != (2,):
+            if not isinstance(interface, str) or interface not in BONDINGS:
+                wanted = f"{', '.join(BONDINGS)} or compliances (cn, ct)"
+                raise ValueError(f"interfaces[{number}] = {interface!r:.60}: must be one of {wanted}")
+            continue
+        pairs = zip(("cn", "ct"), interface, strict=True)
+        _check({f"interfaces[{number}]: {name}": (value, LAYER[name]) for name, value in pairs})
+        springs[number - 1] = interface
+    free = np.array([[isinstance(interface, str) and interface == "frictionless" for interface in interfaces]])
+    return free, *springs.T[:, None]
+
+
+def _number(side, count):
+    """The number of the body in which points at an interface are, from 1, or 0: the upper one. ValueError.
+
+    count : of layers; None where the one layer is given by its numbers
+    """
+    if side is None:
+        return 0
+    if count is None:
+        if side not in ("layer", "base"):
+            raise ValueError(f'side = "{side}": must be None, "layer" or "base"')
+        return 1 + (side == "base")
+    if isinstance(side, (bool, str)) or side not in range(1, count + 2):
+        raise ValueError(f"side = {side!r}: must be None or the number of a body, 1 to {count + 1}")
+    return int(side)
+
+
+def _region(z, ends, number):
+    """In which layer depths z (M,) are, from 0; len(ends) : in the body. number : of the body in which those at an
+    interface are, if it is next to it."""
+    at = np.abs(z[:, None] - ends) <= _AT * ends
+    return np.where(at, np.arange(1, len(ends) + 1) < number, z[:, None] > ends).sum(axis=1)
 
 
 def _checked(name, values):
@@ -143,16 +241,16 @@ def _values(p, s):
     return values
 
 
-def _at_points(load, layers, h, pressure, r, z, body):
+def _at_points(load, layers, h, pressure, r, z, region):
     """The integrals (fields, N) of a load at points (N,): where most pairs of their radii and depths are wanted, at all
     of them, else at those of some points after the others."""
-    rows, row = np.unique(np.stack([z, body]), axis=1, return_inverse=True)
+    rows, row = np.unique(np.stack([z, region]), axis=1, return_inverse=True)
     radii, column = np.unique(r, return_inverse=True)
     if rows.shape[1] * len(radii) <= 4 * len(r) or len(r) <= _SOME:
-        whole = integrals(load, layers, h, pressure, radii, rows[:1], rows[1] > 0)
+        whole = integrals(load, layers, h, pressure, radii, rows[:1], rows[1])
         return whole[:, 0, row.ravel(), column.ravel()]
     order = np.lexsort((r, z))
     made = np.zeros((len(load.orders), len(r)))
     for part in np.array_split(order, -(-len(r) // _SOME)):
-        made[:, part] = _at_points(load, layers, h, pressure, r[part], z[part], body[part])
+        made[:, part] = _at_points(load, layers, h, pressure, r[part], z[part], region[part])
     return made

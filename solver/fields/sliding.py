@@ -5,17 +5,17 @@ Its fields have factors cos and sin of the polar angle, so that amplitudes in (r
 
 import numpy as np
 
-from ..kernels.transfer import Kind, antiplane, radial_sum
+from ..kernels.transfer import radial_sum
 from .half_space import integrals, on_surface
 from .waves import Load
 
 
-def amplitudes(kind, bodies, X, x, v):
+def amplitudes(waves, row, z):
     """Of the nine integrals from which :func:`components` come."""
-    u, w, S, T = v
-    Q, across = antiplane(kind, bodies, X, x)
+    u, w, S, T = v = waves.state(row.region, z, row.less)
+    Q, across = waves.antiplane(row.region, z, row.less)
     both, less = u + across, u - across
-    M = radial_sum(v, bodies.nu2 if kind == Kind.BODY else bodies.nu1)
+    M = radial_sum(v, waves.nu[:, row.region, None, None])
     return M, both, -less, S, T + Q, T - Q, w, both, less
 
 
@@ -45,7 +45,7 @@ def in_closed_form(pressure, r, z, nu, displacements=True):
 
 
 NAMES = ("sr_c", "st_c", "sz_c", "srt_s", "sxz_0", "sxz_2", "uz_c", "ux_0", "ux_2")
-SLIDING = Load((0.0, 1.0), (1, 1, 3, 1, 0, 2, 1, 0, 2), 6, amplitudes, in_closed_form)
+LOAD = SLIDING = Load((0.0, 1.0), (1, 1, 3, 1, 0, 2, 1, 0, 2), 6, amplitudes, in_closed_form)
 
 
 def components(whole, G2=None):

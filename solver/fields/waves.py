@@ -1,7 +1,7 @@
 """Integrals over the waves k of the layer and of the body: docs/stresses.md, Waves.
 
-Each row is a depth. It is of a kind: in the layer, all of the field or its difference to that of a half-space of the
-layer's material; or in the body. The rows of one kind go together, and each ends at its own largest k.
+Each row is a depth. In the first layer it is all of the field or its difference to that of a half-space of the layer's
+material. The rows of one region go together, and each ends at its own largest k.
 """
 
 from collections.abc import Callable
@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..kernels.transfer import THIN, Bodies, Kind, wave_state
 from ..numerics import special
 from ..numerics.quadrature import gauss_legendre
 
@@ -45,7 +44,8 @@ class Load(NamedTuple):
     traction : (S, T) of its unit wave
     orders : of the Bessel function of each integral; the first `stresses` of them have a factor k, the rest, if there,
         makes the displacements
-    amplitudes : ``amplitudes(kind, bodies, X, x, state)``, the other factor of each integrand, but for p^
+    amplitudes : ``amplitudes(waves, row, z)``, the other factor of each integrand, but for p^, from the
+        :class:`~solver.kernels.transfer.Waves` at depths z (B, Z) alike the :class:`Row`
     in_closed_form : ``in_closed_form(pressure, r, z, nu, displacements)``, the integrals of half-spaces (fields, B, Z,
         R), all or those of stresses
     """
@@ -62,14 +62,15 @@ class Load(NamedTuple):
 
 
 class Row(NamedTuple):
-    """Depths of B cases: their :class:`Kind`, and z (B,) in a."""
+    """Depths z (B,) in a of B cases in a region, 0 the first layer; `less` the field of a half-space of that layer."""
 
-    kind: Kind
+    region: int
+    less: bool
     z: np.ndarray
 
     def reach(self, h):
         """How far from the source the waves are, (B,)."""
-        return 2 * h - self.z if self.kind == Kind.DIFFERENCE else self.z
+        return 2 * h - self.z if self.less else self.z
 
 
 def farthest(h):
@@ -98,40 +99,36 @@ def _above(value):
 def integrals(load, layers, h, pressure, r, rows, roughly=False):
     """The integrals of a :class:`Load` at the `rows` (Z) and radii r (R,): (fields, B, Z, R).
 
-    layers : :class:`~solver.kernels.two_layers.TwoLayers` of B cases; h : (B,), their thickness in a, no two of which
-    are as different as 1 and 2
+    layers : :class:`~solver.kernels.transfer.Layered` of B cases; h : (B,), thickness of the first in a. No two of a
+    layer are as different as 1 and 2
     roughly : some percent do
     """
     end, shortest = (_ROUGH_END, _ROUGH_SHORTEST) if roughly else (_END, SHORTEST)
     z = np.array([row.z for row in rows]).T
-    kinds = np.array([row.kind for row in rows])
     last = np.minimum(end / np.array([row.reach(h) for row in rows]).min(axis=1), shortest)
-    first = _FIRST * min(1.0, 1 / h.max()) / max(1.0, layers.n.max())
-    k, weight = quadrature(first, last.max(), 1 + r.max())
-    bodies = Bodies(*(v[:, None, None] for v in Bodies.of(layers)))
-    thin = np.sqrt(h.min() * h.max()) * k < THIN
+    k, weight = quadrature(_FIRST / layers.longest(h), last.max(), 1 + r.max())
+    kinds = dict.fromkeys(row[:2] for row in rows)
     p = (pressure.transform(k) * weight)[:, None]
     whole = np.zeros((len(load.orders), len(h), len(rows), len(r)))
-    for part in _parts(thin, z.size):
-        J, X = bessel(k[part], r, max(load.orders)), k[part] * h[:, None, None]
-        for kind in Kind:
-            index = np.flatnonzero((kinds == kind) & (last > k[part.start]))
+    for part in _parts(layers.few(k, h), len(k), z.size):
+        J, waves = bessel(k[part], r, max(load.orders)), layers.waves(k[part], h, load.traction)
+        for kind in kinds:
+            index = np.array(
+                [i for i, row in enumerate(rows) if row[:2] == kind and last[i] > k[part.start]], dtype=int
+            )
             if len(index):
-                x = k[part] * z[:, index, None]
-                v = wave_state(kind, bodies, X, x, load.traction, thin[part.start])
-                amplitudes = load.amplitudes(kind, bodies, X, x, v)
+                amplitudes = load.amplitudes(waves, rows[index[0]], z[:, index])
                 for i, order in enumerate(load.orders):
                     weights = p[..., part] * k[part] if i < load.stresses else p[..., part]
                     whole[i][:, index] += (amplitudes[i] * weights) @ J[order]
     return whole
 
 
-def _parts(thin, rows):
-    """Slices of the nodes, none of which are thin and thick."""
+def _parts(few, count, rows):
+    """Slices of `count` nodes, the `few` first of which are by themselves."""
     size = max(_AT_ONCE // rows // _POINTS * _POINTS, _POINTS)
-    middle = int(thin.sum())
-    starts = [*range(0, middle, size), *range(middle, len(thin), size)]
-    return [slice(*ends) for ends in zip(starts, [*starts[1:], len(thin)], strict=True)]
+    starts = [*range(0, few, size), *range(few, count, size)]
+    return [slice(*ends) for ends in zip(starts, [*starts[1:], count], strict=True)]
 
 
 def bessel(k, r, most):

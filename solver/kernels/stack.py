@@ -12,6 +12,7 @@ import numpy as np
 from ..numerics import batch
 from .kernel import Sampler
 from .minors import LayerPowers, across, at_surface, base, numerator, scaled, through
+from .transfer_stack import stack_waves
 from .two_layers import thin_layer_coefficients
 
 #: Below this u, L - 1 is the difference of two terms, none of which is small there.
@@ -22,7 +23,8 @@ _BLOCK = 2048
 
 @batch.of_cases
 class Stack(NamedTuple):
-    """The :class:`~solver.kernels.kernel.Kernel` of B stacks of N layers, the top first.
+    """The :class:`~solver.kernels.kernel.Kernel` and the :class:`~.transfer.Layered` of B stacks of N layers, the top
+    first.
 
     n, nu, depth : (B, N), moduli E_j*, Poisson ratios, and thickness over that of the first layer. The unit of moduli
         is E2*, or E1* on a rigid base, where the first layer has n = 1
@@ -125,13 +127,42 @@ class Stack(NamedTuple):
         g = (1 - self.nu2) / (self.n[:, 0] * (1 - self.nu[:, 0]))
         X = base(g, self.nu2, self.rigid, slopes, u.shape[1])
         for j in reversed(range(self.n.shape[1])):
-            X = scaled(across(X, self.free[:, j], *self._springs(j, u)))
+            X = scaled(across(X, self.free[:, j], *self.springs(j, u)))
             if j:
                 X = through(layers[j], u * self.depth[:, j, None], X)
         return layers[0], X
 
-    def _springs(self, j, u):
+    def springs(self, j, u):
         """G1 k times the compliances below layer j, (B, M) each, or None where there are none."""
         compliances = self.cn[:, j, None], self.ct[:, j, None]
         present = any(np.any(v) for v in compliances)
         return ((1 - self.nu[:, :1]) / 2 * v * u if present else None for v in compliances)
+
+    @property
+    def poisson(self):
+        return np.hstack([self.nu, self.nu2[:, None]])
+
+    @property
+    def shear(self):
+        return np.hstack([self.n * (1 - self.nu), (1 - self.nu2)[:, None]])
+
+    @property
+    def slips(self):
+        return self.free.any(axis=1)
+
+    def tops(self, h):
+        return h[:, None] * np.hstack([np.zeros((len(h), 1)), np.cumsum(self.depth, axis=1)])
+
+    def uniform(self):
+        return False
+
+    def longest(self, h):
+        """Springs along an interface spread what drags the layers over sqrt(G h ct)."""
+        dragged = (self.depth * self.n / self.n[:, :1]).sum(axis=1) * self.ct.sum(axis=1)
+        return max(1.0, (h * np.maximum(self.stiffness, np.sqrt(dragged))).max())
+
+    def few(self, k, h):
+        return 0
+
+    def waves(self, k, h, load):
+        return stack_waves(self, k, h, load)

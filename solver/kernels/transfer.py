@@ -7,7 +7,8 @@ divided by 1 - 2 nu. Where X = kh is below about 1 the state is carried from the
 Above, it is the sum of a wave that decays from the surface and one that decays from the interface: nothing overflows.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -56,6 +57,53 @@ class Bodies(NamedTuple):
         return np.where(self.bonded, along, T), deep
 
 
+class Waves(Protocol):
+    """Waves k (K,) in layers and body, regions that are counted from 0, the first layer: :class:`LayerWaves`,
+    :class:`~.transfer_stack.StackWaves`. The state v = (u, w, S, T) obeys dv/dx = A v, x = kz, within each region.
+
+    nu : (B, N + 1), Poisson ratios of N layers and the body
+    """
+
+    nu: np.ndarray
+
+    def state(self, region, z, less=False):
+        """u, w, S, T (B, Z, K) each at depths z (B, Z) of a region; `less` those of a half-space of the first layer, in
+        which the depths then are."""
+
+    def antiplane(self, region, z, less=False):
+        """Q and v' (B, Z, K) each of a tangential unit wave."""
+
+
+class Layered(Protocol):
+    """What the fields need of N layers on bodies, B cases: :class:`~.two_layers.TwoLayers`, :class:`~.stack.Stack`.
+
+    poisson, shear : (B, N + 1), Poisson ratio and 2 G of each region, in the unit of moduli. G of a rigid body is any
+    rigid : (B,) bool, the body is; slips : (B,) bool, some interface is frictionless
+    """
+
+    poisson: np.ndarray
+    shear: np.ndarray
+    rigid: np.ndarray
+    slips: np.ndarray
+    take: Callable
+
+    def tops(self, h):
+        """(B, N + 1): depth of the top of each region, with the first layer of thickness h (B,)."""
+
+    def uniform(self):
+        """Whether no case has a layer that is felt."""
+
+    def longest(self, h):
+        """The longest length, or more, over which the state varies, of all cases; at least 1."""
+
+    def few(self, k, h):
+        """So many of the ascending waves k are to be taken by themselves."""
+
+    def waves(self, k, h, load):
+        """:class:`Waves` of ascending k, all or none of which are among the `few`; `load` : S and T on the surface. The
+        thickness of a layer differs by a factor of 2 at most."""
+
+
 def decaying(x, nu, S, T):
     """State at the depth x under surface tractions S, T of a half-space, H(x) (S, T)."""
     decay, shift = np.exp(-x), x * (S - T)
@@ -70,8 +118,8 @@ def growing(y, nu, S, T):
     return u, -w, S, -T
 
 
-def _derivative(v, nu):
-    """A v."""
+def derivative(v, nu):
+    """dv/dx = A v of a state."""
     u, w, S, T = v
     return w + 2 * T, ((1 - 2 * nu) * S - nu * u) / (1 - nu), -T, (u + nu * S) / (1 - nu)
 
@@ -79,9 +127,9 @@ def _derivative(v, nu):
 def carried(x, nu, v):
     """State at the depth x below one of state v, e^(Ax) v = [cosh x + sinh x A + (x sinh x)/2 N + (x cosh x - sinh x)/2
     A N] v with N = A A - 1; for x below about 1.5."""
-    first = _derivative(v, nu)
-    second = tuple(a - b for a, b in zip(_derivative(first, nu), v, strict=True))
-    third = _derivative(second, nu)
+    first = derivative(v, nu)
+    second = tuple(a - b for a, b in zip(derivative(first, nu), v, strict=True))
+    third = derivative(second, nu)
     cosh, sinh = np.cosh(x), np.sinh(x)
     half, rest = x * sinh / 2, np.where(x < _SERIES, _odd_series(np.minimum(x, _SERIES)), x * cosh - sinh) / 2
     return tuple(cosh * a + sinh * b + half * c + rest * d for a, b, c, d in zip(v, first, second, third, strict=True))
@@ -163,3 +211,32 @@ def antiplane(kind, bodies, X, x):
 def radial_sum(v, nu):
     """M of sr + st = ∫ M p^ J0 k dk, of a state v."""
     return (2 * nu * v[2] + (1 + nu) * v[0]) / (1 - nu)
+
+
+class LayerWaves(NamedTuple):
+    """The :class:`Waves` of one layer.
+
+    bodies : :class:`Bodies`, (B,) each; h : (B,), its thickness
+    thin : bool, whether kh is below about 1 (:data:`THIN`)
+    """
+
+    bodies: Bodies
+    k: np.ndarray
+    h: np.ndarray
+    load: tuple
+    thin: bool
+
+    @property
+    def nu(self):
+        return np.stack([self.bodies.nu1, self.bodies.nu2], axis=1)
+
+    def state(self, region, z, less=False):
+        return wave_state(*self._at(region, z, less), self.load, self.thin)
+
+    def antiplane(self, region, z, less=False):
+        return antiplane(*self._at(region, z, less))
+
+    def _at(self, region, z, less):
+        kind = Kind.BODY if region else Kind.DIFFERENCE if less else Kind.LAYER
+        bodies = Bodies(*(v[:, None, None] for v in self.bodies))
+        return kind, bodies, self.k * self.h[:, None, None], self.k * z[..., None]

@@ -8,12 +8,13 @@ import numpy as np
 from ..numerics import batch
 from .closed_form import decaying_part, whole
 from .kernel import Sampler
+from .transfer import THIN, Bodies, LayerWaves
 
 
 @batch.of_cases
 class TwoLayers(NamedTuple):
-    """The :class:`~solver.kernels.kernel.Kernel` of B layers on half-spaces, arrays (B,): n = E1*/E2*, the Poisson
-    ratios nu1, nu2 of layer and half-space, and whether they are bonded."""
+    """The :class:`~solver.kernels.kernel.Kernel` and the :class:`~.transfer.Layered` of B layers on half-spaces, arrays
+    (B,): n = E1*/E2*, the Poisson ratios nu1, nu2 of layer and half-space, and whether they are bonded."""
 
     n: np.ndarray
     nu1: np.ndarray
@@ -58,6 +59,37 @@ class TwoLayers(NamedTuple):
 
     def _columns(self):
         return (field[:, None] for field in self)
+
+    @property
+    def poisson(self):
+        return np.stack([self.nu1, self.nu2], axis=1)
+
+    @property
+    def shear(self):
+        return np.stack([layer_modulus(self.n) * (1 - self.nu1), 1 - self.nu2], axis=1)
+
+    @property
+    def rigid(self):
+        return self.n == 0
+
+    @property
+    def slips(self):
+        return ~self.bonded
+
+    def tops(self, h):
+        return np.stack([0 * h, h], axis=1)
+
+    def uniform(self):
+        return bool(np.all((self.n == 1) & (self.nu1 == self.nu2) & self.bonded))
+
+    def longest(self, h):
+        return max(1.0, h.max()) * max(1.0, self.n.max())
+
+    def few(self, k, h):
+        return int((np.sqrt(h.min() * h.max()) * k < THIN).sum())
+
+    def waves(self, k, h, load):
+        return LayerWaves(Bodies.of(self), k, h, load, self.few(k[:1], h) == 1)
 
 
 def random_layers(random, n):

@@ -2,14 +2,17 @@
 
 import numpy as np
 
-from ..bases import is_bare
+from ..bases import is_bare, is_stack
 from ..fields.contact import are_infinite, bodies_of, have_fields, pressures_of
 from ..fields.shaped import corners
+from ..fields.stacks.section import Section
+from ..layers import numbers_of
 from ..numerics.threads import one_blas_thread
 from ..scaling import dimensionless
 from ..shapes import shaped
 from .extremes import EXTREMES, coarsely, extremes
 from .loaded import Loaded
+from .stacked.upper_layer import UpperLayer
 
 #: A pressure that is largest at a radius of sqrt(1 - s²) is so in a ring that coarse grids do not see, if s is less.
 _AT_THE_EDGE = 0.5
@@ -24,7 +27,8 @@ _OF_TIPS = {True: ("mises2", "tresca2"), False: ("mises1", "tresca1")}
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN
 def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), punch=None, coarse=False):
     """Extremes of solved contacts, a batch of any mixture: name -> (3, B), the value in the unit of E2, and its place r
-    (signed if mu > 0) and z in a. NaN where the contact is not solved, or has no such body.
+    (signed if mu > 0) and z in a. NaN where the contact is not solved, has no such body, or is on a stack of layers
+    (:mod:`.stacked.largest`).
 
     problem, solution : B cases and their :class:`~solver.solution.Solution`, of which a, status and model_used count
     mu : >= 0, the coefficient of friction
@@ -35,7 +39,8 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
     coarse : the values alone, from the coarse grid: up to 10 % too small
     """
     made = {name: np.full((3, len(problem)), np.nan) for name in names}
-    index = np.flatnonzero(have_fields(problem, solution) & ~are_infinite(problem))
+    below = np.full(len(problem), punch is not None) | ~is_stack(problem.base)
+    index = np.flatnonzero(have_fields(problem, solution) & ~are_infinite(problem) & below)
     residual = np.broadcast_to(residual, len(problem)) / problem.E2
     if len(index):
         part, ended = problem.take(index), solution.take(index)
@@ -59,7 +64,22 @@ def _touched(loaded):
 
 
 def alike(scaled, a, pressure, mu, residual, punch=None):
-    """Yield indices of cases that have one coarse grid, and their :class:`~.loaded.Loaded`."""
+    """Yield indices of cases that have one coarse grid, and their :class:`~.loaded.Loaded`; of each contact on a stack
+    its :class:`~.stacked.upper_layer.UpperLayer`. residual : (B,) or (B, N) of the layers of stacks"""
+    stacked = is_stack(scaled.base) & (punch is None)
+    residual = residual.reshape(len(scaled), -1)
+    for i in np.flatnonzero(stacked):
+        layers = np.broadcast_to(residual[i], max(1, numbers_of(scaled.parameters)))
+        yield np.array([i]), UpperLayer(Section.of(scaled.take([i]), a[[i]], pressure.take([i]), mu, layers))
+    others = np.flatnonzero(~stacked)
+    if len(others):
+        nu = None if punch is None else punch[others]
+        for some, loaded in _alike(scaled.take(others), a[others], pressure.take(others), mu, residual[others, 0], nu):
+            yield others[some], loaded
+
+
+def _alike(scaled, a, pressure, mu, residual, punch):
+    """The same of cases on one layer or none."""
     bare = is_bare(scaled.base) | (punch is not None)
     h = np.where(bare, 1.0, scaled.h / a)
     n = np.where(bare, 1.0, scaled.n)

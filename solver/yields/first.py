@@ -10,12 +10,13 @@ import numpy as np
 
 from ..bases import is_bare
 from ..kernels.two_layers import layer_modulus
+from ..layers import numbers_of
 from ..shapes import ROUND
 from ..solve import solve
 from . import spots
-from .contact import of_contacts
 from .crossing import NUMBERS, first_crossing
-from .reach import NARROWEST, WIDEST, reach_of
+from .reach import NARROWEST, WIDEST, reach_of, stiffest
+from .stacked.largest import mises_in
 
 #: No body yields where (a/R) E*/strength is below _NEVER, E* the larger of layer and body; sliding adds so much.
 _NEVER, _BY_FRICTION = 0.3, 4.0
@@ -27,33 +28,36 @@ _NO_SPOT = 0.7
 _FELT = 0.2
 
 
-def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slopes=False):
+def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slopes=False, layer=0):
     """:class:`~.crossing.Crossing` of the "layer", the "body", the "punch" or the "asperities"; `at` is a/R, less the
     radius of a flat end. Under a sharp tip or corner what is touched yields under any load: all is 0.
 
     problem : B cases, whatever controls them
     strength : (B,), yield strength by von Mises, in the unit of E2; NaN: nothing is looked for
     mu : >= 0, friction
-    residual : biaxial stress of the layer, in the unit of E2
+    residual : biaxial stress of the layer, or (B, N) of each layer of stacks, in the unit of E2
     punch : (B,), Poisson ratios of the punches, where these are looked at
     slopes : whether the derivatives by the strength are wanted
+    layer : which layer of a stack, from 0, the one at the surface
     """
     felt = body in ("layer", "asperities")
-    residual = np.broadcast_to(residual, len(problem)) if felt else np.zeros(len(problem))
+    layers = max(1, numbers_of(problem.parameters))
+    residual = np.reshape(residual, (-1, 1)) if np.ndim(residual) == 1 else residual
+    residual = np.broadcast_to(residual, (len(problem), layers)) * float(felt)
     if body == "asperities":
         problem = problem.but(micro=np.where(problem.micro == "elastic_plastic", "disc_cell", problem.micro))
     at_radius = replace(problem, control="a", value=problem.R)
-    left = strength - np.where(is_bare(problem.base), 0.0, np.abs(residual))
-    reach = reach_of(problem, left / problem.E2, mu, _touched(problem, body, punch))
+    left = strength - np.where(is_bare(problem.base), 0.0, np.abs(residual[:, layer]))
+    reach = reach_of(problem, left / problem.E2, mu, _touched(problem, body, punch) & (layer == 0))
 
     def stress(index, at, coarse):
         part = replace(at_radius.take(index), value=(reach.flat[index] + at) * problem.R[index])
         solution = solve(part)
         if body == "asperities":
-            value, r, z = spots.of_contacts(part, solution, mu, residual[index])
+            value, r, z = spots.of_contacts(part, solution, mu, residual[index, 0])
         else:
-            name, nu = "mises1" if body == "layer" else "mises2", punch[index] if body == "punch" else None
-            value, r, z = of_contacts(part, solution, mu, residual[index], (name,), nu, coarse)[name]
+            nu = punch[index] if body == "punch" else None
+            value, r, z = mises_in(part, solution, body, layer, mu, residual[index], nu, coarse)
         return value / strength[index], r, z, solution
 
     start, round_ = _start(problem, body, left / problem.E2, mu), np.isin(problem.shape, ROUND)
@@ -82,4 +86,4 @@ def _start(problem, body, strength, mu):
         least = _NO_SPOT * strength / layer_modulus(n) * np.sqrt(problem.Ra / problem.R)
         soft = np.where(n > 0, np.minimum(n, 1.0), 0.1)
         return np.where(problem.feels_layer(), _FELT * soft / np.maximum(n, 1.0) ** (2 / 3), 1.0) * least
-    return _NEVER / (1 + _BY_FRICTION * mu) * strength / np.maximum(n, 1.0)
+    return _NEVER / (1 + _BY_FRICTION * mu) * strength / stiffest(problem)

@@ -4,9 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..bases import is_stack
+from ..layers import numbers_of
 from ..solve import solve
-from .contact import of_contacts
 from .crossing import Crossing, first_crossing
+from .stacked.largest import mises_in
 
 #: The stress of the body is below some 0.5 P/h²: it yields below no layer thicker than _THICK sqrt(P/strength).
 _THICK = 4.0
@@ -28,28 +30,35 @@ class Protection(NamedTuple):
     unsolved: np.ndarray
 
 
-def protection(problem, strength, mu=0.0):
+def protection(problem, strength, mu=0.0, by="h"):
     """:class:`Protection` of bodies with the yield `strength` (B,), in the unit of E2, by layers of any thickness.
 
-    problem : B cases on layers whose load is given; `h` counts for nothing
+    problem : B cases on layers whose load is given; the thickness `by` counts for nothing
     mu : >= 0, friction
+    by : the parameter that is the thickness, "h" or "layers.2.h" of a stack, the other layers of which stay: a bare
+        body is then one without this layer
     """
+    none = np.zeros((len(problem), max(1, numbers_of(problem.parameters))))
 
     def largest(part, index, coarse):
         solution = solve(part)
-        value, r, z = of_contacts(part, solution, mu, names=("mises2",), coarse=coarse)["mises2"]
+        value, r, z = mises_in(part, solution, "body", 0, mu, none[index], None, coarse)
         return value / strength[index], r, z, solution
 
     bare, _, _, alone = largest(problem.but(base="half_space", asperities_on="auto"), slice(None), False)
     thick = _THICK * (1 + mu) * np.sqrt(problem.value / strength)
     thin = np.clip(_THIN / problem.n, _THINNEST, _THICKEST) * alone.a
+    stacked = np.flatnonzero(is_stack(problem.base))
+    if len(stacked):
+        part = problem.take(stacked).but(**{by: thin[stacked]})
+        bare[stacked] = largest(part, stacked, False)[0]
     some = ~np.isnan(bare) & (thin < thick)  # infinite under a sharp tip, until there is a layer
 
     def thinner(index, at, coarse):
-        return largest(problem.take(index).but(h=thick[index] / at), index, coarse)
+        return largest(problem.take(index).but(**{by: thick[index] / at}), index, coarse)
 
     def thicker(index, at, coarse):
-        return largest(problem.take(index).but(h=thin[index] * at), index, coarse)
+        return largest(problem.take(index).but(**{by: thin[index] * at}), index, coarse)
 
     down = first_crossing(thinner, np.where(some, 1.0, np.nan), thick / thin)
     safe = down.crossed & (bare < 1)

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..bases import is_bare
 from ..fields.shaped import corners
+from ..layers import full_name, numbers_of
 from ..scaling import dimensionless
 from ..shapes import ROUND, shape_of
 from ..smooth.contact import kinds_of
@@ -52,8 +53,7 @@ def reach_of(problem, strength, mu, touched):
     if not len(others):
         return made
     scaled = dimensionless(problem.take(others))
-    E = np.where(is_bare(scaled.base), 1.0, np.maximum(scaled.n, 1.0))
-    least = _NEVER / (1 + _BY_FRICTION * mu) * strength[others] / E
+    least = _NEVER / (1 + _BY_FRICTION * mu) * strength[others] / stiffest(scaled)
     for rows in kinds_of(scaled):
         shape = shape_of(scaled.take(rows))
         made.flat[others[rows]] = shape.least()
@@ -61,6 +61,16 @@ def reach_of(problem, strength, mu, touched):
         made.start[others[rows]] = _start(shape, made.last[others[rows]], least[rows])
     made.sharp[others] = np.isfinite(corners(scaled, made.flat[others] + made.last[others])) & touched[others]
     return made
+
+
+def stiffest(problem):
+    """(B,): the largest modulus of body and layers, over E2*, at least 1; over E1* on a rigid body."""
+    numbers = range(1, numbers_of(problem.parameters) + 1)
+    layers = [getattr(problem, full_name(j, "n")) for j in numbers]
+    layers += [np.nan_to_num(getattr(problem, full_name(j, "n_bottom"))) for j in numbers]
+    tables = [float(np.max(table.n) / table.n[0]) for table in problem.known.profiles.values()]
+    largest = np.max([problem.n, *layers], axis=0) * max([1.0, *tables])
+    return np.where(is_bare(problem.base), 1.0, np.maximum(largest, 1.0))
 
 
 def _last(shape):

@@ -181,3 +181,68 @@ def draw_map(axes, loads: dict) -> None:
     axes.clabel(lines, fmt="%g", fontsize=7)
     axes.set(ylabel=r"coefficient of friction $\mu$")
     axes.set_title("(b) what comes first; $P/R^2$, N/mm²", loc="left", fontsize=9)
+
+
+#: What reaches its strength first in DLC on chromium on steel: words, colour, the extreme and the layer, 0: the body.
+_OF_STACK = (
+    ("steel yields", "#0072B2", "mises2", 0),
+    ("chromium yields", "#009E73", "mises_layer", 2),
+    ("DLC yields", "#E69F00", "mises_layer", 1),
+    ("DLC cracks", "#D55E00", "s1_layer", 1),
+)
+_INTERFACES = (("DLC/chromium", "#CC79A7"), ("chromium/steel", "#56B4E9"))
+
+
+def shares(contacts: xr.Dataset, largest: xr.Dataset) -> np.ndarray:
+    """Stress over strength (4, h1, h2) of each row of `_OF_STACK`."""
+    carbon, steel = (materials.get(contacts[body].item()) for body in ("layer", "body"))
+    limits = (
+        steel.yield_strength or steel.hardness / TABOR,
+        float(contacts["layers.2.Y"]),
+        carbon.yield_strength or carbon.hardness / TABOR,
+        carbon.fracture_strength,
+    )
+    made = []
+    for (_, _, name, layer), limit in zip(_OF_STACK, limits, strict=True):
+        stress = largest[name].sel(layer=layer) if layer else largest[name]
+        made.append(stress.transpose("h", "layers.2.h").values / limit)
+    return np.array(made)
+
+
+@figure("which_layer_first", "which_layer_first", long=True, size=(TWO_COLUMNS, 3.6), panels=(1, 2))
+def which_layer_first(panels, contacts: xr.Dataset) -> Columns:
+    """A steel ball of 1 mm on DLC on chromium on bearing steel, 40 N, without friction and residual stress. (a) What is
+    closest to its strength, over the thickness of both layers: colours, and lines of the stress over the strength.
+    Strengths are those of the table of materials, and of chromium that of a hardness of 8 GPa. (b) Which interface has
+    the larger shear stress, and lines of that in GPa; dashed: lines of the tension at the lower side of the DLC in
+    GPa, where the layer bends."""
+    largest = extremes(contacts)
+    h1, h2 = (contacts[name].values * 1e6 for name in ("h", "layers.2.h"))
+    part, each = shares(contacts, largest), {"cmap": None, "alpha": 0.5, "rasterized": True, "shading": "nearest"}
+    shear, bending = (
+        largest[name].transpose("interface", "h", "layers.2.h").values / 1e9
+        for name in ("tau_interface", "sr_interface")
+    )
+    maps = (part, [colour for _, colour, *_ in _OF_STACK]), (shear, [colour for _, colour in _INTERFACES])
+    for axes, (values, colours) in zip(panels, maps, strict=True):
+        look = each | {"cmap": ListedColormap(colours), "vmin": 0, "vmax": len(colours) - 1}
+        axes.pcolormesh(h1, h2, values.argmax(axis=0).T, **look)
+        lines = axes.contour(h1, h2, values.max(axis=0).T, 6, colors="black", linewidths=0.7)
+        axes.clabel(lines, fmt="%.2g", fontsize=7)
+        axes.set(xscale="log", yscale="log", xlabel="thickness of the DLC, µm", ylabel="thickness of the chromium, µm")
+    bent = panels[1].contour(h1, h2, bending[0].T, 4, colors=GREY, linewidths=0.7, linestyles="--")
+    panels[1].clabel(bent, fmt="%.2g", fontsize=7)
+    panels[0].set_title("(a) closest to its strength", loc="left", fontsize=9)
+    panels[1].set_title("(b) interface with the larger shear, GPa", loc="left", fontsize=9)
+    met = [row[:2] for i, row in enumerate(_OF_STACK) if (part.argmax(axis=0) == i).any()]
+    met += [row for i, row in enumerate(_INTERFACES) if (shear.argmax(axis=0) == i).any()]
+    handles = [Line2D([], [], color=colour, linewidth=5, alpha=0.5, label=words) for words, colour in met]
+    panels[0].figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=7)
+    panels[0].figure.suptitle("ball of steel 52100, DLC a-C:H on chromium on steel 52100, bonded, 40 N", fontsize=7)
+    grid = {
+        name: array.ravel()
+        for name, array in zip(("h1 [m]", "h2 [m]"), np.meshgrid(h1 / 1e6, h2 / 1e6, indexing="ij"), strict=True)
+    }
+    named = {f"{words}: stress/strength": share.ravel() for (words, *_), share in zip(_OF_STACK, part, strict=True)}
+    named |= {f"tau {words} [GPa]": values.ravel() for (words, _), values in zip(_INTERFACES, shear, strict=True)}
+    return joined([grid | named])

@@ -9,7 +9,9 @@ import numpy as np
 
 from solver.bases import is_bare
 from solver.laws.elastic_plastic import TABOR
+from solver.layers import full_name, numbers_of
 
+from ..inputs.vocabulary import name_in_stack
 from ..rules.strength import first, softer
 from ..specimen.materials import Material, Strength, known_strength
 from .contacts import Contacts, without_coordinates
@@ -39,6 +41,18 @@ def known_strengths(contacts: Contacts, materials: Mapping[str, Material]) -> di
     hard = [inputs["hardness"][0] / TABOR, inputs["hardness"][1] / TABOR, ~no]
     of_spots = softer(named["layer"], named["body"], named["punch"], bare, elastic)
     return yields | {"asperities": first(first(inputs["yield_strength"], hard), of_spots)}
+
+
+def layer_strengths(contacts: Contacts, materials: Mapping[str, Material]) -> list[list]:
+    """Strength, standard deviation and whether it is from hardness, as above, of each layer of stacks, from the
+    surface down."""
+    made, no = [], np.zeros(len(contacts.problem), dtype=bool)
+    for number in range(1, numbers_of(contacts.problem.parameters) + 1):
+        name = full_name(number, "Y")
+        given = contacts.problem.parameters.get(name, np.full(len(no), np.nan))
+        material = _of_materials(contacts, name_in_stack(number, "material"), materials)
+        made.append(first([given, _spread(contacts, name), no], material))
+    return made
 
 
 _INPUTS = (*STRENGTHS.values(), "hardness", "yield_strength")

@@ -74,8 +74,8 @@ class Contacts(NamedTuple):
     def without_stresses(self, *, largest: bool = True) -> str:
         """Why some contacts have no stresses, or no `largest` ones, as at an edge where they are infinite; "" where all
         have them."""
-        base, *others = (getattr(self.problem, name) for name in DECIDE)
-        return without_stresses(base, self.problem.rough(), *others, largest=largest)
+        others = (getattr(self.problem, name) for name in DECIDE)
+        return without_stresses(self.problem.rough(), *others, largest=largest)
 
     def refuse_without_stresses(self, who: str, *, largest: bool = True) -> None:
         """Raise StudyError where some contacts have no stresses; arguments as above."""

@@ -162,7 +162,8 @@ def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -
 def _strengths(definition: Definition) -> dict[str, Labelled]:
     """Yield strengths of the materials that are named, over the unit of moduli, and whether they are from hardness."""
     scene, variables = definition.scene, {}
-    for body, name in STRENGTHS.items():
+    layers = {body: body.replace(".material", ".Y") for body in scene.strengths if body.startswith("layers.")}
+    for body, name in (STRENGTHS | layers).items():
         if body in scene.strengths:
             dim, known = scene.strengths[body]
             values, _, hard = zip(*known, strict=True)

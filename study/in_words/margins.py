@@ -19,7 +19,7 @@ from solver.yields.contact import of_contacts
 from solver.yields.extremes import EXTREMES
 
 from ..arrays import xarray_later as xr
-from ..data.body_strengths import known_strengths, strengths
+from ..data.body_strengths import known_strengths, layer_strengths, strengths
 from ..data.contacts import Contacts
 from ..data.dataset import flag_words
 from ..inputs.definition import StudyError
@@ -30,6 +30,7 @@ from ..specimen import materials
 from ..specimen.quantities import readable
 from ..terminal import rounded
 from .stated_inputs import is_rigid
+from .stress_lines import in_stacks, of_interfaces, strengths_of_layer, which_of_stacks
 
 #: Below this modulus in Pa a material is a rubber or a gel, which tears and does not yield. Nearly all have a Poisson
 #: ratio close to 0.5.
@@ -127,6 +128,7 @@ def holds(case: xr.Dataset) -> Margin:
     if "pitch_not_small_against_h" in flag_words(case["validity"]).item().split() and not is_rigid(case, "base"):
         said = [*said, _THROUGH] if said else []
     said += _needed(looked.contact, looked.lacking) if looked.lacking and hard else []
+    said += of_interfaces(looked.contact, looked.problem, looked.solution) if hard else []
     said = [*(_flowing(case) if said else []), *said, *_of_own_law(looked.contact, said)]
     return Margin(said, bool(compared) and compared[0].share > 1)
 
@@ -151,7 +153,8 @@ def _looked_at(case: xr.Dataset) -> _Looked | str:
     moduli = [case[name] for name, _, _ in bodies_of(case.variables).values() if name in case]
     moduli = [modulus for modulus in moduli if modulus.attrs.get("units") == "Pa"]
     hard = bool(moduli) and min(moduli) >= RUBBER
-    if not (hard or np.isfinite([value for value, *_ in known.values()]).any()):
+    values = [value for value, *_ in known.values()] + [value[0] for value, *_ in layer_strengths(contact, {})]
+    if not (hard or np.isfinite(values).any()):
         return ""
     problem = contact.problem
     if reason := contact.without_stresses():
@@ -172,6 +175,7 @@ def _stresses(limits: list[_Limit], problem: Problem, solution: Any, case: xr.Da
     """(limit, stress, r, z) of each, r and z in a: those of the bodies are searched for together."""
     names = tuple(limit.stress for limit in limits if limit.stress in EXTREMES)
     found = of_contacts(problem, solution, names=names) if names else {}
+    found |= in_stacks(problem, solution, [limit.stress for limit in limits])
     if any(limit.stress in SPOT_EXTREMES for limit in limits):
         below = central_spot.of_contacts(problem, solution)
         found |= {name: np.stack([value, 0 * value, z]) for name, (value, z) in below.items()}
@@ -228,6 +232,8 @@ def which_yields(dataset: xr.Dataset) -> str:
     except StudyError:  # of a mean, say
         return ""
     some, known = np.flatnonzero(flags), strengths(contacts, {})
+    if layers := layer_strengths(contacts, {}):
+        return which_of_stacks(contacts, some, layers, known["body"])
     if not any(np.isfinite(known[body]).any() for body in ("layer", "body")) or contacts.without_stresses():
         return ""
     problem = contacts.problem.take(some)
@@ -251,10 +257,15 @@ def _limits(contact: Contacts, known: dict[str, list]) -> list[_Limit]:
         value, spread, hard = known[body]
         return _Limit(who, "yield", "yielding", what, Y, stress, float(value), float(spread), needs, bool(hard))
 
-    felt, below = bool(problem.feels_layer()[0]), "below the asperities"
-    if coated:
+    felt, below, unit = bool(problem.feels_layer()[0]), "below the asperities", contact.units[0].item()
+    if layers := layer_strengths(contact, {}):
+        for j, ([value], [spread], [hard]) in enumerate(layers, 1):
+            rows = [(f"layer {j}", f"mises_layer {j}", mises, "yield", Y, value, spread, bool(hard))]
+            for who, stress, what, verb, of, *numbers in rows + strengths_of_layer(case, j, unit):
+                limits.append(_Limit(who, verb, f"{verb}ing", what, of, stress, *numbers[:2], "", numbers[2]))
+    elif coated:
         limits.append(yields("the layer", "mises1", "layer", "Y1"))
-        coating, unit = _material(case, "layer"), contact.units[0].item()
+        coating = _material(case, "layer")
         places = [
             ("the layer", "s1_layer", "largest tension", "fracture"),
             ("the interface", "tau_interface", "largest shear stress", "interface"),
@@ -269,8 +280,8 @@ def _limits(contact: Contacts, known: dict[str, list]) -> list[_Limit]:
                 spread = getattr(coating, f"{of}_strength_spread") / unit
                 limits.append(_Limit(who, verb, f"{verb}ing", what, name, stress, strength / unit, spread, ""))
     if not is_rigid(case, "base"):
-        limits.append(yields("the body", "mises2", "body", "Y2"))
-        limits += [yields(f"the body {below}", "mises2_spot", "body", "")] * felt
+        limits.append(yields("the body", "mises2 0" if layers else "mises2", "body", "Y2"))
+        limits += [yields(f"the body {below}", "mises2_spot", "body", "")] * (felt and not layers)
     if problem.m[0] > 0:
         limits.append(yields("the punch", _PUNCH, "punch", "Y_punch"))
     law = problem.known.laws[str(problem.micro[0])]

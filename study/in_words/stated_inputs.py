@@ -28,7 +28,21 @@ def of_lower_layers(inputs: Iterable[str]) -> list[str]:
     inputs = [str(name) for name in inputs]
     names = (*bodies_of(inputs), *scene_of(inputs), *parameters_of_layers(inputs))
     names = [name for name in names if name.startswith("layers.")]
-    order = ("material", "h", "E1", "E1_bottom", "n", "n_bottom", "nu", "nu_bottom", "profile", "bonding", "cn", "ct")
+    order = (
+        "material",
+        "h",
+        "E1",
+        "E1_bottom",
+        "n",
+        "n_bottom",
+        "nu",
+        "nu_bottom",
+        "profile",
+        "bonding",
+        "cn",
+        "ct",
+        "Y",
+    )
     places = {name: (int(name.split(".")[1]), order.index(name.split(".")[2])) for name in names}
     return sorted(places, key=lambda name: places[name])
 
@@ -71,7 +85,8 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
     certain = {ratio for modulus, ratio, _ in bodies_of(contacts.variables).values() if modulus in contacts}
     certain |= set(names("roughness")) if unknown_law else set()
     certain |= {"hardness", "yield_strength"} if "micro" not in hidden else set()  # rules compare with them
-    certain |= {name for name in ("Y1", "Y2", "Y_punch") if name in contacts and np.isfinite(values(name)).any()}
+    strengths = ("Y1", "Y2", "Y_punch", *(name for name in of_lower_layers(contacts.variables) if name.endswith(".Y")))
+    certain |= {name for name in strengths if name in contacts and np.isfinite(values(name)).any()}
     return [
         name
         for name in all_inputs(contacts.variables, lexicon)

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from solver import Problem, solve
+from solver.bases import is_stack
+from solver.yields.stacked.largest import DIMENSION, EXTREMES, of_contacts
+
 from ..arrays import xarray_later as xr
+from ..data.contacts import Contacts
 from ..data.dataset import flag_words
-from ..inputs.vocabulary import VOCABULARY
+from ..inputs.vocabulary import VOCABULARY, name_in_stack
 from ..rules.rule import RULES
+from ..specimen import materials
+from ..specimen.quantities import readable
 from .numbers import given_text, in_its_unit, spread_of
 from .stated_inputs import is_rigid
 
@@ -40,33 +49,42 @@ def of_stresses(dataset: xr.Dataset) -> str | None:
 
 def _first_yield(case: xr.Dataset) -> list[str]:
     first = flag_words(case["first_yield"]).item().replace("_", " ")
-    there = [end for end in _BODIES if f"found_{end}" in case]
-    lines = [f"First to yield, of what is known: the {first}."] if first != "not known" else ["No load is found."]
+    there = [end for end in _BODIES if f"found_{end}" in case and not ("P_Y_layer" in case and end == "Y1")]
+    if first == "layer" and "first_layer" in case:
+        lines = [f"First to yield, of what is known: layer {int(case['first_layer'])}."]
+    else:
+        lines = [f"First to yield, of what is known: the {first}."] if first != "not known" else ["No load is found."]
+    for number in case["layer"].values.tolist() if "P_Y_layer" in case else ():
+        lines += _of_body(case.sel(layer=number), "Y_layer", f"layer {number}")
     for end in there:
         lines += _of_body(case, end)
     return lines
 
 
-def _of_body(case: xr.Dataset, end: str) -> list[str]:
-    """Whether a body yields, at which load and where, and what the contact violates there."""
-    body, found = _BODIES[end], flag_words(case[f"found_{end}"]).item()
-    verb = "yield" if body == "asperities" else "yields"
+def _of_body(case: xr.Dataset, end: str, layer: str = "") -> list[str]:
+    """Whether a body, or a `layer` of a stack, yields, at which load and where, and what the contact violates there."""
+    body = layer or f"the {_BODIES[end]}"
+    found = flag_words(case[f"found_{end}"]).item()
+    verb = "yield" if end == "Ya" else "yields"
     if found == "no_asperities":
         return ["The punch is smooth: there are no asperities."]
     if found == "strength_not_known":
-        return [f"The strength of the {body} is not known."]
+        return [f"The strength of {body} is not known."]
     if found != "first_crossing":
         farthest = found.replace("none_up_to_", "").replace("0.2_R", "a = 0.2 R").replace("_", " ")
-        missing = "" if body == "asperities" else ", or is rigid or not there"
-        return [f"No load is found at which the {body} {verb}: not up to {farthest}{missing}."]
+        missing = "" if end == "Ya" else ", or is rigid or not there"
+        return [f"No load is found at which {body} {verb}: not up to {farthest}{missing}."]
     if float(case[f"P_{end}"]) == 0:
         why = _ANY_LOAD if np.isnan(float(case[f"r_{end}"])) and end != "Ya" else f"{verb} before there is a load"
-        return [f"The {body} {why}."]
+        return [f"{body[0].upper()}{body[1:]} {why}."]
     symbols = {"P": "P", "a": "a", "D": "D", "p0": "p(0)"}
     texts = [f"{symbol} = {_number(case, f'{name}_{end}')}" for name, symbol in symbols.items()]
     where = _place(float(case[f"r_{end}"]), float(case[f"z_{end}"]))
     violated = [RULES[word].sentence for word in _words(case, f"validity_{end}") if word in RULES]
-    return [f"The {body} first {verb} at {', '.join(texts)}, {where}.", *(f"Beware: {text}" for text in violated)]
+    return [
+        f"{body[0].upper()}{body[1:]} first {verb} at {', '.join(texts)}, {where}.",
+        *(f"Beware: {text}" for text in violated),
+    ]
 
 
 def _words(case: xr.Dataset, name: str) -> list[str]:
@@ -86,14 +104,32 @@ def _protection(case: xr.Dataset) -> list[str]:
 
 
 def _extremes(case: xr.Dataset) -> list[str]:
+    for dim in ("layer", "interface"):
+        if dim in case.dims:  # of stacks
+            case = _one_by_one(case, dim)
     names = [str(name) for name in case.data_vars if f"{name}_r" in case and np.isfinite(float(case[str(name)]))]
     rows = []
     for name in names:
         r, z = float(case[f"{name}_r"]), float(case[f"{name}_z"])
         there = f"{_stress(case, name, float(case[name]))}, {_place(r, z)}" if np.isfinite(r) else "none"
-        rows.append((VOCABULARY[name].long_name if name in VOCABULARY else name, there))
+        label = case[name].attrs.get("long_name", name)
+        rows.append((VOCABULARY[name].long_name if name in VOCABULARY else label, there))
     width = max((len(label) for label, _ in rows), default=0)
     return [f"  {label:{width}}  {text}" for label, text in rows] or ["The contact has no solution."]
+
+
+def _one_by_one(case: xr.Dataset, dim: str) -> xr.Dataset:
+    """The dataset with a variable for each layer or interface in place of one over `dim`."""
+    apart = {}
+    for name in [str(name) for name in case.data_vars if dim in case[name].dims]:
+        for number in case[dim].values.tolist():
+            value = case[name].sel({dim: number}, drop=True)
+            words = value.attrs["long_name"]
+            for several in ("each layer", "each interface"):
+                words = words.replace(several, f"{several.removeprefix('each ')} {number}")
+            end = next((end for end in ("_r", "_z") if name.endswith(end)), "")
+            apart[f"{name.removesuffix(end)} {number}{end}"] = value.assign_attrs(long_name=words)
+    return case.drop_dims(dim).assign(apart)
 
 
 def _fields(case: xr.Dataset) -> list[str]:
@@ -127,3 +163,79 @@ def _place(r: float, z: float) -> str:
     """A place in words; r and z in a."""
     across = "on the axis" if abs(r) < 1e-3 else f"at r = {r:.3g} a"
     return f"{across}, at the surface" if z == 0 else f"{across}, {z:.3g} a deep"
+
+
+#: Extreme of the interfaces, or of the lower sides of layers -> words for the largest of them and where it is.
+_LARGEST = {
+    "tau_interface": "largest shear stress of an interface is {} (interface {})",
+    "sz_interface_max": "largest tension across one is {} (interface {})",
+    "sr_interface": "largest tension at the lower side of a layer is {} (layer {})",
+}
+
+
+def in_stacks(problem: Problem, solution: Any, names: list[str]) -> dict[str, np.ndarray]:
+    """The extremes of stacks called "mises_layer 2", of layer 2, or "mises2 0", of no layer: name -> (3, B), the value
+    in the unit of E2, r and z in a."""
+    wanted = [name for name in names if " " in name and name.split()[0] in EXTREMES]
+    if not wanted:
+        return {}
+    values = of_contacts(problem, solution, names=tuple(dict.fromkeys(name.split()[0] for name in wanted)))
+    made = {}
+    for name in wanted:
+        key, number = name.split()
+        made[name] = values[key][..., int(number) - 1] if DIMENSION[EXTREMES[key][1]] else values[key]
+    return made
+
+
+def strengths_of_layer(case: xr.Dataset, number: int, unit: float) -> list[tuple]:
+    """Strengths of the material of a layer beside that at which it yields, and of the interface below it: (who, stress,
+    words for it, verb, words for the strength, strength and its spread in the `unit`, Pa, False: not from hardness)."""
+    name, made = name_in_stack(number, "material"), []
+    try:
+        material = materials.get(str(case[name].values)) if name in case else None
+    except LookupError:  # of a file of the user
+        material = None
+    for who, stress, what, of in (
+        (f"layer {number}", "s1_layer", "largest tension", "fracture"),
+        (f"interface {number}", "tau_interface", "largest shear stress", "interface"),
+    ):
+        if strength := getattr(material, f"{of}_strength", None):
+            verb, words = ("crack", "fracture strength") if of == "fracture" else ("fail", "strength")
+            spread = getattr(material, f"{of}_strength_spread")
+            made.append((who, f"{stress} {number}", what, verb, words, strength / unit, spread / unit, False))
+    return made
+
+
+def of_interfaces(contact: Contacts, problem: Problem, solution: Any) -> list[str]:
+    """A sentence on which interface and which lower side bear most, of one contact on a stack of several layers."""
+    if not is_stack(problem.base[0]):
+        return []
+    values, parts = of_contacts(problem, solution, names=tuple(_LARGEST)), []
+    for name, words in _LARGEST.items():
+        of_each = values[name][0, 0]
+        if len(of_each) > 1 and np.nanmax(of_each) > 0:
+            number = int(np.nanargmax(of_each))
+            parts.append(words.format(_in_pascal(contact, of_each[number]), number + 1))
+    return [f"The {', the '.join(parts)}."] if parts else []
+
+
+def which_of_stacks(contacts: Contacts, some: np.ndarray, layers: list, body: np.ndarray) -> str:
+    """Which layer of stacks, or whether it is the body, that yields, of `some` contacts; strengths : of
+    :func:`~..data.body_strengths.layer_strengths`, and (B,) of the body."""
+    problem = contacts.problem.take(some)
+    stresses = in_stacks(
+        problem, solve(problem), [f"mises_layer {j}" for j in range(1, len(layers) + 1)] + ["mises2 0"]
+    )
+    strength = [*(value[some] for value, *_ in layers), body[some]]
+    names, parts = [f"layer {j}" for j in range(1, len(layers) + 1)] + ["the body"], []
+    for name, (stress, _, _), limit in zip(names, stresses.values(), strength, strict=True):
+        count = int((stress > limit).sum())
+        parts += [f"in {count} it is {name}" if contacts.problem.shape.size > 1 else f"it is {name}"] * bool(count)
+    text = ", ".join(parts)
+    return f"{text[0].upper()}{text[1:]}." if parts else ""
+
+
+def _in_pascal(contact: Contacts, value: float) -> str:
+    if not contact.scene:
+        return f"{value:.2g} E2*"
+    return readable(float(f"{value * contact.units[0].item():.2g}"), "Pa")

@@ -57,6 +57,11 @@ def law_versions(grid: Grid) -> list[str]:
     return sorted(law_identity(law) for law in laws if law.version)
 
 
+def is_strength(name: str) -> bool:
+    """Whether an input is a strength, which is compared with the answer and changes none: "Y1", "layers.2.Y"."""
+    return name in STRENGTHS or name.startswith("layers.") and name.endswith(".Y")
+
+
 def digest_of(definition) -> str:
     """sha256 over what determines the results of a `Definition`: not title, comments or block size.
 
@@ -77,7 +82,7 @@ def digest_of(definition) -> str:
     }
     content["values"] = {name: digests for name, digests in content["values"].items() if digests}
     content |= {"shapes": _OF_SHAPES} if {"shape", "w_adhesion"} & {*content["values"], *grid.sizes} else {}
-    compared = [name for name in STRENGTHS if name in grid.values and name not in grid.sizes]
+    compared = [name for name in sorted(grid.values) if is_strength(name) and name not in grid.sizes]
     strengths = {name: digest_of_array(along(grid, name)) for name in compared}
     content |= {"strengths": strengths | {"masks": _OF_STRENGTHS}} if compared else {}
     content |= {"stresses": [_OF_STRESSES, *_digest_of_ratios(grid)]} if definition.stresses else {}

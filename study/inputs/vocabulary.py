@@ -112,8 +112,9 @@ OF_A_LAYER = {
     "E1": "Young's modulus of layer {}",
     "E1_bottom": "Young's modulus of the bottom of layer {}",
     "material": "material of layer {}",
+    "Y": "yield strength of layer {}",
 }
-_SYMBOLS = {"h": "h", "n": "n", "nu": "ν", "cn": "cn", "ct": "ct", "n_bottom": "n", "nu_bottom": "ν"}
+_SYMBOLS = {"h": "h", "n": "n", "nu": "ν", "cn": "cn", "ct": "ct", "n_bottom": "n", "nu_bottom": "ν", "Y": "Y"}
 
 
 def name_in_stack(number: int, field: str) -> str:

@@ -1,13 +1,16 @@
 """Rules that compare the stresses of a contact with the strengths of its bodies and asperities."""
 
+from functools import partial
+
 import numpy as np
 
 from solver import Status, solve
 from solver.laws.elastic_plastic import TABOR
+from solver.layers import full_name, numbers_of
 from solver.models.spot_pressure import lifts_off
 from solver.parameters import one_of
 from solver.yields import spots
-from solver.yields.contact import of_contacts
+from solver.yields.stacked.largest import mises_in
 
 from ..inputs.lexicon import lexicon_of
 from ..inputs.vocabulary import CONTROLS, NUMERICS
@@ -36,7 +39,13 @@ def body_yields(v, times):
             found = found | (v[extreme] > limit)
             continue
         low, high = bounds[extreme]
-        found = found | _exceeded(limit, low, high, lambda index, limit, name=extreme: _stress(v, name, index, limit))
+        body = "layer" if extreme == "mises1" else "body"
+        found = found | _exceeded(limit, low, high, lambda index, limit, body=body: _stress(v, body, 0, index, limit))
+    for layer in range(1, numbers_of(v)):
+        limit = _limit(v, times * of_body(v, full_name(layer + 1, "Y"))[0])
+        if np.isfinite(limit).any():
+            low, high = yield_bounds.of_stacks(v)
+            found = found | _exceeded(limit, low, high, partial(_stress, v, "layer", layer))
     return found
 
 
@@ -65,7 +74,7 @@ def of_body(v, name):
     """Yield strength of a body by its input, "Y1" of the layer and so on, in E2*: the value, NaN where it is not known,
     and its source, a place in `_SOURCES`; v : `numbers` of a dataset, with those of named materials."""
     value, source = first([v.get(name, np.nan), 0], _of_material(v, name))
-    return np.where(v["layered"] if name == "Y1" else True, value, np.nan), source
+    return np.where(True if name == "Y2" else v["layered"], value, np.nan), source
 
 
 def of_asperities(v):
@@ -101,9 +110,12 @@ def strength_from(v) -> str:
     """Where the strengths are from with which the masks compare: "call", "material" or "hardness", of a material of
     which no yield strength is known; "layer: call, asperities: hardness" where they differ, "" where none is known."""
     words = {}
-    if not {*v} & {*_BODIES, *_OF_ASPERITIES}:
+    of_layers = {full_name(number, "Y") for number in range(2, numbers_of(v) + 1)}
+    if not {*v} & {*_BODIES, *_OF_ASPERITIES, *of_layers, *(f"{name}{OF_MATERIAL}" for name in of_layers)}:
         return ""
     strengths = {"layer": of_body(v, "Y1"), "body": of_body(v, "Y2"), "asperities": of_asperities(v)}
+    for number in range(2, numbers_of(v) + 1):
+        strengths[f"layer {number}"] = of_body(v, full_name(number, "Y"))
     for who, (value, source) in strengths.items():
         some = np.unique(np.broadcast_to(source, np.shape(value))[np.isfinite(value)])
         if len(some):
@@ -138,13 +150,15 @@ def _exceeded(limit, low, high, stress):
     return exceeded
 
 
-def _stress(v, name, index, limit):
-    """The largest stress of a body, where it is near the limit; elsewhere that of the coarse grid."""
+def _stress(v, body, layer, index, limit):
+    """The largest stress of the "body" or of a "layer", its number from 0, where it is near the limit; elsewhere that
+    of the coarse grid."""
     problem, solution = solved(v, index)
-    value = of_contacts(problem, solution, names=(name,), coarse=True)[name][0]
+    none = np.zeros((len(index), max(1, numbers_of(problem.parameters))))
+    value = mises_in(problem, solution, body, layer, 0.0, none, coarse=True)[0]
     near = np.flatnonzero((value < (1 + _MORE) * limit) & (value > (1 - _MISSED) * limit))
     if len(near):
-        value[near] = of_contacts(problem.take(near), solution.take(near), names=(name,))[name][0]
+        value[near] = mises_in(problem.take(near), solution.take(near), body, layer, 0.0, none[near])[0]
     return value
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from solver.bases import is_stack
 from solver.closed_forms import yield_pressure
+from solver.layers import full_name, numbers_of
 from solver.shapes import PARABOLOID
 
 from ..inputs.lexicon import PACKAGE
@@ -27,6 +28,9 @@ _BODY = 1.25
 #: At least this part of the pressure: in a layer thicker than a (0.39 was seen); in a thinner soft one this times
 #: (1 - 2 nu)/(1 - nu), its stress where it cannot give way sideways (0.59); in a hard one times 1 - 2 nu (0.6).
 _THICK, _SOFT, _HARD = 0.3, 0.5, 0.4
+#: In a layer of a stack, and in the body below it, it is at most _STACK times the pressure, times the largest over the
+#: smallest modulus to the power 2/3.
+_STACK = 1.5
 #: Below asperities that feel the layer, of the cell alone, over the largest pressure of the spot: below spots narrower
 #: than _WIDE h the stress is between these (0.40 and 0.82 of 1,400 cells were seen), below others at most
 #: _LAYER max(n, 1)^(2/3) times this pressure (1.15).
@@ -62,7 +66,31 @@ def of_bodies(v) -> dict[str, Bounds]:
         low, high = (np.where(rough, factor, 1.0) * ball for factor in _BARE)
         alone = _where(known & ~layered & (nu2 >= 0), Bounds(low, high))
         made["mises2"] = Bounds(*(np.where(layered, *pair) for pair in zip(made["mises2"], alone, strict=True)))
+    if np.any(stacked := is_stack(v["base"])):
+        stack = of_stacks(v)
+        made = {
+            name: Bounds(*(np.where(stacked, *pair) for pair in zip(stack, own, strict=True)))
+            for name, own in made.items()
+        }
     return made
+
+
+@np.errstate(all="ignore")
+def of_stacks(v) -> Bounds:
+    """Of each layer of stacks, and of the body below them."""
+    numbers = range(1, numbers_of(v) + 1)
+    names = [full_name(number, field) for number in numbers for field in ("n", "n_bottom")]
+    moduli = [np.where(v["n"] == 0, np.nan, 1.0), *(np.asarray(v[name], dtype=float) for name in names if name in v)]
+    moduli = [np.where(n == 0, 1.0, n) for n in moduli]  # of the first layer on a rigid base
+    moduli = np.stack(np.broadcast_arrays(*moduli))
+    contrast = np.nanmax(moduli, axis=0) / np.nanmin(moduli, axis=0)
+    pressure = np.fmax(v["p0"], v["P"] / (np.pi * v["a"] ** 2))
+    profiles = [v[full_name(number, "profile")] for number in numbers if full_name(number, "profile") in v]
+    tabled = np.any([np.char.startswith(np.asarray(words, dtype=str), "table") for words in profiles], axis=0)
+    ball = v["shape"] == PARABOLOID if "shape" in v else True
+    free = ~(v["w_adhesion"] > 0) if "w_adhesion" in v else True
+    high = np.where(ball & free & ~tabled, _STACK * contrast ** (2 / 3) * pressure, np.inf)
+    return Bounds(0.0 * high, np.where(np.isnan(high), np.inf, high))
 
 
 @np.errstate(all="ignore")

@@ -1,20 +1,22 @@
 """The load at which something first yields."""
 
+import re
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from solver.bases import is_bare
+from solver.layers import numbers_of
 from solver.shapes import ROUND
 from solver.yields.crossing import NUMBERS, Crossing
 from solver.yields.first import first_yield as crossing_of
 from solver.yields.reach import STEEPEST
 
-from ..data.body_strengths import strengths
+from ..data.body_strengths import layer_strengths, strengths
 from ..data.contacts import Contacts
-from ..fields import carried, friction, refuse_both, residual_stress
-from ..inputs.vocabulary import CONTROLS
+from ..fields import carried, friction, numbered, refuse_both, residual_stresses, with_numbered_layers
+from ..inputs.vocabulary import CONTROLS, name_in_stack
 from ..rules.rule import validity_attributes
 from .model_validity import said_of, validity_at
 from .yielding_contacts import control_of, of_dataset, of_inputs, own_materials, refuse, without_control
@@ -56,8 +58,10 @@ def first_yield(
     Y1, Y2, Y_punch : yield strengths of layer, body and punch, > 0
     hardness, yield_strength : of the softer of asperity and what it presses on, > 0; one of both is enough
     mu : >= 0; with mu > 0 the punch slides in full
-    sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where there are units
-    parameters : those of `study.solve` without P, a and D
+    sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where there are units. Of stacks that
+        of all layers, or a list of one for each
+    parameters : the strengths of the layers of stacks, layers.2.Y and so on; without a contact those of `study.solve`
+        without P, a and D
 
     Returns
     -------
@@ -68,7 +72,8 @@ def first_yield(
         2, the strength is not known; 3, of found_Ya alone, the punch is smooth. Where it is not 0 the numbers are NaN,
         and P_Y1 has a `message`. validity_Y1 and so on: `validity` of the contact at that load, 0 where there is none;
         P_Y1 has a `comment` that says it in words. P_Y1_spread and so on, of a strength with a spread: what that alone
-        makes. `first_yield`: what yields first, of those that are known
+        makes. `first_yield`: what yields first, of those that are known. Of stacks P_Y_layer, a_Y_layer and so on over
+        `layer`, counted from 1 at the surface, in place of P_Y1, and `first_layer`, which of them yields first
 
     Raises
     ------
@@ -85,6 +90,7 @@ def first_yield(
     given = {"Y1": Y1, "Y2": Y2, "Y_punch": Y_punch, "hardness": hardness, "yield_strength": yield_strength}
     given = {name: value for name, value in given.items() if value is not None}
     if contact is not None:
+        given |= {name: parameters.pop(name) for name in [*parameters] if _OF_A_LAYER.fullmatch(name)}
         refuse_both("first_yield", contact, parameters)
         contacts = of_dataset("first_yield", contact, given, CONTROLS)
         name = control_of(contacts.dataset)
@@ -95,10 +101,23 @@ def first_yield(
     stress, _ = contacts.units
     own, problem = own_materials(parameters), contacts.problem
     known, spreads = (strengths(contacts, own, spread) for spread in (False, True))
-    residual = residual_stress(sigma_res, contacts) / stress
+    residual = residual_stresses(sigma_res, contacts)
     nu_punch = contacts.coordinate("nu_punch", 0.3)
     variables, loads = {}, []
+    if stacked := numbers_of(problem.parameters) > 0:
+        layers, named = layer_strengths(contacts, own), with_numbered_layers(contacts)
+        found, in_layers = _of_layers(contacts, layers, mu, residual)
+        contacts = named
+        variables |= {
+            key: xr.Variable((*named.dims, *value.dims[len(named.dims) :]), value.values, value.attrs)
+            for key, value in found.items()
+        }
+        loads.append(in_layers.min(axis=1))
+        first_layer = np.where(np.isfinite(in_layers).any(axis=1), 1 + in_layers.argmin(axis=1), 0).astype(np.int8)
+        variables["first_layer"] = labelled(contacts, first_layer, {"long_name": _FIRST_LAYER})
     for body, end in BODIES.items():
+        if stacked and body == "layer":
+            continue
         strength = np.where(_there(problem, body), known[body], np.nan)
         if np.isfinite(strength).any():
             crossing = crossing_of(problem, body, strength, mu, residual, nu_punch, bool(np.any(spreads[body] > 0)))
@@ -114,7 +133,44 @@ def first_yield(
     first = np.where(np.isfinite(loads).any(axis=0), 1 + loads.argmin(axis=0), 0).astype(np.int8)
     about = _flags("what yields first", ("not_known", *BODIES))
     variables["first_yield"] = labelled(contacts, first, about)
-    return without_control(carried(contacts.dataset, variables), name)
+    made = without_control(carried(contacts.dataset, variables), name)
+    return made.assign_coords(numbered(contacts, "layer")) if stacked else made
+
+
+#: The name of a strength of a layer.
+_OF_A_LAYER = re.compile(r"layers\.\d+\.Y")
+_FIRST_LAYER = "layer that yields first among the layers, counted from 1 at the surface; 0: none is known to"
+
+
+def _of_layers(contacts: Contacts, layers: list, mu: float, residual: np.ndarray) -> tuple[dict, np.ndarray]:
+    """The variables of the layers of stacks over `layer`, and their loads (B, N), inf where there is none. A stack of
+    one layer has those of one layer too."""
+    problem, columns, loads = contacts.problem, [], []
+    for j, (strength, spread, _) in enumerate(layers):
+        strength = np.where(is_bare(problem.base), np.nan, strength)
+        crossing = Crossing.none(len(problem))
+        if np.isfinite(strength).any():
+            slopes = bool(np.any(spread > 0))
+            crossing = crossing_of(problem, "layer", strength, mu, residual, slopes=slopes, layer=j)
+        found = np.where(crossing.crossed, 0, np.where(np.isnan(strength), 2, 1)).astype(np.int8)
+        loads.append(np.where(crossing.crossed, crossing.numbers["P"], np.inf))
+        own = _variables(contacts, f"layer {j + 1}", "_Y_layer", crossing, found)
+        if any(np.any(spread > 0) for _, spread, _ in layers):
+            own |= _spreads(contacts, f"layer {j + 1}", "_Y_layer", crossing, np.nan_to_num(spread / strength))
+        columns.append(own)
+    made = {name: _over_layers([own[name] for own in columns]) for name in columns[0]}
+    if len(layers) == 1:
+        made |= {name.replace("_Y_layer", "_Y1"): value for name, value in columns[0].items()}
+    return made, np.stack(loads, axis=1)
+
+
+def _over_layers(columns: list) -> xr.Variable:
+    """One variable over `layer`, with what is said of each of its values."""
+    about = {**columns[0].attrs, "long_name": columns[0].attrs["long_name"].replace("layer 1", "layer")}
+    for name in ("message", "comment"):
+        said = [f"layer {j}: {own.attrs[name]}" for j, own in enumerate(columns, 1) if name in own.attrs]
+        about |= {name: "; ".join(said)} if said else {}
+    return xr.Variable((*columns[0].dims, "layer"), np.stack([own.values for own in columns], axis=-1), about)
 
 
 def _there(problem: Any, body: str) -> np.ndarray:
@@ -160,7 +216,8 @@ def _spreads(contacts: Contacts, body: str, end: str, crossing: Crossing, relati
 def _message(body: str, found: np.ndarray, unsolved: np.ndarray, round_: bool) -> str:
     """Why there is no load, with how many cases each reason has."""
     farthest = "a = 0.2 R" if round_ else f"a slope of the shape of {STEEPEST}, or a = 0.2 R of balls"
-    need = {"layer": "Y1", "body": "Y2", "punch": "Y_punch", "asperities": "hardness or yield_strength"}[body]
+    need = {"layer": "Y1", "body": "Y2", "punch": "Y_punch", "asperities": "hardness or yield_strength"}
+    need = need.get(body) or name_in_stack(int(body.removeprefix("layer ")), "Y")
     reasons = {
         f"the strength of the {body} is not known: give {need}": found == 2,
         "the punch is smooth and has no asperities": found == 3,

@@ -12,7 +12,7 @@ from solver.yields.crossing import Crossing
 from ..arrays.labelled import Labelled
 from ..data.contacts import Contacts
 from ..data.dataset import validity_of_rows
-from ..inputs.identity import STRENGTHS
+from ..inputs.identity import is_strength
 from ..inputs.punch.laws import results_of
 from ..rules.rule import RULES, broken, of_cases, validity_attributes
 from ..work.cases import arrays_of
@@ -26,7 +26,7 @@ def validity_at(contacts: Contacts, crossing: Crossing) -> np.ndarray:
     problem = replace(contacts.problem.take(rows), control="P", value=crossing.numbers["P"][rows])
     solution = solve(problem)
     # without strengths, whose masks say that something yields: at these loads it does
-    numbers = {name: value for name, value in problem.parameters.items() if name not in STRENGTHS}
+    numbers = {name: value for name, value in problem.parameters.items() if not is_strength(name)}
     radii = contacts.scene.radii() if contacts.scene else {}
     results = results_of(problem.known.laws, problem.micro, felt=bool(problem.feels_layer().any()))
     numbers |= {name: contacts.column(value.to_xarray())[rows] for name, value in radii.items()}

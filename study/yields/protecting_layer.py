@@ -1,5 +1,6 @@
 """The thickness of a layer that protects the body."""
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -13,12 +14,19 @@ from ..data.body_strengths import strengths
 from ..data.contacts import Contacts
 from ..fields import carried, friction, refuse_both
 from ..inputs.definition import StudyError
+from ..terminal import shown
 from .first_yield import about_of, labelled
 from .yielding_contacts import of_dataset, of_inputs, own_materials, refuse, without_control
 
 
 def h_protect(
-    contact: xr.Dataset | None = None, *, P: Any = None, Y2: Any = None, mu: float = 0.0, **parameters: Any
+    contact: xr.Dataset | None = None,
+    *,
+    P: Any = None,
+    Y2: Any = None,
+    by: str = "h",
+    mu: float = 0.0,
+    **parameters: Any,
 ) -> xr.Dataset:
     """The thickness above which a layer protects the body from yielding: docs/stresses.md.
 
@@ -30,14 +38,16 @@ def h_protect(
         counts, and their h does not
     P : load
     Y2 : yield strength of the body, > 0; without it that of the material that is named
+    by : the thickness that is looked for: "h", or that of another layer of a stack, "layers.2.h"; the others stay
     mu : >= 0; with mu > 0 the punch slides in full
-    parameters : those of `study.solve` without h, a and D
+    parameters : those of `study.solve` without that thickness, a and D
 
     Returns
     -------
     xarray.Dataset : over the dimensions of the parameters: h_protect, above which the body yields for no larger
-        thickness, 0 if it yields for none; h_yields, the least thickness at which the body yields where a bare one
-        would not, NaN if there is none. Where a search has no answer the variable is NaN and has a `message`
+        thickness, 0 if it yields for none; h_yields, the least thickness at which the body yields where a bare one, or
+        a stack without that layer, would not, NaN if there is none. Where a search has no answer the variable is NaN
+        and has a `message`
 
     Raises
     ------
@@ -54,17 +64,22 @@ def h_protect(
     given = {} if Y2 is None else {"Y2": Y2}
     if contact is not None:
         refuse_both("h_protect", contact, parameters | ({} if P is None else {"P": P}))
-        contacts = _under_its_load(of_dataset("h_protect", contact, given, ("h",)))
+        contacts = _under_its_load(of_dataset("h_protect", contact, given, (by,)))
     else:
-        contacts = _of_inputs(P, parameters, given)
+        contacts = _of_inputs(P, parameters, given, by)
     problem = contacts.problem
+    by = "h" if by == "layers.1.h" else by
+    if by not in problem.parameters or not (by == "h" or _THICKNESS.fullmatch(by)):
+        raise StudyError(
+            [f'h_protect: by = {shown(by)}: must be "h", or of a stack the thickness of one of its layers']
+        )
     if np.any(is_bare(problem.base)):
         raise StudyError(['h_protect: base = "half_space" has no layer that could protect it'])
     known = strengths(contacts, own_materials(parameters))["body"]
     if np.isnan(known[problem.n > 0]).any():
         raise StudyError(["h_protect needs Y2, the yield strength of the body: it is not given, or not known of it"])
     stiff = problem.n == 0
-    found = protection(problem.but(n=np.where(stiff, 1.0, problem.n)), np.where(stiff, np.nan, known), mu)
+    found = protection(problem.but(n=np.where(stiff, 1.0, problem.n)), np.where(stiff, np.nan, known), mu, by)
     _, size = contacts.units
     lacking = found.unsolved & np.isnan(found.protects)
     words = {
@@ -79,17 +94,35 @@ def h_protect(
             reason = "contacts on the way have no solution" if unsolved.any() else "there is no such thickness"
             about["message"] = f"{name} of {count} of {values.size} cases: {reason}"
         variables[name] = labelled(contacts, values * size, about)
-    return without_control(carried(contacts.dataset, variables), "h")
+    return without_control(carried(contacts.dataset, variables), by)
 
 
-def _of_inputs(P: Any, parameters: dict, strengths: dict) -> Contacts:
+_THICKNESS = re.compile(r"layers\.\d+\.h")
+
+
+def _of_inputs(P: Any, parameters: dict, strengths: dict, by: str) -> Contacts:
     if P is None:
         raise StudyError(["h_protect: give the load P, or a contact, which is a dataset of study.solve"])
-    refuse("h_protect", parameters, ("h",), "it is what is looked for")
+    if not isinstance(by, str) or not (by == "h" or _THICKNESS.fullmatch(by)):
+        raise StudyError(
+            [f'h_protect: by = {shown(by)}: must be "h", or of a stack the thickness of one of its layers']
+        )
+    refuse("h_protect", parameters, (by,), "it is what is looked for")
     refuse("h_protect", parameters, ("a", "D", "cases"), "the load P is given")
     if np.any(is_bare(np.asarray(parameters.get("base", "layered")))):
         raise StudyError(['h_protect: base = "half_space" has no layer that could protect it'])
-    return of_inputs("h_protect", parameters | {"P": P} | strengths, "h", 0.01)
+    stack = "layers" in parameters or any(name.startswith("layers.") for name in parameters)
+    by = "layers.1.h" if stack and by == "h" else by
+    if isinstance(parameters.get("layers"), (list, tuple)) and by.startswith("layers."):
+        j = int(by.split(".")[1]) - 1  # what the list says of it does not count
+        layers = [
+            {key: value for key, value in layer.items() if not (i == j and key == "h")}
+            if isinstance(layer, dict)
+            else layer
+            for i, layer in enumerate(parameters["layers"])
+        ]
+        parameters = parameters | {"layers": layers}
+    return of_inputs("h_protect", parameters | {"P": P} | strengths, by, 0.01)
 
 
 def _under_its_load(contacts: Contacts) -> Contacts:

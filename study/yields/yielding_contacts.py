@@ -65,6 +65,8 @@ def control_of(contact: xr.Dataset) -> str:
 def own_materials(parameters: dict) -> dict[str, Material]:
     """The materials that are given as such, by name."""
     given = [parameters.get(body) for body in ("punch", "layer", "body")]
+    stack = parameters.get("layers", ())
+    given += [layer.get("material") for layer in stack if isinstance(layer, dict)] if isinstance(stack, list) else []
     several = [one for value in given for one in (value if isinstance(value, (list, tuple)) else [value])]
     return {one.name: one for one in several if isinstance(one, Material)}
 

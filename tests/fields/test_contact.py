@@ -29,7 +29,7 @@ def test_rough_contacts(case):
     at_h = np.isclose(rows["z"], rows["h"], rtol=1e-9)
     assert at_h.any() and fields.error < 1e-6
     for name in ("sr", "st", "sz", "trz"):
-        at_interface = np.where(rows["side"] == 1, fields.below[name][0, column], fields.above[name][0, column])
+        at_interface = np.where(rows["side"] == 1, fields.below[name][0, 0, column], fields.above[name][0, 0, column])
         values = np.where(at_h, at_interface, fields.inside[name][0, row, column])
         largest = max(np.abs(fields.inside[name]).max(), rows["p0"][0])
         assert_allclose(values, rows[f"{name}_over_p0"] * rows["p0"][0], rtol=0, atol=fields.error[0] * largest)

@@ -193,7 +193,7 @@ def test_point(capsys):
 def test_the_summary_has_the_geometry():
     text = str(study.summary(study.solve(**BALL, layers=DLC, P="1 N")))
     assert "Stack, from the surface down: layer 2: of CrN, h = 200 nm" in text and "then the body" in text
-    assert "no stresses in stacks of layers yet" in text
+    assert "layer 2 0.0" in text and "The largest shear stress of an interface is" in text
 
 
 def test_cases():
@@ -218,22 +218,22 @@ def test_bases_of_one_call():
     assert used == ["smooth_stack", "smooth_half_space", "smooth_thin_stack"]
 
 
-@pytest.mark.parametrize("name", ["stresses", "extremes"])
-def test_no_stresses_yet(name):
-    contact = study.solve(**BALL, layers=DLC, P="1 N")
-    with pytest.raises(study.StudyError, match="no stresses in stacks"):
-        getattr(study, name)(contact)
-
-
-def test_no_first_yield_yet():
-    with pytest.raises(study.StudyError, match="no stresses in stacks"):
-        study.first_yield(**BALL, layers=DLC)
-
-
+@pytest.mark.filterwarnings("ignore:this contact is beyond")
 def test_strengths_beside_a_stack():
-    """They set no mask, since nothing is known of the stresses."""
-    contact = study.solve(**BALL, layers=DLC, P="1000 N", Y1="1 kPa", Y2="1 kPa")
-    assert contact.status == 0 and not contact.validity.item() & 512
+    """Each layer and the body set the mask by their own strength; strong ones do not."""
+    inputs = BALL | {"layers": DLC, "P": "1000 N"}
+    for weak in ("Y1", "layers.2.Y", "Y2"):
+        strong = {name: "100 GPa" for name in ("Y1", "layers.2.Y", "Y2") if name != weak}
+        assert study.solve(**inputs, **strong, **{weak: "1 MPa"}).validity.item() & 512
+        assert not study.solve(**inputs, **strong, **{weak: "100 GPa"}).validity.item() & 512
+
+
+def test_stored_stresses_are_refused(tmp_path):
+    (tmp_path / "stack.toml").write_text(
+        'title = "t"\n[model]\nmicro = "smooth"\nP = 1e-5\n[[layers]]\nh = 0.01\nn = 2.0\n[output]\nstresses = true\n'
+    )
+    with pytest.raises(study.StudyError, match="stacks of layers are not stored: study.extremes has them"):
+        study.load(tmp_path / "stack.toml")
 
 
 BAD = {

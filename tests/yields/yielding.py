@@ -14,7 +14,6 @@ from study.yields import first_yield as searching
 def largest(contact: xr.Dataset, *names: str, mu: float = 0.0) -> xr.Dataset:
     """`study.extremes` with these names alone."""
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(fields, "EXTREMES", {name: fields.EXTREMES[name] for name in names})
         patched.setattr(fields, "extremes_of", partial(of_contacts, names=names))
         return study.extremes(contact, mu)
 

@@ -6,6 +6,7 @@ contact, which is the same. At the interface tension and shear are looked for up
 
 import numpy as np
 
+from ...bases import is_stack
 from ...fields.contact import have_fields, pressures_of
 from ...fields.invariants import mises
 from ...laws.cell.sums import LATTICES
@@ -83,7 +84,7 @@ def spot_of(problem, solution):
 
 def _cells(problem, solution, mu, residual):
     """Yield the cells of contacts, their :class:`~..loaded.Loaded`, and their indices and largest pressures in E2*."""
-    index = np.flatnonzero(problem.feels_layer() & have_fields(problem, solution))
+    index = np.flatnonzero(problem.feels_layer() & have_fields(problem, solution) & ~is_stack(problem.base))
     if not len(index):
         return
     residual = np.broadcast_to(residual, len(problem)) / problem.E2

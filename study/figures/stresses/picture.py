@@ -36,11 +36,11 @@ def plot_stresses(
 ) -> Figure:
     """A figure of the stresses of one contact: docs/stresses.md.
 
-    Panels: von Mises' stress in a section of the layer and of the body under it, with a cross where it is largest;
-    the stresses on the surface; those at the interface, on both of its sides. Rings are the largest tension of the
-    surface, and the largest tension and shear at the interface. A grey line is the edge of the contact. Where the
-    yield strength is known, from Y1, Y2 or the named material, a red line surrounds what exceeds it. The figure is
-    none of pyplot, as that of `study.plot`.
+    Panels: von Mises' stress in a section of the layer and of the body under it, with a cross where it is largest; the
+    stresses on the surface; those at the interface, of a stack at that with the largest shear, on both of its sides.
+    Rings are the largest tension of the surface, and the largest tension and shear at the interface. A grey line is the
+    edge of the contact. Where the yield strength is known, from Y1, Y2 or the named material, a red line surrounds what
+    exceeds it. The figure is none of pyplot, as that of `study.plot`.
 
     Parameters
     ----------
@@ -97,6 +97,8 @@ def drawn(
         finite = [np.abs(stress[np.isfinite(stress)]).max() for stress in values.values()]
         units = Units.of(contact, max(finite), mu > 0)
         along(axes, name, values, shown, units)
+        if name == "interface" and shown.number:
+            axes.set_title(f"interface {shown.number}", loc="left")
     for letter, axes in zip("abcd", (*sections, *curves), strict=False):
         axes.set_title(f"({letter}) {axes.get_title(loc='left')}", loc="left", fontsize=8)
         for side in (1, -1) if mu > 0 or spot else (1,):
@@ -123,13 +125,15 @@ def _draw_sections(panels, contact: xr.Dataset, shown: Stresses, largest: dict[s
         units = Units.of(contact, top if one_scale else own_top, sliding)
         filled = section(axes, region, top if one_scale else own_top, _BOTH if one_scale else _MAPS[name], units)
         limit = f"largest {units.text(own_top)}" if np.isfinite(shown.largest[NAMES[name]]) else "infinite at the cross"
-        said = [f"{name}: {limit}"]
+        said = [f"{'layers' if name == 'layer' and shown.inner else name}: {limit}"]
         if np.isfinite(Y):
             said.append(f"yields at {Units.of(contact, Y, units.sliding).text(Y)}")
         if shown.largest[NAMES[name]] > Y:
             outline(axes, region, Y, units)
         if name == "layer" and region.z[-1] < shown.h:
             said.append(f"interface at $z$ = {shown.h:.3g}$\\,a$")
+        for depth in shown.inner if name == "layer" else ():
+            axes.axhline(depth * units.a, color="black", linewidth=1.0)
         mark(axes, shown.largest, NAMES[name], units)
         axes.set_title(", ".join(said), loc="left")
         if not one_scale:

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from solver.bases import is_bare
+from solver.layers import full_name, numbers_of
 
 from ...data.body_strengths import strengths
 from ...data.contacts import Contacts
@@ -18,6 +19,7 @@ _NEAR = np.linspace(0, 0.4, 17) ** 2 / 0.4
 #: Radii that are shown, in a: 1, where the pressure ends, is among them, and they are closer there.
 _RADII = np.unique(np.concatenate([np.linspace(0, 2, 51), 1 - _NEAR, 1 + _NEAR]).round(12))
 _LAYER, _BODY = 41, 49  # depths that are computed in each
+_BESIDE = 1e-9  # below an interface between layers, over its depth
 _AT_INTERFACE = "trz_above", "sz_above", "sr_above", "sr_below"
 DEPTH = 1.6  # of the body, in a: where a half-space is stressed most, 0.48, is in the upper third
 THICKEST = 3.0  # layer in a that is shown as a whole; of a thicker one neither interface nor body are,
@@ -41,6 +43,8 @@ class Stresses(NamedTuple):
     Y : yield strength of "layer" and "body", that of the call or of the named material; NaN where it is not known
     h : in a, None without a layer
     edge : radius in a up to which there is contact: of the contact, or of a spot
+    inner : depths in a of the interfaces between the layers of a stack
+    number : of the interface of a stack that is shown; 0: there is one
     """
 
     layer: Region | None
@@ -52,21 +56,34 @@ class Stresses(NamedTuple):
     Y: dict[str, float]
     h: float | None
     edge: float = 1.0
+    inner: tuple[float, ...] = ()
+    number: int = 0
 
 
 def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tuple[xr.Dataset, Stresses]:
     """The contact without dimensions, and its stresses. Raises StudyError for several contacts, or one not solved."""
     contact = one_contact(contact)
-    Contacts.of(contact, "plot_stresses").refuse_without_stresses("plot_stresses")
+    contacts = Contacts.of(contact, "plot_stresses")
+    contacts.refuse_without_stresses("plot_stresses")
+    ends, number = _ends(contacts), 0
     largest = extremes(contact, mu, sigma_res)
+    if len(ends) > 1:
+        largest, number = _of_several_layers(largest)
     bare, rigid = is_bare(str(contact["base"].values)), is_rigid(contact, "base")
-    h = None if bare else float(contact["h"] / contact["a"])
+    h = None if bare else ends[-1]
     r = np.concatenate([-_RADII[:0:-1], _RADII]) if mu > 0 else _RADII
     whole = h is not None and (h <= THICKEST or bool(largest["sr_interface1"] > _BENT * largest["mises1"]))
     within = np.linspace(0, h if whole else THICKEST, _LAYER) if h else np.zeros(0)
+    inner = tuple(end for end in ends[:-1] if end < (h if whole else THICKEST))
+    within = np.unique([*within, *inner, *(end * (1 + _BESIDE) for end in inner)])
     below = (h or 0.0) + np.linspace(0, DEPTH, _BODY) if not h or whole and not rigid else np.zeros(0)
     inside = within[:-1] if whole else within  # the interface is on neither side
     fields = stresses(contact, r, np.concatenate([inside, below[1:] if h else below]), mu, sigma_res)
+    if len(ends) > 1:
+        deepest, fields = fields.isel(interface=-1), fields.sel(interface=number)
+        fields = fields.assign({name: deepest[name] for name in ("mises_above", "mises_below")})
+    elif "interface" in fields.dims:
+        fields = fields.isel(interface=0)
     mises = fields["mises"].values.T
     mises = np.where(np.isfinite(mises), mises, mises[np.isfinite(mises)].max())  # at a sharp tip it is infinite
     above, under = (fields[f"mises_{side}"].values[None] for side in ("above", "below"))
@@ -78,14 +95,37 @@ def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tu
     return contact, Stresses(
         Region(r, within, layer) if h else None,
         Region(r, below, body) if len(below) else None,
-        *(surface, interface, r, largest, yield_strengths(contact), h),
+        *(surface, interface, r, largest, yield_strengths(contact), h, 1.0, inner, number),
     )
+
+
+def _ends(contacts: Contacts) -> list[float]:
+    """Depths of the interfaces of one contact in a; of a bare body none that counts."""
+    numbers = range(1, max(1, numbers_of(contacts.problem.parameters)) + 1)
+    a = float(contacts.dataset["a"]) / contacts.units[1].item()
+    return (np.cumsum([getattr(contacts.problem, full_name(number, "h"))[0] for number in numbers]) / a).tolist()
+
+
+def _of_several_layers(largest: xr.Dataset) -> tuple[dict[str, float], int]:
+    """The extremes of a stack by the names of one layer: those of the layer that bears most, and of the interface with
+    the largest shear; and the number of that interface."""
+    layer, interface = (int(np.nanargmax(largest[name].values)) for name in ("mises_layer", "tau_interface"))
+    layers, interfaces = largest.isel(layer=layer), largest.isel(interface=interface)
+    names = {"mises1": "mises_layer", "sr_interface1": "sr_interface"}
+    made = {}
+    for name in ("mises1", "mises2", "s1_surface", "sr_interface1", "tau_interface"):
+        source = layers if name == "mises1" else interfaces
+        for end in ("", "_r", "_z"):
+            made[f"{name}{end}"] = float(source[f"{names.get(name, name)}{end}"])
+    return made, interface + 1
 
 
 def yield_strengths(contact: xr.Dataset) -> dict[str, float]:
     """Yield strengths of layer and body, in Pa or in units of the solver; NaN where they are not known."""
     contacts = Contacts.of(contact, "plot_stresses")
     (unit,), known = contacts.units[0].tolist(), strengths(contacts, {})
+    if numbers_of(contacts.problem.parameters) > 1:  # each layer has its own
+        known["layer"] = np.full(1, np.nan)
     return {body: known[body].item() * unit for body in ("layer", "body")}
 
 

@@ -8,16 +8,15 @@ from solver.shapes import PARABOLOID
 from ..grid import Grid, along
 
 #: Inputs that decide whether there are stresses.
-DECIDE = ("base", "shape", "w_adhesion", "adhesion")
+DECIDE = ("shape", "w_adhesion", "adhesion")
 
 
-def without_stresses(base, rough, shape=PARABOLOID, w_adhesion=0.0, adhesion="jkr", *, largest=False) -> str:
+def without_stresses(rough, shape=PARABOLOID, w_adhesion=0.0, adhesion="jkr", *, largest=False) -> str:
     """Why some of the cases have no stresses, or no `largest` ones; "" where all have them. Values are texts and
     numbers, or arrays; rough : whether the cases have asperities."""
     shape, sticks = np.asarray(shape), np.asarray(w_adhesion) > 0
     flat = shape == "flat"
     reasons = (
-        (is_stack(np.asarray(base)), "no stresses in stacks of layers yet, but of one layer (base = layered)"),
         (sticks & (np.asarray(adhesion) != "jkr"), 'no stresses of contacts that stick yet, but by adhesion = "jkr"'),
         (
             rough & (shape != PARABOLOID),
@@ -34,6 +33,7 @@ def without_stresses(base, rough, shape=PARABOLOID, w_adhesion=0.0, adhesion="jk
 
 def none_in(grid: Grid, *, largest: bool = True) -> str:
     """The same of the cases of a grid."""
+    if np.any(is_stack(np.asarray(along(grid, "base")))):
+        return "the largest stresses in stacks of layers are not stored: study.extremes has them, of any results"
     rough = ~np.isin(along(grid, "micro"), grid.lexicon.smooth_laws())
-    base, *others = (along(grid, name) for name in DECIDE)
-    return without_stresses(base, rough, *others, largest=largest)
+    return without_stresses(rough, *(along(grid, name) for name in DECIDE), largest=largest)

@@ -1,0 +1,129 @@
+"""What lies below one contact on a stack, and the field there.
+
+A graded layer is as many uniform ones. Displacements and tractions go on through their interfaces, the stresses within
+the plane do not: these are taken with the modulus that the layer has at the depth itself, so that they go on too.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...body.graded import at_depths, graded_among, sublayers_of
+from ...body.stacked import kernel_of, layers_of
+from ...kernels.stack import Stack
+from .. import normal, sliding
+from ..field import integrals
+from ..pressure import Pressure
+
+#: A graded layer of which nothing else is said is cut into so many uniform ones in each octave of the depth; the first
+#: one in so many octaves. With twice as many, 5 octaves, stresses change by what `error` says
+#: (tests/fields/test_contacts_on_stacks.py).
+SUBLAYERS, _OCTAVES = 8, 4
+
+
+class Section(NamedTuple):
+    """The layers below one contact, N layers that are given; lengths are in a, stresses in the unit of the problem.
+
+    stack : :class:`~solver.kernels.stack.Stack` of one case, of all sublayers; h : (1,), thickness of its first layer
+    last : (N,), which of the sublayers is the last of each given layer
+    pressure : :class:`~..pressure.Pressure`; mu : >= 0, friction
+    residual : (N,), the residual stress of each layer
+    graded, profiles : keys of the layers (1, N), None if none is graded, and the tables of profiles
+    """
+
+    stack: Stack
+    h: np.ndarray
+    last: np.ndarray
+    pressure: Pressure
+    mu: float
+    residual: np.ndarray
+    graded: dict | None
+    profiles: dict
+
+    @classmethod
+    def of(cls, scaled, a, pressure, mu, residual):
+        """Of one case of a problem in units R = E2* = 1, of the radius a (1,). residual : (N,)"""
+        layers = layers_of(scaled)
+        sublayers = np.where(scaled.sublayers == 0, SUBLAYERS, scaled.sublayers)
+        stack, h = kernel_of(scaled.but(sublayers=sublayers), octaves=_OCTAVES)
+        last = np.cumsum(sublayers_of(layers, sublayers, octaves=_OCTAVES)) - 1
+        graded = layers if graded_among(layers).any() else None
+        return cls(stack, h / a, last, pressure, mu, np.asarray(residual, dtype=float), graded, scaled.known.profiles)
+
+    @property
+    def ends(self):
+        """(N,), the depths of the interfaces, below each layer."""
+        return self.stack.tops(self.h)[0, self.last + 1]
+
+    @property
+    def rigid(self):
+        return bool(self.stack.rigid[0])
+
+    def numbers(self, z, below=False):
+        """In which layer depths z (Z,) are, from 0, or N, in the body; one at an interface in the upper, or the lower
+        one."""
+        return np.searchsorted(self.ends, z, side="right" if below else "left")
+
+    def field(self, r, z, number, displacements=True, roughly=False):
+        """Name -> (Z, R), at radii r (R,) and depths z (Z,) in the layers `number` (Z,), counted from 0, or N, in the
+        body; displacements times the unit of stress. With mu > 0 also the amplitudes of sliding, times mu. Without
+        `displacements` the stresses alone."""
+        region = self._region(z, number)
+        here = self.stack, self.h, self.pressure, r, z[None], region, roughly
+        G2 = self.stack.shear[0, region][:, None]
+        made = {}
+        for kind, factor in ((normal, 1.0), (sliding, self.mu)):
+            if factor:
+                load = kind.LOAD if displacements else kind.LOAD.of_stresses()
+                whole = integrals(load, *here)[:, 0]
+                made |= {name: factor * values for name, values in kind.components(whole, G2).items()}
+        if "ux_0" in made and self.stack.slips[0]:
+            made["ux_0"] = np.full_like(made["ux_0"], np.nan)
+        if self.graded:
+            self._at_their_depth(made, z, number, region)
+        return made
+
+    def stresses(self, r, z, number, roughly=False):
+        """sr, st, sz, trz (4, S, Z, R), for each sign of x in sliding, with the residual stresses."""
+        field = self.field(r, z, number, False, roughly)
+        sides = [sliding.in_plane(field, sign < 0) for sign in self.signs] if self.mu > 0 else [field]
+        made = np.array([[side[name] for side in sides] for name in normal.NAMES[:4]])
+        made[:2] += np.append(self.residual, 0.0)[number][:, None]
+        return made
+
+    @property
+    def signs(self):
+        """Of x in the plane y = 0, where sliding tells ahead from behind."""
+        return (1.0, -1.0) if self.mu > 0 else (1.0,)
+
+    def _region(self, z, number):
+        """Which sublayer the depths are in, (Z,)."""
+        tops = self.stack.tops(self.h)[0]
+        first = np.append(0, self.last + 1)
+        inner = np.searchsorted(tops, z, side="right") - 1
+        return np.clip(inner, first[number], np.append(self.last, self.last[-1] + 1)[number])
+
+    def _at_their_depth(self, field, z, number, region):
+        """Put the stresses in graded layers into `field` that the modulus at their depth makes."""
+        tops, ends = np.append(0.0, self.ends), self.ends
+        for j in np.flatnonzero(graded_among(self.graded)):
+            rows = np.flatnonzero(number == j)
+            share = (z[rows] - tops[j]) / (ends[j] - tops[j])
+            n, nu = at_depths(self.graded, j, np.clip(share, 0.0, 1.0)[None], self.profiles)
+            old = self.stack.poisson[0, region[rows]]
+            more = n[0] * (1 - nu[0]) / self.stack.shear[0, region[rows]]
+            for end in ("", "_c") if self.mu > 0 else ("",):
+                total, difference = field[f"sr{end}"][rows], field[f"st{end}"][rows]
+                total, difference, sz = total + difference, total - difference, field[f"sz{end}"][rows]
+                total = _with(total, sz, old[:, None], nu[0][:, None], more[:, None])
+                field[f"sr{end}"][rows] = (total + more[:, None] * difference) / 2
+                field[f"st{end}"][rows] = (total - more[:, None] * difference) / 2
+            if self.mu > 0:
+                field["srt_s"][rows] *= more[:, None]
+
+
+def _with(total, sz, old, nu, more):
+    """sr + st of a material with Poisson ratio nu and `more` times the shear modulus, under the same strains in the
+    plane and the same sz, from that of a Poisson ratio `old`."""
+    of_strain = ((1 - old) * total - 2 * old * sz) / (1 + old)
+    return (2 * nu * sz + (1 + nu) * more * of_strain) / (1 - nu)

@@ -19,7 +19,6 @@ from ..inputs.reading import same_tables
 from ..inputs.vocabulary import NOT_RUN, suggest
 from ..store.blocks import lost_cases
 from ..store.edits import owner_of
-from ..store.former_parts import are_all_kept
 from ..store.window_files import WindowFiles, belongs, of_what
 from ..store.windows import Store, Window
 from ..terminal import counted, on_one_line, program, shown
@@ -161,6 +160,8 @@ def _refusal(order: Order, condition: Condition, command: str) -> str:
 
 def _refusal_of_many(order: Order, state: WindowFiles, rivals: list[Condition], command: str) -> str:
     """Why files of other results must not be removed; "" if all their cases are in this study, which takes them."""
+    from ..store.former_parts import are_all_kept  # few runs have any
+
     if are_all_kept(state, rivals):
         return ""
     what = f"holds {counted(len(rivals), 'part')} of {of_what(rivals[0], order.definition)}"

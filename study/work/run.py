@@ -14,7 +14,6 @@ from ..files.atomic import make_folder, target
 from ..files.lock import held
 from ..inputs.definition import Definition, StudyError
 from ..store.blocks import add, count_statuses, inventory, put_in_memory, write_rest
-from ..store.former_parts import take_over
 from ..store.window_files import WindowFiles, add_counts, checked, glance, put_away
 from ..store.windows import Window
 from ..store.writer import Export, exporting
@@ -60,6 +59,8 @@ def _make_room(order: Order, state: WindowFiles) -> None:
     """Remove what is in the way of the results, and say which damaged files stay under another name. Of parts of the
     study as it was the cases that it still has are kept, as blocks."""
     if state.others:  # as --force has said, or none of their cases is lost
+        from ..store.former_parts import take_over  # few runs have any
+
         make_folder(order.store.folder)
         take_over(state, state.rivals())
     for path in state.others:

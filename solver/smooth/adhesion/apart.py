@@ -19,7 +19,7 @@ from .jkr import Jkr
 from .maugis import Maugis, ring_stress
 
 #: Sublayers in each octave of a graded layer: answers with both are extrapolated, as of errors that fall like 1/m².
-_SUBLAYERS = (4, 8)
+SUBLAYERS = (4, 8)
 
 
 class Apart(NamedTuple):
@@ -37,8 +37,12 @@ def apart(problem, x):
     """
     if not is_graded(problem).any():
         return _apart(problem, x)
-    few, many = (_apart(problem.but(sublayers=np.full(len(problem), count)), x) for count in _SUBLAYERS)
-    return Apart(*((4 * more - less) / 3 for less, more in zip(few, many, strict=True)))
+    return Apart(*extrapolated(*(_apart(problem.but(sublayers=np.full(len(problem), n)), x) for n in SUBLAYERS)))
+
+
+def extrapolated(few, many):
+    """The arrays of a graded layer from those with few and with many sublayers, :data:`SUBLAYERS`."""
+    return ((4 * more - less) / 3 for less, more in zip(few, many, strict=True))
 
 
 def _apart(problem, x):

@@ -222,8 +222,8 @@ def worth_of(
 def _copies(x: np.ndarray, data: Data, fit: Minimum) -> int:
     """How many of the last curves are the same as the one before them: those that fill up a batch."""
     arrays = x, data.y, data.w, data.stiffness, fit.p, fit.model
-    same = np.logical_and.reduce([(array == array[-1:]).all(axis=1) for array in arrays])
-    return int(same[::-1].argmin()) - 1 if not same.all() else len(x) - 1
+    same = [((array == array[-1]) | (np.isnan(array) & np.isnan(array[-1]))).all(axis=1) for array in arrays]
+    return int(np.logical_and.reduce(same)[::-1].cumprod().sum()) - 1
 
 
 def _factors(A: np.ndarray, usual: np.ndarray, whole: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ import numpy as np
 
 from .arrays import xarray_later as xr
 from .data.coordinates import with_coordinates
-from .data.dataset import DatasetParts, parts
+from .data.dataset import DatasetParts, not_run, parts
 from .data.one_case import OneCase
 from .data.si import dataset_in_units, in_units
 from .derivatives import sensitivities as derivatives_of
@@ -190,6 +190,13 @@ def solve_one(stresses: str = "", /, *, same_piece: bool = False, **parameters: 
     if far := far_outside(definition):
         warnings.warn("\n".join(far), FarOutside, stacklevel=2)
     return OneCase(_solved_parts(definition, None, screen_of(None), begun))
+
+
+def inputs_of(**parameters: Any) -> xr.Dataset:
+    """The dataset of one contact as of :func:`solve`, which is not solved: with its inputs, and NaN for its results."""
+    definition = from_call(parameters, [], False, {"title": "", "output": {"x": 2, "profiles": False}})
+    unsolved = parts(definition, not_run(definition, 1), "study.solve").settings_apart()
+    return in_units(definition, unsolved).dataset()
 
 
 def _solved_parts(definition: Definition, workers: int | None, stream: TextIO | None, begun: float) -> DatasetParts:

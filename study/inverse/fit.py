@@ -26,7 +26,7 @@ from .fits.model import HERTZ, CurveModel
 from .fits.question import Question, inside, read_question, region
 from .fits.tables.branch import planned
 from .fits.tasks import Task, fit_task, forget
-from .no_pull import joined, without
+from .no_pull import OF_ADHESION, joined, without
 
 #: Curves in a block, and the multiple to which their points are filled up.
 _BLOCK, _PART = 64, 64
@@ -121,7 +121,8 @@ def fit(
     fitted = fit_dataset(question, rows, status, X, Y, there, plan)
     fitted = fitted.assign_coords({name: data[name] for name in data.coords})
     fitted = fitted.assign_attrs({"depth": list(limits)} if limits else {})
-    if "w_adhesion" in question.bounds and "w_adhesion" not in question.priors and len(question.free) > 1 and not plan:
+    beside = {*question.free} - {*OF_ADHESION}
+    if "w_adhesion" in question.bounds and "w_adhesion" not in question.priors and beside and not plan:
         options |= {"depth": limits, "x": x, "y": y, "progress": progress}
         fitted = _with_and_without(fitted, (X, Y, S), (free, options, parameters), question.bounds["w_adhesion"][0])
     return _as_called(fitted.assign_attrs(words_of(question, fitted)), question.called)

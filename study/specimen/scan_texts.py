@@ -36,6 +36,7 @@ _BINARY = re.compile(r"[\x00-\x02\x04-\x08\x0e-\x19\x1b-\x1f]")
 _PLAIN = b"0123456789+-.eE;, \t"
 #: Signs with which a number ends, and begins.
 _DIGITS, _BEGINS = "0123456789", "0123456789+-."
+_OF_TEXTS = bytes(code for code in range(128) if not _BINARY.match(chr(code)))
 _CHANNEL = re.compile(r"[#%\s]*(?:channel|kanal|kanál|canale?)\s*[:=]\s*(.+?)\s*$", re.IGNORECASE)
 #: Zygo writes this in the place of z.
 _NO_DATA = re.compile(r"(?i)^(\s*[-+\d.,eE]+[\s;,]+[-+\d.,eE]+[\s;,]+)no\s+data[\s;,]*$")
@@ -79,8 +80,13 @@ def text_of(path: Path) -> str | None:
             text = raw.decode(encoding)
         except UnicodeDecodeError:
             continue
-        return None if _BINARY.search(text) else text.replace("\r\n", "\n").replace("\r", "\n").replace("−", "-")
+        return None if _is_binary(text) else text.replace("\r\n", "\n").replace("\r", "\n").replace("−", "-")
     return None
+
+
+def _is_binary(text: str) -> bool:
+    """Whether signs stand in a text that no text has; of ASCII in a tenth of the time of the search."""
+    return bool(text.encode().translate(None, _OF_TEXTS) if text.isascii() else _BINARY.search(text))
 
 
 def table_of(text: str, name: str, channel: str | None = None) -> NumberTable:

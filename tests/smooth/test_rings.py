@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 from solver import Problem, solve
 from solver.shapes import shape_of
-from solver.smooth.adhesion.apart import apart
+from solver.smooth.adhesion.curve_terms import curve_terms
 from solver.smooth.adhesion.rings import rings
 from solver.smooth.radius import Radii
 
@@ -44,6 +44,6 @@ def test_parts_are_the_contact(name):
     x = Radii(shape_of(problem)).of(a)[:, None]
     gap, opening, load, depth = (part[:, 0] for part in rings(problem, x, np.array([[0.003], [0.05], [0.3]])))
     solution = solve(Problem.of(w_adhesion=sigma * (gap + sigma * opening), **about), np.array([0.0]))
-    free = apart(problem.but(adhesion=np.full(3, "jkr")), x).values[:2, :, 0]
+    free = curve_terms(problem.but(adhesion=np.full(3, "jkr")), x).values[:2, :, 0]
     assert_allclose(free[0] + sigma * load, solution.P, rtol=rtol, atol=0)
     assert_allclose(free[1] + sigma * depth, solution.D, rtol=rtol, atol=0)

@@ -16,8 +16,8 @@ from ...body.graded import is_graded
 from ...scaling import dimensionless, with_rigid_punch
 from ...shapes import shape_of
 from ..radius import Radii
-from ..tabulated import where_slow
-from .apart import SUBLAYERS, extrapolated
+from ..tabulated_body import where_slow
+from .curve_terms import SUBLAYERS, extrapolated
 from .maugis import Maugis
 
 #: σ₀ over E of the rings from which the parts follow. With the first the shape alone counts, with the second the ring

@@ -9,12 +9,12 @@ import xarray as xr
 from solver import Status
 
 from ...in_words.fits import NAMES_OF_SHIFTS
-from ...in_words.inputs import given
 from ...in_words.sentences import assumed
+from ...in_words.stated_inputs import given
 from ...inputs.scene.layers import moduli_of
 from ...inputs.vocabulary import NOT_RUN, ROWS
 from ...rules.rule import RULES
-from ...solving import inputs_of, solve
+from ...solving import solve, unsolved
 from .block import FitStatus
 from .model import CurveModel
 from .question import Question
@@ -292,7 +292,7 @@ def flows(model: CurveModel, modulus: np.ndarray, contacts: xr.Dataset) -> np.nd
 def words_of(question: Question, fitted: xr.Dataset) -> dict[str, str]:
     """Attributes of a Dataset of `fit`: `given`, the inputs that are not free; `assumed`, the defaults that stand for
     inputs which were not given, and may be far from them, if there are any."""
-    contact = inputs_of(**question.call)
+    contact = unsolved("fit", question.call)
     free = [name for name in question.free if name in fitted]  # none of a plan: these are its assumed values
     for name in free:  # the assumptions depend on how soft the layer is
         if np.isfinite(value := fitted[name].median().item()):

@@ -40,7 +40,7 @@ _TOGETHER = 128
 _MOVE = 1e-5
 
 
-class Parts(NamedTuple):
+class RingParts(NamedTuple):
     """The four parts at N points, (4, N) each: values, and their derivatives by x and y."""
 
     value: np.ndarray
@@ -124,7 +124,7 @@ class RingTable:
         near = np.log(np.pi / 4 * sought.wanted / (sought.sigma * sought.scale[1]))
         y = np.minimum(near, np.log(2 * sought.wanted / sought.scale[0]) / 2)[:, None] + 0 * read.x
 
-        def step(parts: Parts) -> np.ndarray:
+        def step(parts: RingParts) -> np.ndarray:
             gap, opening = parts.value[:2] * sought.scale[:2, :, None]
             of_gap, of_opening = parts.by_y[:2] * sought.scale[:2, :, None]
             G = gap + s * opening
@@ -217,8 +217,8 @@ class _Read:
         self.names = (*table.terms.axes, *(table.model.moved if moved else ()))
         self.tiles: dict[tuple[int, int], tuple[np.ndarray, np.ndarray]] = {}
 
-    def parts(self, y: np.ndarray, wanted: np.ndarray | None = None) -> Parts:
-        """The :class:`Parts` (4, B, L) without scales at y (B, L), NaN where they are not `wanted`."""
+    def parts(self, y: np.ndarray, wanted: np.ndarray | None = None) -> RingParts:
+        """The :class:`RingParts` (4, B, L) without scales at y (B, L), NaN where they are not `wanted`."""
         out = np.full((3, 4, *y.shape), np.nan)
         plain = closed(self.x, y)
         for points, coefficients, weights, by_weights, narrow in self._points(y, wanted):
@@ -228,7 +228,7 @@ class _Read:
             of_x, of_y = of_x + np.where(narrow, of_y, 0.0), np.where(narrow, 0.0, of_y)
             value, by_x, by_y = (array[:, *points] for array in plain)
             out[:, :, *points] = value * ratio, by_x * ratio + value * of_x, by_y * ratio + value * of_y
-        return Parts(*out)
+        return RingParts(*out)
 
     def rows(self, y: np.ndarray) -> dict[str, np.ndarray]:
         """Derivatives (4, B, L) of the parts without scales by the coordinates of the table, and by inputs moved."""
@@ -276,9 +276,9 @@ class _Read:
         return rows, places
 
 
-def closed(x: np.ndarray, y: np.ndarray) -> Parts:
-    """The :class:`Parts` (4, ...) of rings around a paraboloid r²/2 on a half-space with E = 1: of the radius a = e^x
-    and the width c - a = e^y (Maugis, J. Colloid Interface Sci. 150, 1992). With m = c/a = 1/cos t
+def closed(x: np.ndarray, y: np.ndarray) -> RingParts:
+    """The :class:`RingParts` (4, ...) of rings around a paraboloid r²/2 on a half-space with E = 1: radius a = e^x, width
+    c - a = e^y (Maugis, J. Colloid Interface Sci. 150, 1992). With m = c/a = 1/cos t
 
         gap = a² [tan t + (m² - 2) t]/π,    opening = 4a (t tan t - m + 1)/π,    load = -2 a² (tan t + m² t),
         depth = -2 a tan t.
@@ -295,4 +295,4 @@ def closed(x: np.ndarray, y: np.ndarray) -> Parts:
     by_y = np.array([of_gap, of_opening, of_load, of_depth]) * over
     value = np.array([gap, opening, load, depth])
     powers = np.array([2.0, 1.0, 2.0, 1.0]).reshape(4, *[1] * value[0].ndim)
-    return Parts(value, powers * value - by_y, by_y)
+    return RingParts(value, powers * value - by_y, by_y)

@@ -277,8 +277,8 @@ class _Read:
 
 
 def closed(x: np.ndarray, y: np.ndarray) -> RingParts:
-    """The :class:`RingParts` (4, ...) of rings around a paraboloid r²/2 on a half-space with E = 1, of radius a = e^x and
-    width c - a = e^y (Maugis, J. Colloid Interface Sci. 150, 1992). With m = c/a = 1/cos t
+    """The :class:`RingParts` (4, ...) of rings around a paraboloid r²/2 on a half-space with E = 1, of radius a = e^x
+    and width c - a = e^y (Maugis, J. Colloid Interface Sci. 150, 1992). With m = c/a = 1/cos t
 
         gap = a² [tan t + (m² - 2) t]/π,    opening = 4a (t tan t - m + 1)/π,    load = -2 a² (tan t + m² t),
         depth = -2 a tan t.

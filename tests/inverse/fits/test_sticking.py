@@ -167,6 +167,15 @@ def test_the_bits_of_a_curve_do_not_depend_on_its_company():
             assert alone[name].values[0] == together[name].values[i], name
 
 
+def test_the_bits_of_a_curve_under_maugis():
+    P = loads(DEPTHS, **BARE | {"adhesion": "maugis", "sigma0": "2 kPa", "E2": "5 kPa"}, w_adhesion="0.4 mJ/m^2")
+    curves = P * np.array([[0.7], [1.0], [1.5]])
+    about = BARE | {"adhesion": "maugis", "sigma0": "2 kPa", "w_adhesion": "1 mJ/m^2", "intervals": "fisher"}
+    together, alone = (fitted(DEPTHS, part, ["E2", "w_adhesion"], **about) for part in (curves, curves[1]))
+    for name in ("E2", "w_adhesion", "D0", "w_adhesion_low", "fit_status"):
+        assert alone[name].values[0] == together[name].values[1], name
+
+
 def test_spreads_of_other_inputs_make_the_answer_less_sure():
     """By a modulus of the base with ±: E1 follows it as it does when the base has another one."""
     P, free = loads(DEPTHS, **GEL | TRUE), ["E1", "w_adhesion"]

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .minors import Layer, across, base, scaled, through
+from .minors import LayerPowers, across, base, scaled, through
 from .transfer import THIN, carried, decaying, growing
 
 
@@ -115,7 +115,7 @@ def _minors(stack, u, G, nu):
     X, found = base(G[:, -1], nu[:, -1], stack.rigid, False, u.shape[1]), []
     for j in reversed(range(stack.n.shape[1])):
         bottom = scaled(across(X, stack.free[:, j], *stack.springs(j, u)))
-        X = scaled(through(Layer.of(1 / G[:, j], nu[:, j]), u * stack.depth[:, j, None], bottom))
+        X = scaled(through(LayerPowers.of(1 / G[:, j], nu[:, j]), u * stack.depth[:, j, None], bottom))
         unit = (2 * G[:, j, None]) ** np.array([2, 1, 1, 1, 0])
         found.append([x[:, :, 0] * unit[..., None] for x in (X, bottom)])
     return found[::-1]

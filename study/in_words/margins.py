@@ -29,7 +29,7 @@ from ..rules.yield_bounds import stress_below_one
 from ..specimen import materials
 from ..specimen.quantities import readable
 from ..terminal import rounded
-from .inputs import is_rigid
+from .stated_inputs import is_rigid
 from .stress_lines import in_stacks, of_interfaces, strengths_of_layer, which_of_stacks
 
 #: Below this modulus in Pa a material is a rubber or a gel, which tears and does not yield. Nearly all have a Poisson

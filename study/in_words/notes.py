@@ -9,7 +9,7 @@ import numpy as np
 from solver import Status, solve
 from solver.bases import is_bare
 from solver.laws.cell.family import MOST, REACH
-from solver.models.cells import last_fraction
+from solver.models.asperity_error import last_fraction
 from solver.models.range_of_law import without_family
 from solver.parameters import one_of
 from solver.scaling import dimensionless, law_of

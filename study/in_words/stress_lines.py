@@ -17,8 +17,8 @@ from ..inputs.vocabulary import VOCABULARY, name_in_stack
 from ..rules.rule import RULES
 from ..specimen import materials
 from ..specimen.quantities import readable
-from .inputs import is_rigid
 from .numbers import given_text, in_its_unit, spread_of
+from .stated_inputs import is_rigid
 
 MOST_CASES = 20  # of a grid that are written out
 _BODIES = {"Y1": "layer", "Y2": "body", "Ya": "asperities", "Y_punch": "punch"}

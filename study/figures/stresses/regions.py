@@ -12,7 +12,7 @@ from ...data.body_strengths import strengths
 from ...data.contacts import Contacts
 from ...data.dataset import decode
 from ...fields import extremes, stresses
-from ...in_words.inputs import is_rigid
+from ...in_words.stated_inputs import is_rigid
 from ...inputs.definition import StudyError
 
 _NEAR = np.linspace(0, 0.4, 17) ** 2 / 0.4

@@ -9,7 +9,7 @@ from solver.yields.below.central_spot import section, spot_of
 
 from ...data.contacts import Contacts
 from ...fields import residual_stress
-from ...in_words.inputs import is_rigid
+from ...in_words.stated_inputs import is_rigid
 from ...inputs.definition import StudyError
 from .regions import Region, Stresses, one_contact, yield_strengths
 

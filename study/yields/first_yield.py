@@ -18,8 +18,8 @@ from ..data.contacts import Contacts
 from ..fields import carried, friction, numbered, refuse_both, residual_stresses, with_numbered_layers
 from ..inputs.vocabulary import CONTROLS, name_in_stack
 from ..rules.rule import validity_attributes
-from .asked import control_of, of_dataset, of_inputs, own_materials, refuse, without_control
-from .beyond import said_of, validity_at
+from .model_validity import said_of, validity_at
+from .yielding_contacts import control_of, of_dataset, of_inputs, own_materials, refuse, without_control
 
 BODIES = {"layer": "_Y1", "body": "_Y2", "asperities": "_Ya", "punch": "_Y_punch"}
 """What may yield, in the order of the codes of `first_yield` -> the end of the names of its numbers."""

@@ -15,8 +15,8 @@ from ..data.contacts import Contacts
 from ..fields import carried, friction, refuse_both
 from ..inputs.definition import StudyError
 from ..terminal import shown
-from .asked import of_dataset, of_inputs, own_materials, refuse, without_control
-from .first import about_of, labelled
+from .first_yield import about_of, labelled
+from .yielding_contacts import of_dataset, of_inputs, own_materials, refuse, without_control
 
 
 def h_protect(

@@ -238,7 +238,7 @@ def which_layer_first(panels, contacts: xr.Dataset) -> Columns:
     met += [row for i, row in enumerate(_INTERFACES) if (shear.argmax(axis=0) == i).any()]
     handles = [Line2D([], [], color=colour, linewidth=5, alpha=0.5, label=words) for words, colour in met]
     panels[0].figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=7)
-    panels[0].figure.suptitle("ball of steel 52100, DLC a-C:H on chromium on steel 52100, bonded, 40 N", fontsize=7)
+    panels[0].figure.suptitle("ball of steel 52100, DLC ta-C on chromium on steel 52100, bonded, 40 N", fontsize=7)
     grid = {
         name: array.ravel()
         for name, array in zip(("h1 [m]", "h2 [m]"), np.meshgrid(h1 / 1e6, h2 / 1e6, indexing="ij"), strict=True)

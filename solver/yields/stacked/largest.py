@@ -1,7 +1,7 @@
 """The largest stresses in each layer of a stack, at each interface and in the body, with their places.
 
 Each layer, the lower side of each, the body, and the surface inside and outside of the contact are searched by
-themselves, on a coarse grid of radii and depths, then from its peaks with patches that shrink (:mod:`~..peaks`). The
+themselves, on a coarse grid of radii and depths, then from its peaks with patches that shrink (:mod:`.patches`). The
 grid has the lengths of all that is there: a, the thickness of each layer and the depth of its top, and those over which
 stiff layers spread the pressure.
 """
@@ -19,7 +19,7 @@ from ...numerics.threads import one_blas_thread
 from ...scaling import dimensionless
 from ..contact import of_contacts as of_one_layer
 from ..extremes import VALUES
-from ..peaks import peak
+from .patches import climbed
 
 #: Name -> the function of the stresses whose largest value it is, and where it is looked for: in each "layer", at the
 #: "lower" side of each, on the "surface", or in the "body".
@@ -232,7 +232,7 @@ def _peaks(values, top):
 def _refined(grid, patches, value, side, row, column):
     """The value of a peak, and its r and z, (3,), from a coarse point."""
     at, half = (grid.u[column], grid.v[row]), [_spacing(grid.u, column), _spacing(grid.v, row)]
-    largest, (u, v) = peak(lambda u, v: patches(u, v)[:, side], value, at, half, grid.bounds)
+    largest, (u, v) = climbed(lambda u, v: patches(u, v)[:, side], value, at, half, grid.bounds)
     return np.array([largest, float(grid.radius(u)) * patches.case.signs[side], v])
 
 

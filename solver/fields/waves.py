@@ -18,7 +18,7 @@ from ..numerics.quadrature import gauss_legendre
 #: the largest (tests/fields/test_waves.py).
 _POINTS, _RADIANS = 20, 20.0
 #: The first panel ends at this times min(1/a, 1/h), over n of stiff layers, which bend over 1/n of that.
-_FIRST = 1e-4
+FIRST = 1e-4
 #: A field that decays like e^(-kz) ends at k = _END/z.
 _END = 36.0
 #: But no later than at SHORTEST, whose waves take some seconds: in thinner films, h below THINNEST, a stress next to
@@ -78,11 +78,11 @@ def farthest(h):
     return np.minimum(_MOST * np.maximum(h / _END, 1 / SHORTEST) - 1, _FARTHEST)
 
 
-def quadrature(first, last, reach):
+def quadrature(first, last, reach, radians=_RADIANS):
     """Nodes k and weights (K,) from 0 to `last`: the first panel ends at `first`, further ones are as long as their
-    distance from 0 until that is _RADIANS/reach. All three are rounded, so that many points and cases have one rule."""
+    distance from 0 until that is radians/reach. All three are rounded, so that many points and cases have one rule."""
     first, last, reach = 2.0 ** np.floor(np.log2(first)), _above(last), _above(reach)
-    widest = _RADIANS / reach
+    widest = radians / reach
     doubling = first * 2.0 ** np.arange(max(np.ceil(np.log2(min(widest, last) / first)), 0) + 1)
     rest = np.arange(doubling[-1], last, widest)[1:] if doubling[-1] < last else []
     ends = np.concatenate([[0.0], doubling, rest, [last] if last > doubling[-1] else []])
@@ -106,7 +106,7 @@ def integrals(load, layers, h, pressure, r, rows, roughly=False):
     z = np.array([row.z for row in rows]).T
     kinds = np.array([row.kind for row in rows])
     last = np.minimum(end / np.array([row.reach(h) for row in rows]).min(axis=1), shortest)
-    first = _FIRST * min(1.0, 1 / h.max()) / max(1.0, layers.n.max())
+    first = FIRST * min(1.0, 1 / h.max()) / max(1.0, layers.n.max())
     k, weight = quadrature(first, last.max(), 1 + r.max())
     bodies = Bodies(*(v[:, None, None] for v in Bodies.of(layers)))
     thin = np.sqrt(h.min() * h.max()) * k < THIN

@@ -70,7 +70,7 @@ def growing(y, nu, S, T):
     return u, -w, S, -T
 
 
-def _derivative(v, nu):
+def derivative(v, nu):
     """A v."""
     u, w, S, T = v
     return w + 2 * T, ((1 - 2 * nu) * S - nu * u) / (1 - nu), -T, (u + nu * S) / (1 - nu)
@@ -79,9 +79,9 @@ def _derivative(v, nu):
 def carried(x, nu, v):
     """State at the depth x below one of state v, e^(Ax) v = [cosh x + sinh x A + (x sinh x)/2 N + (x cosh x - sinh x)/2
     A N] v with N = A A - 1; for x below about 1.5."""
-    first = _derivative(v, nu)
-    second = tuple(a - b for a, b in zip(_derivative(first, nu), v, strict=True))
-    third = _derivative(second, nu)
+    first = derivative(v, nu)
+    second = tuple(a - b for a, b in zip(derivative(first, nu), v, strict=True))
+    third = derivative(second, nu)
     cosh, sinh = np.cosh(x), np.sinh(x)
     half, rest = x * sinh / 2, np.where(x < _SERIES, _odd_series(np.minimum(x, _SERIES)), x * cosh - sinh) / 2
     return tuple(cosh * a + sinh * b + half * c + rest * d for a, b, c, d in zip(v, first, second, third, strict=True))

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..fields.invariants import invariants, mises
-from .loaded import Loaded
-from .peaks import peak
+from .climb import climb
+from .jets import Jets
 
 #: Name -> the function of sr, st, sz, trz whose largest value it is. sz_interface_min is minus the largest of -sz.
 VALUES = {
@@ -33,12 +33,14 @@ EXTREMES = {
 }
 #: Extremes that may not exist: below _NOTHING of the largest pressure they are rounding, and 0.
 _MAY_LACK, _NOTHING = ("s1_surface", "s1_layer", "sr_interface1", "tau_interface", "sz_interface_max"), 1e-11
-#: A second place of the coarse grid is looked at too where it has this part of the best.
-_RIVAL = 0.9
+#: Further places of the coarse grid are looked at too where they have this part of the best.
+_RIVAL = 0.85
 #: The coarse grid (tests/yields/test_largest_stresses.py finds all references from it): radii in a; beyond the edge in
 #: lengths over which a layer bends, h or n^(1/3) h; depths in a, in octaves of h, and below the interface in a.
 _RADII = np.array([0, 0.15, 0.3, 0.45, 0.6, 0.7, 0.8, 0.9, 0.95, 1, 1.05, 1.15, 1.3, 1.6])
-_BEYOND, _OF_LENGTHS = np.array([0.25, 0.5, 1, 1.5, 2, 3, 4.5, 6.5]), np.array([0.25, 0.4, 0.5, 0.75, 1])
+_BEYOND, _OF_LENGTHS = np.array([0.12, 0.25, 0.5, 1, 1.5, 2, 3, 4.5, 6.5]), np.array([0.25, 0.4, 0.5, 0.75, 1])
+#: Those of films that are nearer to the edge than this, inside too.
+_THIN = 1.3
 _DEPTHS = np.array([0.06, 0.12, 0.2, 0.3, 0.4, 0.48, 0.6, 0.8, 1.1])
 _OF_OCTAVE = np.array([0.25, 0.4, 0.55, 0.7, 0.85, 1, 1.2, 1.4, 1.6])
 _BELOW = np.array([0, 0.05, 0.15, 0.3, 0.48, 0.65, 0.9, 1.3])
@@ -48,6 +50,20 @@ _OF_RING, _BELOW_RING = np.array([-1, -0.4, 0, 0.3, 0.6, 1, 1.5, 2.2]), np.array
 _APART, _ALIKE = 25.0, 2.0
 #: No place is farther away than this, in a plus the length over which a layer spreads the pressure.
 _FARTHEST = 10.0
+#: Nearer to the axis than at this s = sqrt(1 - r²) the coordinate along the surface is the radius.
+_NEAR_AXIS = 0.8
+
+
+class Task(NamedTuple):
+    """The function of a case, a name of :data:`VALUES`, and the point of the coarse grid of a region from which it is
+    followed upwards."""
+
+    function: str
+    case: int
+    region: str
+    side: int
+    row: int
+    column: int
 
 
 class Grid(NamedTuple):
@@ -72,23 +88,23 @@ def extremes(loaded, names=EXTREMES):
     """Of each name of :data:`EXTREMES`: its value (B,) in units of the pressure, and its place r (signed if mu > 0) and
     z in a; mapping name -> (3, B). NaN where there is no such body."""
     made, wanted, grids, coarse = _on_coarse_grids(loaded, names)
+    tasks = {}  # -> the names whose starts they are
     for i in np.flatnonzero(np.isfinite(loaded.pressure.values).all(axis=1)):
-        alone, largest = loaded.take([i]), np.abs(loaded.pressure.values[i]).max()
-        fine = {region: _Fine(alone, grid) for region, grid in grids.items()}
         for name, kinds in wanted.items():
-            kinds = [region for region in kinds if region in grids]
-            if not kinds:
-                continue
-            value = VALUES[EXTREMES[name][0]]
-            peaks = [
-                p for start in _starts(i, value, kinds, coarse, grids) for p in [_refined(i, value, start, grids, fine)]
-            ]
-            best = np.array(max(peaks, key=lambda value_and_place: value_and_place[0]))
-            if name == "sz_interface_min":
-                best[0] *= -1
-            if name in _MAY_LACK and best[0] <= _NOTHING * largest:
-                best[:] = 0.0, np.nan, np.nan
-            made[name][:, i] = best
+            function = EXTREMES[name][0]
+            for at in _starts(i, VALUES[function], [kind for kind in kinds if kind in grids], coarse, grids):
+                tasks.setdefault(Task(function, i, *at), []).append(name)
+    for task, value, place in zip(tasks, *_climbed(loaded, list(tasks), grids), strict=True):
+        for name in tasks[task]:
+            best = made[name][:, task.case]
+            if not best[0] >= value:
+                best[:] = value, *place
+    largest = np.abs(loaded.pressure.values).max(axis=1)
+    for name, best in made.items():
+        if name in _MAY_LACK:
+            best[:, best[0] <= _NOTHING * largest] = np.array([0.0, np.nan, np.nan])[:, None]
+        if name == "sz_interface_min":
+            best[0] *= -1
     return made
 
 
@@ -135,10 +151,15 @@ def regions(loaded):
     lengths = _lengths(octave, bending)
     thick = np.outer(lengths, _OF_LENGTHS).ravel() * (not loaded.bare and lengths[-1] > 1)
     ring, deep = (np.unique(loaded.ring * values) for values in (_OF_RING, _BELOW_RING))
-    radii = np.unique(np.concatenate([_RADII, beyond[:5], thick, 1 - ring]))
-    wide = np.unique(np.concatenate([_RADII, beyond, thick, 1 - ring]))
+    within = 2 - beyond[beyond < _THIN]
+    radii = np.unique(np.concatenate([_RADII, beyond[:6], thick, 1 - ring, within]))
+    wide = np.unique(np.concatenate([_RADII, beyond, thick, 1 - ring, within]))
     surface = np.zeros((B, 1))
-    inner = np.unique(np.concatenate([np.linspace(0, 1, 12), np.sqrt(np.maximum(ring * (2 - ring), 0.0))]))
+    inner = np.unique(
+        np.concatenate(
+            [np.linspace(0, 1, 12), np.sqrt((1 - within) * (1 + within)), np.sqrt(np.maximum(ring * (2 - ring), 0.0))]
+        )
+    )
     outer = -np.sqrt(wide[wide >= 1] ** 2 - 1)[::-1]
     made = {
         "inside": Grid(inner, surface, (0.0, 1.0), np.zeros((B, 2)), loaded.bare, True),
@@ -192,32 +213,64 @@ def _starts(i, value, kinds, coarse, grids):
     return [start for value, start in starts if value >= best - (1 - _RIVAL) * abs(best)]
 
 
-def _refined(i, value, start, grids, fine):
-    """The value of a peak, and its r and z, from a coarse point."""
-    region, side, row, column = start
-    grid = grids[region]
-    half = [_spacing(grid.u, column), _spacing(grid.v[i], row)]
-    at = grid.u[column], grid.v[i, row]
-    stresses = fine[region]
-    largest, (u, v) = peak(lambda u, v: stresses(u, v)[:, side], value, at, half, (grid.u_bounds, grid.v_bounds[i]))
-    return largest, float(grid.radius(u)) * stresses.loaded.signs[side], v
+def _climbed(loaded, tasks, grids):
+    """Largest values (T,) near the starts of tasks, and their places (T, 2), r and z."""
+    jets, T = Jets(loaded), len(tasks)
+    functions, case, areas, side = (np.array([task[i] for task in tasks]) for i in range(4))
+    boxes, root = np.empty((4, T, 2)), np.zeros(T, dtype=bool)
+    for t, task in enumerate(tasks):
+        boxes[:, t], root[t] = _box(grids[task.region], task)
+    areas, kinds = _numbered(areas), _numbered(functions)
+
+    def at(index, u, v):
+        made = np.empty((6, 4, len(index)))
+        keys = np.stack([areas.of[index], case[index], side[index], root[index], u, v])
+        _, first, again = np.unique(keys, axis=1, return_index=True, return_inverse=True)
+        for number in np.unique(areas.of[index]):
+            here = first[areas.of[index[first]] == number]
+            some = index[here]
+            made[..., here] = jets(areas.names[number], case[some], side[some], root[some], u[here], v[here])
+        return made[..., first[again.ravel()]]
+
+    def value(index, stresses):
+        made = np.empty(stresses.shape[1:])
+        for number, name in enumerate(kinds.names):
+            here = np.flatnonzero(kinds.of[index] == number)
+            if len(here):
+                made[here] = VALUES[name](*stresses[:, here])
+        return made
+
+    values, places = climb(at, value, *boxes)
+    r = np.where(root, np.sqrt(np.maximum(1 - places[:, 0] * np.abs(places[:, 0]), 0.0)), places[:, 0])
+    return values, np.stack([r * np.array(loaded.signs)[side], places[:, 1]], axis=1)
+
+
+class _Numbered(NamedTuple):
+    """Different words, and the number of each (T,)."""
+
+    names: list
+    of: np.ndarray
+
+
+def _numbered(words):
+    names, of = np.unique(words, return_inverse=True)
+    return _Numbered(names.tolist(), of.ravel())
+
+
+def _box(grid, task):
+    """Start, half widths and bounds (4, 2) of a task, and whether its u is the root and not the radius: near the axis
+    it is the radius."""
+    u, v = grid.u[task.column], grid.v[task.case]
+    half, bounds = _spacing(grid.u, task.column), grid.u_bounds
+    root = grid.root and u < _NEAR_AXIS
+    if root and bounds[1] > 0:
+        bounds = 0.0, _NEAR_AXIS + 0.1
+    elif grid.root and not root:
+        u, half, bounds = grid.radius(u), _spacing(grid.radius(grid.u), task.column), (0.0, 0.9)
+    low, high = zip(bounds, grid.v_bounds[task.case], strict=True)
+    return [(u, v[task.row]), (half, _spacing(v, task.row)), low, high], root
 
 
 def _spacing(axis, at):
     """To the neighbours of a point of a coarse axis, the larger."""
     return np.abs(np.diff(axis[max(at - 1, 0) : at + 2])).max() if len(axis) > 1 else 1.0
-
-
-class _Fine:
-    """Stresses of one case in a region, (4, S, V, U) at u (U,), v (V,). Those of a patch are kept: several extremes
-    begin with the same."""
-
-    def __init__(self, loaded: Loaded, grid: Grid):
-        self.loaded, self.grid, self._kept = loaded, grid, {}
-
-    def __call__(self, u, v):
-        key = np.asarray(u).tobytes(), np.asarray(v).tobytes()
-        if key not in self._kept:
-            made = self.loaded.stresses(self.grid.radius(u), np.asarray(v)[None], self.grid.body)
-            self._kept[key] = made[:, 0]
-        return self._kept[key]

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..fields.invariants import invariants, mises
-from .climb import climb
-from .jets import Jets
+from .search.climb import climb
+from .search.jets import Jets
 
 #: Name -> the function of sr, st, sz, trz whose largest value it is. sz_interface_min is minus the largest of -sz.
 VALUES = {
@@ -55,10 +55,11 @@ _NEAR_AXIS = 0.8
 
 
 class Task(NamedTuple):
-    """The function of a case, a name of :data:`VALUES`, and the point of the coarse grid of a region from which it is
-    followed upwards."""
+    """The function of a case of a batch, a name of :data:`VALUES`, and the point of the coarse grid of a region from
+    which it is followed upwards."""
 
     function: str
+    batch: int
     case: int
     region: str
     side: int
@@ -67,7 +68,7 @@ class Task(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """The coarse grid of a region: u (U,) and v (B, V), bounds of both ((2,), (B, 2)), and whether it is the body.
+    """The coarse grid of a region: u (U,) and v (B, V), bounds of both (B, 2), and whether it is the body.
 
     The radius is u, or on the surface, `root`, sqrt(1 - u |u|), in which stresses are smooth up to the edge; v is the
     depth.
@@ -75,7 +76,7 @@ class Grid(NamedTuple):
 
     u: np.ndarray
     v: np.ndarray
-    u_bounds: tuple
+    u_bounds: np.ndarray
     v_bounds: np.ndarray
     body: bool
     root: bool = False
@@ -87,24 +88,37 @@ class Grid(NamedTuple):
 def extremes(loaded, names=EXTREMES):
     """Of each name of :data:`EXTREMES`: its value (B,) in units of the pressure, and its place r (signed if mu > 0) and
     z in a; mapping name -> (3, B). NaN where there is no such body."""
-    made, wanted, grids, coarse = _on_coarse_grids(loaded, names)
-    tasks = {}  # -> the names whose starts they are
-    for i in np.flatnonzero(np.isfinite(loaded.pressure.values).all(axis=1)):
-        for name, kinds in wanted.items():
-            function = EXTREMES[name][0]
-            for at in _starts(i, VALUES[function], [kind for kind in kinds if kind in grids], coarse, grids):
-                tasks.setdefault(Task(function, i, *at), []).append(name)
-    for task, value, place in zip(tasks, *_climbed(loaded, list(tasks), grids), strict=True):
+    return together([loaded], names)[0]
+
+
+def together(batches, names=EXTREMES):
+    """The :func:`extremes` of each of several :class:`~.loaded.Loaded`, with or without layers, of one mu."""
+    made, tasks = [], {}  # -> the names whose starts they are
+    boxes = []
+    for number, loaded in enumerate(batches):
+        values, wanted, grids, coarse = _on_coarse_grids(loaded, names)
+        made.append(values)
+        for i in np.flatnonzero(np.isfinite(loaded.pressure.values).all(axis=1)):
+            for name, kinds in wanted.items():
+                function = EXTREMES[name][0]
+                for at in _starts(i, VALUES[function], [kind for kind in kinds if kind in grids], coarse, grids):
+                    task = Task(function, number, i, *at)
+                    if task not in tasks:
+                        tasks[task] = []
+                        boxes.append(_box(grids[task.region], task))
+                    tasks[task].append(name)
+    for task, value, place in zip(tasks, *_climbed(batches, list(tasks), boxes), strict=True):
         for name in tasks[task]:
-            best = made[name][:, task.case]
+            best = made[task.batch][name][:, task.case]
             if not best[0] >= value:
                 best[:] = value, *place
-    largest = np.abs(loaded.pressure.values).max(axis=1)
-    for name, best in made.items():
-        if name in _MAY_LACK:
-            best[:, best[0] <= _NOTHING * largest] = np.array([0.0, np.nan, np.nan])[:, None]
-        if name == "sz_interface_min":
-            best[0] *= -1
+    for loaded, values in zip(batches, made, strict=True):
+        largest = np.abs(loaded.pressure.values).max(axis=1)
+        for name, best in values.items():
+            if name in _MAY_LACK:
+                best[:, best[0] <= _NOTHING * largest] = np.array([0.0, np.nan, np.nan])[:, None]
+            if name == "sz_interface_min":
+                best[0] *= -1
     return made
 
 
@@ -135,9 +149,9 @@ def _on_coarse_grids(loaded, names):
 
 
 def farthest_of(loaded):
-    """How far from the centre, in a, places are looked at."""
-    stiff = 1.0 if loaded.bare else max(1.0, np.cbrt(loaded.layers.n.max()))
-    return _FARTHEST * (1 + (0.0 if loaded.bare else stiff * loaded.h.max()))
+    """How far from the centre (B,), in a, places are looked at."""
+    stiff = 0 * loaded.h if loaded.bare else np.maximum(1.0, np.cbrt(loaded.layers.n))
+    return _FARTHEST * (1 + stiff * loaded.h)
 
 
 def regions(loaded):
@@ -147,7 +161,7 @@ def regions(loaded):
     stiff = 1.0 if loaded.bare else max(1.0, np.cbrt(loaded.layers.n.max()))
     far = farthest_of(loaded)
     bending = 0.5 if loaded.bare else octave * stiff
-    beyond = np.minimum(1 + bending * _BEYOND, far)
+    beyond = np.minimum(1 + bending * _BEYOND, far.max())
     lengths = _lengths(octave, bending)
     thick = np.outer(lengths, _OF_LENGTHS).ravel() * (not loaded.bare and lengths[-1] > 1)
     ring, deep = (np.unique(loaded.ring * values) for values in (_OF_RING, _BELOW_RING))
@@ -155,27 +169,25 @@ def regions(loaded):
     radii = np.unique(np.concatenate([_RADII, beyond[:6], thick, 1 - ring, within]))
     wide = np.unique(np.concatenate([_RADII, beyond, thick, 1 - ring, within]))
     surface = np.zeros((B, 1))
-    inner = np.unique(
-        np.concatenate(
-            [np.linspace(0, 1, 12), np.sqrt((1 - within) * (1 + within)), np.sqrt(np.maximum(ring * (2 - ring), 0.0))]
-        )
-    )
+    of_ring, of_film = np.sqrt(np.maximum(ring * (2 - ring), 0.0)), np.sqrt((1 - within) * (1 + within))
+    inner, none = np.unique(np.concatenate([np.linspace(0, 1, 12), of_ring, of_film])), np.zeros((B, 2))
+    from_axis = np.stack([0 * far, far], axis=1)
     outer = -np.sqrt(wide[wide >= 1] ** 2 - 1)[::-1]
     made = {
-        "inside": Grid(inner, surface, (0.0, 1.0), np.zeros((B, 2)), loaded.bare, True),
-        "outside": Grid(outer, surface, (-far, 0.0), np.zeros((B, 2)), loaded.bare, True),
+        "inside": Grid(inner, surface, none + [0.0, 1.0], none, loaded.bare, True),
+        "outside": Grid(outer, surface, -from_axis[:, ::-1], none, loaded.bare, True),
     }
     if loaded.bare:
         depths = np.tile(np.unique(np.concatenate([_DEPTHS, [1.5, 2.5], deep[deep > 0]])), (B, 1))
-        return made | {"body": Grid(radii, depths, (0.0, far), np.tile([0.0, far], (B, 1)), True)}
+        return made | {"body": Grid(radii, depths, from_axis, from_axis, True)}
     near = np.concatenate([_DEPTHS, deep[deep > 0]])
     depths = np.unique(np.concatenate([near[2 * octave > near], octave * _OF_OCTAVE]))
-    made["layer"] = Grid(radii, np.tile(depths, (B, 1)), (0.0, far), np.stack([0 * h, h], axis=1), False)
-    made["above"] = Grid(wide, h[:, None], (0.0, far), np.stack([h, h], axis=1), False)
+    made["layer"] = Grid(radii, np.tile(depths, (B, 1)), from_axis, np.stack([0 * h, h], axis=1), False)
+    made["above"] = Grid(wide, h[:, None], from_axis, np.stack([h, h], axis=1), False)
     if np.all(loaded.layers.n > 0):
         bounds = np.stack([h, h + far], axis=1)
         across, below = _of_body(radii, lengths)
-        made["body"] = Grid(across, h[:, None] + below, (0.0, far), bounds, True)
+        made["body"] = Grid(across, h[:, None] + below, from_axis, bounds, True)
     return made
 
 
@@ -213,36 +225,38 @@ def _starts(i, value, kinds, coarse, grids):
     return [start for value, start in starts if value >= best - (1 - _RIVAL) * abs(best)]
 
 
-def _climbed(loaded, tasks, grids):
+def _climbed(batches, tasks, boxes):
     """Largest values (T,) near the starts of tasks, and their places (T, 2), r and z."""
-    jets, T = Jets(loaded), len(tasks)
-    functions, case, areas, side = (np.array([task[i] for task in tasks]) for i in range(4))
-    boxes, root = np.empty((4, T, 2)), np.zeros(T, dtype=bool)
-    for t, task in enumerate(tasks):
-        boxes[:, t], root[t] = _box(grids[task.region], task)
-    areas, kinds = _numbered(areas), _numbered(functions)
+    if not tasks:
+        return [], []
+    jets, functions = [Jets(loaded) for loaded in batches], _numbered([task.function for task in tasks])
+    areas = _numbered([(task.batch, task.region) for task in tasks])
+    case, side = (np.array([getattr(task, name) for task in tasks]) for name in ("case", "side"))
+    root, boxes = np.array([root for _, root in boxes]), np.array([box for box, _ in boxes]).swapaxes(0, 1)
 
     def at(index, u, v):
         made = np.empty((6, 4, len(index)))
-        keys = np.stack([areas.of[index], case[index], side[index], root[index], u, v])
+        keys = np.stack([areas.of[index], case[index], side[index], u, v, root[index]])
         _, first, again = np.unique(keys, axis=1, return_index=True, return_inverse=True)
         for number in np.unique(areas.of[index]):
             here = first[areas.of[index[first]] == number]
-            some = index[here]
-            made[..., here] = jets(areas.names[number], case[some], side[some], root[some], u[here], v[here])
+            (batch, region), some = areas.names[number], index[here]
+            made[..., here] = jets[batch](region, case[some], side[some], root[some], u[here], v[here])
         return made[..., first[again.ravel()]]
 
     def value(index, stresses):
         made = np.empty(stresses.shape[1:])
-        for number, name in enumerate(kinds.names):
-            here = np.flatnonzero(kinds.of[index] == number)
+        for number, name in enumerate(functions.names):
+            here = np.flatnonzero(functions.of[index] == number)
             if len(here):
                 made[here] = VALUES[name](*stresses[:, here])
         return made
 
-    values, places = climb(at, value, *boxes)
+    scales = [np.abs(loaded.pressure.values).max(axis=1) for loaded in batches]
+    scale = np.array([scales[task.batch][task.case] for task in tasks])
+    values, places = climb(at, value, *boxes, scale)
     r = np.where(root, np.sqrt(np.maximum(1 - places[:, 0] * np.abs(places[:, 0]), 0.0)), places[:, 0])
-    return values, np.stack([r * np.array(loaded.signs)[side], places[:, 1]], axis=1)
+    return values, np.stack([r * np.array(batches[0].signs)[side], places[:, 1]], axis=1)
 
 
 class _Numbered(NamedTuple):
@@ -253,15 +267,16 @@ class _Numbered(NamedTuple):
 
 
 def _numbered(words):
-    names, of = np.unique(words, return_inverse=True)
-    return _Numbered(names.tolist(), of.ravel())
+    names = list(dict.fromkeys(words))
+    numbers = {name: number for number, name in enumerate(names)}
+    return _Numbered(names, np.array([numbers[word] for word in words]))
 
 
 def _box(grid, task):
     """Start, half widths and bounds (4, 2) of a task, and whether its u is the root and not the radius: near the axis
     it is the radius."""
     u, v = grid.u[task.column], grid.v[task.case]
-    half, bounds = _spacing(grid.u, task.column), grid.u_bounds
+    half, bounds = _spacing(grid.u, task.column), grid.u_bounds[task.case]
     root = grid.root and u < _NEAR_AXIS
     if root and bounds[1] > 0:
         bounds = 0.0, _NEAR_AXIS + 0.1

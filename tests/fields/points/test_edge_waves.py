@@ -4,7 +4,7 @@ import numpy as np
 from numpy.testing import assert_allclose
 from scipy.special import jv
 
-from solver.fields import edge_waves
+from solver.fields.points import edge_waves
 from solver.fields.pressure import Pressure
 from solver.numerics.mesh import mesh_of, panel_mesh
 from solver.numerics.quadrature import gauss_legendre
@@ -33,7 +33,7 @@ def test_the_product_with_a_bessel_function():
     weight = weight * k * np.exp(-k * z) * (1 - edge_waves.longer(k))
     f, direct = edge_waves.of_edge(pressure, k), pressure.transform(k)[0]
     for r in (0.85, 0.99, 1.0, 1.01, 1.15):
-        octave = np.array([edge_waves.octaves(np.array([r]))[0]])
+        octave = np.array([edge_waves.last_octave(np.array([r]))[0]])
         window = edge_waves.shorter(k, octave)[0] / (1 - edge_waves.longer(k))
         J = edge_waves.bessels(k, np.array([r]), f * window, 2)
         for m in (0, 1, 2, 3):

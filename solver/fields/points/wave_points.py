@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..kernels.transfer import (
+from ...kernels.transfer import (
     THIN,
     Bodies,
     Kind,
@@ -21,10 +21,10 @@ from ..kernels.transfer import (
     thick_waves,
     thin_surface,
 )
-from ..numerics import special
-from ..numerics.quadrature import gauss_legendre
+from ...numerics import special
+from ...numerics.quadrature import gauss_legendre
+from ..waves import FIRST, SHORTEST, quadrature
 from . import edge_waves
-from .waves import FIRST, SHORTEST, quadrature
 
 #: A field that decays like e^(-kz) ends at k = _END/z: at the largest stress the rest is 1e-12 of it.
 _END = 28.0
@@ -108,10 +108,10 @@ def _constants(bodies, h, k, thin, p, load):
     return _Constants(surface, whole, down * p[:, high], up * p[:, high], np.stack([S, np.where(bodies.bonded, T, 0)]))
 
 
-def sums(waves, amplitudes, load, orders, kind, case, r, z):
+def sums(waves, integrands, load, orders, kind, case, r, z):
     """The integrals over k of a load and their derivatives (JET, fields, P) at points r, z (P,) of the cases `case`.
 
-    amplitudes : ``amplitudes(v, nu, Q, across)`` of the integrands, linear
+    integrands : ``integrands(v, nu, Q, across)`` of the integrands, linear
     orders : of their Bessel functions
     kind : :class:`~solver.kernels.transfer.Kind` of all points
     """
@@ -126,23 +126,23 @@ def sums(waves, amplitudes, load, orders, kind, case, r, z):
             stop += 1
         some = order[start:stop]
         made[..., some] = _of_some(
-            waves, amplitudes, load, orders, kind, case[some], r[some], z[some], int(ends[stop - 1])
+            waves, integrands, load, orders, kind, case[some], r[some], z[some], int(ends[stop - 1])
         )
         start = stop
     return made
 
 
-def _of_some(waves, amplitudes, load, orders, kind, case, r, z, end):
+def _of_some(waves, integrands, load, orders, kind, case, r, z, end):
     k, nu = waves.k[:end], (waves.bodies.nu2 if kind == Kind.BODY else waves.bodies.nu1)[case]
     v, Q, across = _state(waves, load, kind, case, z, end)
     first = [k * values for values in derivative(v, nu)]
     second = [k * values for values in derivative(first, nu)]
     antiplane = (Q, across), (k * across / 2, 2 * k * Q), (k * k * Q, k * k * across)
-    rows = [amplitudes(state, nu, *pair) for state, pair in zip((v, first, second), antiplane, strict=True)]
+    rows = [integrands(state, nu, *pair) for state, pair in zip((v, first, second), antiplane, strict=True)]
     if waves.f is None:
         J = _bessels(k, r, max(orders))
     else:
-        octave, which = np.unique(edge_waves.octaves(r), return_inverse=True)
+        octave, which = np.unique(edge_waves.last_octave(r), return_inverse=True)
         window = edge_waves.shorter(k, octave)[which]
         J = edge_waves.bessels(k, r, waves.f[case, :end] * window, max(orders))
     slopes = {m: _slopes(J, m, k) for m in set(orders)}
@@ -212,12 +212,12 @@ def _state(waves, load, kind, case, z, end):
 
 
 def of_normal(v, nu, Q, across):
-    """Amplitudes of :data:`~.normal.NORMAL`."""
+    """Integrands of :data:`~..normal.NORMAL`."""
     u, _, S, T = v
     return radial_sum(v, nu), -u, S, T
 
 
 def of_sliding(v, nu, Q, across):
-    """Amplitudes of :data:`~.sliding.SLIDING`."""
+    """Integrands of :data:`~..sliding.SLIDING`."""
     u, _, S, T = v
     return radial_sum(v, nu), u + across, across - u, S, T + Q, T - Q

@@ -7,8 +7,8 @@ from numpy.testing import assert_allclose
 from solver.fields.pressure import Pressure
 from solver.kernels.two_layers import TwoLayers
 from solver.numerics.mesh import mesh_of
-from solver.yields.jets import Jets
 from solver.yields.loaded import Loaded
+from solver.yields.search.jets import Jets
 
 STEP = 1e-3
 #: Region, whether u is the root, u, and the depth in h: at the interface, in the film next to its edge, and away.

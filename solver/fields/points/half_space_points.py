@@ -9,7 +9,7 @@ and each derivative by z or r is an integral with one k more: of e^(-kz), and of
 
 import numpy as np
 
-from .half_space import Nodes, halvings_at
+from ..half_space import Nodes, halvings_at
 
 #: Points that are computed together: some 500 nodes each, of 25 complex numbers.
 _AT_ONCE = 32
@@ -17,7 +17,7 @@ _AT_ONCE = 32
 
 def normal_below(pressure, case, nu, r, z):
     """sr + st, sr - st, sz, trz by pressure, with derivatives (JET, 4, P), at points (P,) with z > 0 of the cases
-    `case` of a :class:`~.pressure.Pressure`, of half-spaces of Poisson ratios nu (P,)."""
+    `case` of a :class:`~..pressure.Pressure`, of half-spaces of Poisson ratios nu (P,)."""
     E, F = _potentials(pressure, case, r, z, 2)
     parts = F[0] - (1 + 2 * nu) * E[0], (1 - 2 * nu) * E[2] - F[2], -(E[0] + F[0]), -F[1]
     return np.stack(parts, axis=1)

@@ -5,26 +5,27 @@ import numpy as np
 
 #: Points of a model in each direction; then stencils about the best of them until they are this part of the box wide.
 _POINTS, _LEAST, _ROUNDS = 9, 3e-6, 20
-#: A model is right where it misses less than this part of what it promised: the box stays; else it is
-#: a quarter as wide.
+#: A model is right where it misses less than this part of what it promised: the box stays; else it is a quarter as
+#: wide.
 _RIGHT, _SHRINK = 0.1, 0.25
-#: Done when a model promises less than _SAME of the value, which is far below the 1e-6 that is promised; or the box is
-#: smaller than _SMALLEST; after _MOST steps at the latest (tests/yields/test_largest_stresses.py).
-_SAME, _SMALLEST, _MOST = 1e-13, 1e-8, 40
+#: Done when a model promises less than _SAME of the value and of the scale, far below the 1e-6 that is promised; or the
+#: box is smaller than _SMALLEST; after _MOST steps at the latest (tests/yields/test_largest_stresses.py).
+_SAME, _SMALLEST, _MOST = 1e-13, 1e-8, 30
 #: A box is at most so many times as wide as the last step was long.
 _STEPS = 4.0
 
 
-def climb(jets, value, start, half, low, high):
+def climb(jets, value, start, half, low, high, scale):
     """Largest values (T,) and their places (T, 2), each near its start.
 
     jets : ``jets(index, u, v)``, stresses with derivatives (6, 4, t) at one point (t,) for each of the tasks `index`
     value : ``value(index, stresses)`` of (4, t, m), (t, m)
     start, half : (T, 2), the first points (u, v), and half the widths of the boxes in which the models are trusted
     low, high : (T, 2), bounds of the region
+    scale : (T,), a number of the size of the stresses
     """
     centre, half = np.clip(start, low, high), np.where(low == high, 0.0, half)
-    widest, best, place = half.copy(), np.full(len(start), -np.inf), centre.copy()
+    widest, best, place = high - low, np.full(len(start), -np.inf), centre.copy()
     models = np.zeros((6, 4, len(start)))
     trial, promised = centre.copy(), np.full(len(start), np.inf)
     active = np.arange(len(start))
@@ -41,7 +42,7 @@ def climb(jets, value, start, half, low, high):
         ends = np.maximum(centre - half, low)[active], np.minimum(centre + half, high)[active]
         trial[active], promised[active] = _highest(active, value, models[..., active], centre[active], *ends)
         gain = promised[active] - best[active]
-        done = ~(gain > _SAME * np.abs(best[active])) | np.all(half[active] < _SMALLEST, axis=1)
+        done = ~(gain > _SAME * (np.abs(best) + scale)[active]) | np.all(half[active] < _SMALLEST, axis=1)
         place[active] = np.where((gain >= 0)[:, None], trial[active], centre[active])
         active = active[~done]
         if not len(active):

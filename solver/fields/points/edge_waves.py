@@ -10,12 +10,12 @@ Away from the edge nothing is left of it. So the waves that a thin film needs ar
 
 import numpy as np
 
-from ..numerics import special
-from ..numerics.kept import Kept
-from .pressure import edge_rule
+from ...numerics import special
+from ...numerics.kept import Kept
+from ..pressure import edge_rule
 
 #: f is a polynomial between so many Chebyshev points of each octave above LEAST: 4e-11 of the largest p^ at most, as
-#: much as the transform itself is off there (tests/fields/test_edge_waves.py).
+#: much as the transform itself is off there (tests/fields/points/test_edge_waves.py).
 _NODES, LEAST = 20, 128.0
 #: The window begins as the normal distribution about MIDDLE of the width _WIDTH does: of the part that is left out, and
 #: farther away from the edge than _AWAY/_WIDTH, it leaves e^(-_AWAY²/4). Each octave has such a window.
@@ -74,7 +74,7 @@ def longer(k):
     return special.ndtr((MIDDLE - k) * (np.sqrt(2) / _WIDTH))
 
 
-def octaves(r):
+def last_octave(r):
     """Which octave of short waves is the last that is felt at radii r (P,); -1: none is."""
     away = np.maximum(np.abs(1 - r), 1e-12)
     return np.floor(np.log2(_AWAY / (_WIDTH * away))).astype(int)

@@ -6,11 +6,12 @@ radius or, along the surface next to the edge, sqrt(1 - rÂ²), beyond it -sqrt(rÂ
 
 import numpy as np
 
-from ..fields import half_space_points, normal, sliding
-from ..fields.edge_waves import octaves
-from ..fields.half_space import on_surface
-from ..fields.wave_points import of_normal, of_sliding, sums, waves_of
-from ..kernels.transfer import Kind
+from ...fields import normal, sliding
+from ...fields.half_space import on_surface
+from ...fields.points import half_space_points
+from ...fields.points.edge_waves import last_octave
+from ...fields.points.wave_points import of_normal, of_sliding, sums, waves_of
+from ...kernels.transfer import Kind
 
 #: Above this part of the layer the half-space is a closed form, to which waves add the difference: they end sooner.
 NEAR = 0.8
@@ -20,7 +21,7 @@ _LEAST = 1e-12
 _REACHES = np.append(2.0 ** np.array([1, 4 / 3]), 2.0 ** np.arange(2, 40))
 #: By this u differs where closed forms of the surface are differentiated.
 _STEP = 1e-3
-#: Loads: traction, amplitudes, orders, closed form, components.
+#: Loads: traction, integrands, orders, closed form, components.
 _LOADS = (
     ((-1.0, 0.0), of_normal, normal.NORMAL.orders[:4], half_space_points.normal_below, normal.components),
     ((0.0, 1.0), of_sliding, sliding.SLIDING.orders[:6], half_space_points.sliding_below, sliding.components),
@@ -28,14 +29,14 @@ _LOADS = (
 
 
 class Jets:
-    """Of the cases of a :class:`~.loaded.Loaded`; the waves are formed when a point first needs them."""
+    """Of the cases of a :class:`~..loaded.Loaded`; the waves are formed when a point first needs them."""
 
     def __init__(self, loaded):
         self.loaded, self._waves = loaded, {}
         self.loads = _LOADS[: 1 + (loaded.mu > 0)]
 
     def __call__(self, region, case, side, root, u, v):
-        """Jets (6, 4, P) at points of a region of :data:`~.extremes.EXTREMES`.
+        """Jets (6, 4, P) at points of a region of :data:`~..extremes.EXTREMES`.
 
         case, side, root : (P,), of which case, on which side, and whether u is that of the surface next to the edge
         u, v : (P,)
@@ -70,7 +71,7 @@ class Jets:
         return z < NEAR * self.loaded.h[case]
 
     def _of_waves(self, load, on_top, body, case, r, v):
-        traction, amplitudes, orders = load[:3]
+        traction, integrands, orders = load[:3]
         whole = np.zeros((6, len(orders), len(r)))
         reach = np.searchsorted(_REACHES, 1 + r)
         near = on_top | self._is_near(case, v)
@@ -81,10 +82,10 @@ class Jets:
                 some = np.flatnonzero((reach == far) & (kinds == kind))
                 for waves in (long, short):
                     if waves is short:
-                        some = some[octaves(r[some]) >= 0] if short is not None else some[:0]
+                        some = some[last_octave(r[some]) >= 0] if short is not None else some[:0]
                     if len(some):
                         here = Kind(kind), case[some], r[some], v[some]
-                        whole[..., some] += sums(waves, amplitudes, traction, orders, *here)
+                        whole[..., some] += sums(waves, integrands, traction, orders, *here)
         return whole
 
     def _reaching(self, far):
@@ -100,21 +101,21 @@ class Jets:
         low, high = (-np.inf, 0.0) if outside else (0.0, 1.0)
         middle = np.clip(u, low + _STEP, high - _STEP)
         points = np.concatenate([u, middle - _STEP, middle, middle + _STEP])
-        made = self._on_surface(load, np.tile(case, 4), points, np.tile(root, 4))
+        made = self._on_surface(load, np.tile(case, 4), points, np.tile(root, 4), outside)
         values, before, at, after = np.split(made, 4, axis=1)
         first, second = (after - before) / (2 * _STEP), (after - 2 * at + before) / _STEP**2
         none = np.zeros_like(values)
         return np.stack([values, first + second * (u - middle), none, second, none, none])
 
-    def _on_surface(self, load, case, u, root):
-        """The integrals (fields, P) of half-spaces at the surface."""
+    def _on_surface(self, load, case, u, root, outside):
+        """The integrals (fields, P) of half-spaces at the surface; at the edge those of its side."""
         loaded = self.loaded
         r = np.where(root, np.sqrt(np.maximum(1 - u * np.abs(u), 0.0)), np.abs(u))
         nu = (loaded.layers.nu2 if loaded.bare else loaded.layers.nu1)[case]
         p, second, third = np.empty((3, len(r)))
         for i in np.unique(case):
             here, pressure = np.flatnonzero(case == i), loaded.pressure.take([i])
-            p[here] = pressure.at(r[here])[0]
+            p[here] = 0.0 if outside else pressure.at(r[here])[0]
             if load is _LOADS[0]:
                 second[here] = pressure.mean(r[here])[0]
             else:

@@ -70,14 +70,14 @@ class _Constants(NamedTuple):
     base: np.ndarray
 
 
-def waves_of(layers, h, pressure, farthest, least, tractions):
-    """:class:`Waves` that reach radii up to `farthest` and are felt at depths from `least` h on, of the `tractions`:
+def waves_of(layers, h, pressure, radius, least, tractions):
+    """:class:`Waves` that reach radii up to `radius` and are felt at depths from `least` h on, of the `tractions`:
     those that are felt everywhere, and the short ones next to the edge, None if there are none."""
     octave = 2.0 ** np.floor(np.log2(h.min()))
     last = _END / (least * octave)
     first = FIRST * min(1.0, 0.5 / octave) / max(1.0, layers.n.max())
     split = last > 1.2 * edge_waves.LAST and edge_waves.have_edge_waves(pressure.mesh)
-    k, weight = quadrature(first, edge_waves.LAST if split else min(last, SHORTEST), 1 + farthest, _RADIANS)
+    k, weight = quadrature(first, edge_waves.LAST if split else min(last, SHORTEST), 1 + radius, _RADIANS)
     p = edge_waves.transform(pressure, k) * (k * weight * (edge_waves.longer(k) if split else 1.0))
     long = _waves(layers, h, k, p, None, tractions)
     if not split:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..kernels.transfer import THIN, Bodies, Kind, wave_state
 from ..numerics import special
+from ..numerics.kept import Kept
 from ..numerics.quadrature import gauss_legendre
 
 #: A panel of _POINTS Gauss points holds at most so many radians of p^ J_m, and is no longer than its distance from 0,
@@ -37,6 +38,8 @@ _OF_OCTAVE = 3
 _SMALL, _TERMS = 3.0, 14
 #: Numbers in an array of states: so many waves are taken at once.
 _AT_ONCE = 200_000
+#: Bessel functions of coarse grids, which bodies of one octave of h/a share: half of their time.
+_kept = Kept(3e7)
 
 
 class Load(NamedTuple):
@@ -111,9 +114,10 @@ def integrals(load, layers, h, pressure, r, rows, roughly=False):
     bodies = Bodies(*(v[:, None, None] for v in Bodies.of(layers)))
     thin = np.sqrt(h.min() * h.max()) * k < THIN
     p = (pressure.transform(k) * weight)[:, None]
-    whole = np.zeros((len(load.orders), len(h), len(rows), len(r)))
+    whole, most = np.zeros((len(load.orders), len(h), len(rows), len(r))), max(load.orders)
+    kept = _kept.get((k.tobytes(), r.tobytes(), most), lambda: bessel(k, r, most)) if roughly else None
     for part in _parts(thin, z.size):
-        J, X = bessel(k[part], r, max(load.orders)), k[part] * h[:, None, None]
+        J, X = [values[part] for values in kept] if roughly else bessel(k[part], r, most), k[part] * h[:, None, None]
         for kind in Kind:
             index = np.flatnonzero((kinds == kind) & (last > k[part.start]))
             if len(index):

@@ -33,8 +33,9 @@ EXTREMES = {
 }
 #: Extremes that may not exist: below _NOTHING of the largest pressure they are rounding, and 0.
 _MAY_LACK, _NOTHING = ("s1_surface", "s1_layer", "sr_interface1", "tau_interface", "sz_interface_max"), 1e-11
-#: Further places of the coarse grid are looked at too where they have this part of the best.
-_RIVAL = 0.85
+#: Further places of the coarse grid are looked at too where they have this part of the best, or miss it by less than
+#: _ROUGH of the largest pressure, as rough stresses may.
+_RIVAL, _ROUGH = 0.85, 3e-4
 #: The coarse grid (tests/yields/test_largest_stresses.py finds all references from it): radii in a; beyond the edge in
 #: lengths over which a layer bends, h or n^(1/3) h; depths in a, in octaves of h, and below the interface in a.
 _RADII = np.array([0, 0.15, 0.3, 0.45, 0.6, 0.7, 0.8, 0.9, 0.95, 1, 1.05, 1.15, 1.3, 1.6])
@@ -98,10 +99,11 @@ def together(batches, names=EXTREMES):
     for number, loaded in enumerate(batches):
         values, wanted, grids, coarse = _on_coarse_grids(loaded, names)
         made.append(values)
+        largest = np.abs(loaded.pressure.values).max(axis=1)
         for i in np.flatnonzero(np.isfinite(loaded.pressure.values).all(axis=1)):
             for name, kinds in wanted.items():
-                function = EXTREMES[name][0]
-                for at in _starts(i, VALUES[function], [kind for kind in kinds if kind in grids], coarse, grids):
+                function, here = EXTREMES[name][0], [kind for kind in kinds if kind in grids]
+                for at in _starts(i, VALUES[function], here, coarse, grids, largest[i]):
                     task = Task(function, number, i, *at)
                     if task not in tasks:
                         tasks[task] = []
@@ -208,7 +210,7 @@ def _lengths(octave, bending):
     return np.geomspace(least, bending, 2 + int(np.log(bending / least) / np.log(_APART)))
 
 
-def _starts(i, value, kinds, coarse, grids):
+def _starts(i, value, kinds, coarse, grids, largest):
     """(region, side, row, column) of the coarse points of a case that are larger than their neighbours, and not much
     smaller than the largest."""
     starts = []
@@ -222,7 +224,7 @@ def _starts(i, value, kinds, coarse, grids):
         peaks = (values >= np.max(around, axis=0)) & np.isfinite(values)
         starts += [(values[at], (region, *at)) for at in map(tuple, np.argwhere(peaks))]
     best = max((value for value, _ in starts), default=np.nan)
-    return [start for value, start in starts if value >= best - (1 - _RIVAL) * abs(best)]
+    return [start for value, start in starts if value >= best - (1 - _RIVAL) * abs(best) - _ROUGH * largest]
 
 
 def _climbed(batches, tasks, boxes):

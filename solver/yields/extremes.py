@@ -40,6 +40,8 @@ _RIVAL, _ROUGH = 0.85, 3e-4
 #: lengths over which a layer bends, h or n^(1/3) h; depths in a, in octaves of h, and below the interface in a.
 _RADII = np.array([0, 0.15, 0.3, 0.45, 0.6, 0.7, 0.8, 0.9, 0.95, 1, 1.05, 1.15, 1.3, 1.6])
 _BEYOND, _OF_LENGTHS = np.array([0.12, 0.25, 0.5, 1, 1.5, 2, 3, 4.5, 6.5]), np.array([0.25, 0.4, 0.5, 0.75, 1])
+#: Radii of the surface and of the interface where layers thicker than _FELT may have weak tension.
+_AWAY, _FELT = np.array([1.8, 2.2, 2.5, 2.8, 3.2, 3.7, 4.4, 5.5]), 0.1
 #: Those of films that are nearer to the edge than this, inside too.
 _THIN = 1.3
 _DEPTHS = np.array([0.06, 0.12, 0.2, 0.3, 0.4, 0.48, 0.6, 0.8, 1.1])
@@ -169,7 +171,8 @@ def regions(loaded):
     ring, deep = (np.unique(loaded.ring * values) for values in (_OF_RING, _BELOW_RING))
     within = 2 - beyond[beyond < _THIN]
     radii = np.unique(np.concatenate([_RADII, beyond[:6], thick, 1 - ring, within]))
-    wide = np.unique(np.concatenate([_RADII, beyond, thick, 1 - ring, within]))
+    away = _AWAY * (octave > _FELT)
+    wide = np.unique(np.concatenate([_RADII, beyond, thick, 1 - ring, within, away]))
     surface = np.zeros((B, 1))
     of_ring, of_film = np.sqrt(np.maximum(ring * (2 - ring), 0.0)), np.sqrt((1 - within) * (1 + within))
     inner, none = np.unique(np.concatenate([np.linspace(0, 1, 12), of_ring, of_film])), np.zeros((B, 2))

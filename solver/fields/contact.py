@@ -97,20 +97,20 @@ def are_infinite(problem):
     return is_flat(problem) | (problem.w_adhesion > 0)
 
 
-def pressures_of(scaled, solution, a, judged=True):
-    """Yield indices of cases, their :class:`~.pressure.Pressure` in units of E2*, and its error (b,); where it is not
-    judged, which takes as long as finding the pressure, it is left out of rough contacts and paraboloids."""
+def pressures_of(scaled, solution, a, with_errors=True):
+    """Yield indices of cases, their :class:`~.pressure.Pressure` in units of E2*, and its error (b,), without that of
+    profiles where it is not wanted: it takes as long as finding the pressure."""
     of_basis = by_equation(scaled, "basis")
     with_shape = np.flatnonzero(of_basis)
     depths = solution.D[with_shape] / scaled.R[with_shape]
     for rows, pressure, missed in shaped_pressures(scaled.take(with_shape), a[with_shape], depths):
         yield with_shape[rows], pressure, missed + _LEAST
     others = np.flatnonzero(~of_basis)
-    for rows, pressure, missed in _of_paraboloids(scaled.take(others), solution.take(others), a[others], judged):
+    for rows, pressure, missed in _of_paraboloids(scaled.take(others), solution.take(others), a[others], with_errors):
         yield others[rows], pressure, missed
 
 
-def _of_paraboloids(scaled, solution, a, judged):
+def _of_paraboloids(scaled, solution, a, with_errors):
     if not len(scaled):
         return
     named = solved_cases(scaled, solution.model_used).named
@@ -123,7 +123,7 @@ def _of_paraboloids(scaled, solution, a, judged):
         iterated = found_again(as_cases(some.written), nodes, a[rows], some.written.rtol)
         q, p_star = iterated.at.curve.q, iterated.at.cases.law.p_star * some.E2
         # panels may be others than those of the solution: their own error counts
-        off = answer(iterated, np.zeros(0)).solution.profile_error if judged else 0.0
+        off = answer(iterated, np.zeros(0)).solution.profile_error if with_errors else 0.0
         error = np.where(iterated.closed, off, np.nan)
         pressure = Pressure(iterated.at.mesh, np.where(np.isfinite(error)[:, None], p_star[:, None] * q, np.nan))
         edge = np.abs(pressure.at_edge()) / np.abs(pressure.values).max(axis=1)  # ought to be 0, and profiles say so

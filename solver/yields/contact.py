@@ -57,7 +57,7 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
 def _some(scaled, ended, a, mu, residual, punch):
     """Yield lists of indices of cases and their :class:`~.loaded.Loaded`, of some _TOGETHER cases."""
     few = []
-    for rows, pressure, _ in pressures_of(scaled, ended, a, judged=False):
+    for rows, pressure, _ in pressures_of(scaled, ended, a, with_errors=False):
         nu = None if punch is None else punch[rows]
         for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[rows], nu):
             few.append((rows[some], loaded))

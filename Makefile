@@ -129,6 +129,7 @@ fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crash
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tools/bench/benchmark.py bench.json
 	$(VENV)/bin/python tools/fields/benchmark_fields.py
+	$(VENV)/bin/python tools/fields/benchmark_extremes.py
 	$(VENV)/bin/python tools/fields/benchmark_shapes.py
 
 speed: $(READY) ## speeds of what people run, on an idle machine: docs/speed.md

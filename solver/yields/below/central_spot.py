@@ -148,7 +148,7 @@ class _Case:
         elif where == "body":
             if self.loaded.layers.n[0] == 0:
                 return []
-            edges = _doubling(self.h, least, self.h + farthest_of(self.loaded))
+            edges = _doubling(self.h, least, self.h + farthest_of(self.loaded).max())
         else:
             edges = _doubling(0.0, least, half_way(self.cell) * self.cell.pitch)
         at = edges[:-1, None] + np.diff(edges)[:, None] * (1 + chebyshev_nodes(_NODES)) / 2

@@ -48,7 +48,9 @@ def test_one_layer_in_two_pieces(mu):
 def test_a_stack_of_one_layer_has_its_names_too():
     one, stack = study.extremes(on_one_layer(a=0.1)), study.extremes(on([LAYER | {"nu": 0.2}], a=0.1))
     for name in one.data_vars:
-        assert_allclose(np.squeeze(stack[name]), one[name], rtol=1e-5, atol=1e-12, err_msg=str(name))
+        of_place = str(name).endswith(("_r", "_z"))  # of a maximum: known to the root of what its value is
+        atol = 2e-4 if of_place else 1e-12
+        assert_allclose(np.squeeze(stack[name]), one[name], rtol=1e-7, atol=atol, err_msg=str(name))
 
 
 def test_extremes_bound_the_stresses():

@@ -55,8 +55,8 @@ def first_crossing(
 
     stress : ``stress(index, at, coarse)``, of the cases `index` at the places `at` (b,): the stress over the strength,
         with `coarse` up to a little too small, its r and z, and the :class:`~solver.solution.Solution`
-    same_grid : ``same_grid(index, at)``, up to which places (b,) from `at` on contacts are so alike that several cost as much
-        as one; None: no others are
+    same_grid : ``same_grid(index, at)``, up to which places (b,) from `at` on contacts are so alike that several cost
+        as much as one; None: no others are
     """
     same_grid = (lambda index, at: at) if same_grid is None else same_grid
     made = Crossing.none(len(start))

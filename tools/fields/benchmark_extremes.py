@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-ROUNDS = 2
+ROUNDS = 3
 #: What runs in a process whose path begins with a checkout; it prints a name and two times a line.
 PROGRAM = """
 import sys, time, warnings

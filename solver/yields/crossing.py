@@ -49,19 +49,19 @@ class Crossing(NamedTuple):
 
 
 def first_crossing(
-    stress: Callable, start: np.ndarray, last: np.ndarray, slopes: bool = False, alike: Callable | None = None
+    stress: Callable, start: np.ndarray, last: np.ndarray, slopes: bool = False, same_grid: Callable | None = None
 ) -> Crossing:
     """From `start` (B,) up to `last` (B,), NaN or start > last: nothing is looked for.
 
     stress : ``stress(index, at, coarse)``, of the cases `index` at the places `at` (b,): the stress over the strength,
         with `coarse` up to a little too small, its r and z, and the :class:`~solver.solution.Solution`
-    alike : ``alike(index, at)``, up to which places (b,) from `at` on contacts are so alike that several cost as much
-        as one; None: no others are
+    same_grid : ``same_grid(index, at)``, up to which places (b,) from `at` on contacts are so alike that several cost
+        as much as one; None: no others are
     """
-    alike = (lambda index, at: at) if alike is None else alike
+    same_grid = (lambda index, at: at) if same_grid is None else same_grid
     made = Crossing.none(len(start))
     index = np.flatnonzero(start <= last)
-    places, values, failed = _bracketed(stress, index, start[index], np.log(last[index]), alike)
+    places, values, failed = _bracketed(stress, index, start[index], np.log(last[index]), same_grid)
     there = np.isfinite(places).all(axis=0)
     made.unsolved[index] = ~there & (failed | np.isfinite(places[1]))
     _searched(made, stress, index[there], places[:, there], values[:, there])
@@ -79,14 +79,16 @@ def _sloped(made, stress, index):
             made.by_strength[number][index] = change / np.log(value)
 
 
-def _bracketed(stress, index, start, last, alike):
+def _bracketed(stress, index, start, last, same_grid):
     """ln of the places before and behind the first crossing, NaN where there is none, and ln of the stress over the
     strength there, (2, b) each; and whether some contact has no solution."""
     places, values = np.full((2, 2, len(index)), np.nan)
     failed, at, far = np.zeros(len(index), dtype=bool), np.log(start), np.full(len(index), np.log(_LARGEST))
 
     def step(active):
-        rows, there = _steps(at[active], far[active], last[active], np.log(alike(index[active], np.exp(at[active]))))
+        rows, there = _steps(
+            at[active], far[active], last[active], np.log(same_grid(index[active], np.exp(at[active])))
+        )
         value = stress(index[active[rows]], np.exp(there), True)[0]
         near = _near(value, rows)
         if near.any():

@@ -60,7 +60,7 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slope
             value, r, z = mises_in(part, solution, body, layer, mu, residual[index], nu, coarse)
         return value / strength[index], r, z, solution
 
-    def alike(index, at):
+    def same_grid(index, at):
         """Up to where contacts have one coarse grid: h/a is in one octave; of spots it is each its own."""
         a = reach.flat[index] + at
         h = np.where(is_bare(problem.base[index]), a, problem.h[index] / problem.R[index])
@@ -71,7 +71,7 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slope
     start, round_ = _start(problem, body, left / problem.E2, mu), np.isin(problem.shape, ROUND)
     start = np.where(round_, np.maximum(start, NARROWEST), np.where(reach.sharp, np.nan, reach.start))
     made = first_crossing(
-        stress, np.where(left > 0, start, np.nan), np.where(round_, WIDEST, reach.last), slopes, alike
+        stress, np.where(left > 0, start, np.nan), np.where(round_, WIDEST, reach.last), slopes, same_grid
     )
     # the residual stress alone is as large as the strength, or there is a tip or corner below which it is infinite
     rest = (left <= 0) | reach.sharp & (left > 0)

@@ -31,7 +31,8 @@ def test_steps_of_an_octave_at_once_pass_no_crossing_that_single_steps_see():
 
     start, last = np.full(5, 0.05), np.full(5, 10.0)
     alone, together = (
-        first_crossing(stress, start, last, alike=alike) for alike in (None, lambda index, at: np.full(len(at), 1e9))
+        first_crossing(stress, start, last, same_grid=same_grid)
+        for same_grid in (None, lambda index, at: np.full(len(at), 1e9))
     )
     assert alone.crossed.all() and together.crossed.all()
     assert_allclose(together.at, tops * np.exp(-0.45 * np.sqrt(np.log(1.02))), rtol=1e-6)

@@ -53,8 +53,8 @@ literature: figures/literature.pdf figures/yielding.pdf ## published formulas be
 	$(VENV)/bin/python tools/literature_page.py docs/literature.md
 
 yield_maps: $(READY) ## where coated bodies first yield, and what fails first of DLC on steel: docs/stresses.md, .png
-	$(RUN) plot --run first_yield what_fails_first
-	@cp figures/first_yield.png figures/what_fails_first.png docs/
+	$(RUN) plot --run first_yield what_fails_first which_layer_first
+	@cp figures/first_yield.png figures/what_fails_first.png figures/which_layer_first.png docs/
 	@$(RUN) point --stresses docs/stresses.png R="5 mm" punch="steel 52100" layer="DLC ta-C" h="20 um" bonding=bonded \
 	  body=PEEK P="10 N" micro=smooth >/dev/null
 
@@ -129,6 +129,7 @@ fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crash
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tools/bench/benchmark.py bench.json
 	$(VENV)/bin/python tools/fields/benchmark_fields.py
+	$(VENV)/bin/python tools/fields/benchmark_extremes.py
 	$(VENV)/bin/python tools/fields/benchmark_shapes.py
 	$(VENV)/bin/python tools/fit/benchmark_fits.py
 

@@ -13,7 +13,7 @@ comes, as on the axis (:mod:`~solver.laws.cell.axis`).
 
 import numpy as np
 
-from ..kernels.transfer import Bodies, Kind, radial_sum, wave_state
+from ..kernels.transfer import radial_sum
 from ..laws.cell.axis import lone_on_axis, long_waves, transform
 from ..laws.cell.peak import pressures
 from ..laws.cell.spot import panels_of, pieces
@@ -35,24 +35,24 @@ _NODES = 32
 _AT_ONCE = 200_000
 
 
-def below_spot(cell, spot, layers, r, z, body, last=EXACT):
+def below_spot(cell, spot, layers, r, z, region, last=EXACT):
     """sr, st, sz and trz (4, Z, R) of the waves G != 0 below one spot, in units E = Ra = l = 1; tension is positive.
 
     cell, spot : :class:`~solver.laws.cell.spot.Cell` and :class:`~solver.laws.cell.spot.CellSpots` of one radius
-    layers : :class:`~solver.kernels.two_layers.TwoLayers` of the case
+    layers : :class:`~solver.kernels.transfer.Layered` of the case
     r, z : (R,), radii from the axis, which with b are less than the distance of neighbours; (Z,), depths, in l
-    body : bool, in the body, z >= h; else in the layer, z <= h
+    region : 0, in the first layer, z <= h; 1 and so on, in what is below it; of N layers, N is the body
     last : waves of u = kh up to this are taken
     """
     lattice, b, h = "hex" if cell.lattice == "disc" else cell.lattice, spot.b[0], 1 / cell.pitch
     k, c = lattice_waves(lattice, last * cell.pitch, b + r.max())
-    whole = _of_layers(k, c * transform(spot, k), h, layers, r, z, body)
-    if not body:
-        whole += _in_half_space(lattice, spot, r, z, float(layers.nu1[0]))
+    whole = _of_layers(k, c * transform(spot, k), h, layers, r, z, region)
+    if not region:
+        whole += _in_half_space(lattice, spot, r, z, float(layers.poisson[0, 0]))
     return np.stack([*normal.components(whole).values()])
 
 
-def below_summit(cell, b, p, layers, r, z, body, last=EXACT):
+def below_summit(cell, b, p, layers, r, z, region, last=EXACT):
     """The same below a spot of its own load, of random heights: the waves of the cells of equal heights with its
     radius b and the nominal pressure p, in units E = Ra = l = 1, and what it has beside these as a lone spot.
 
@@ -63,26 +63,27 @@ def below_summit(cell, b, p, layers, r, z, body, last=EXACT):
     own, share = both.spots(np.array([p])), p / both.equal.p[0]
     equal = both.equal._replace(phi=share * both.equal.phi, fall=share * both.equal.fall)
     rest = own._replace(phi=own.phi - equal.phi, fall=own.fall - equal.fall)
-    return below_spot(cell, equal, layers, r, z, body, last) + _below_lone(cell, rest, layers, r, z, body)
+    return below_spot(cell, equal, layers, r, z, region, last) + _below_lone(cell, rest, layers, r, z, region)
 
 
-def _below_lone(cell, spot, layers, r, z, body):
+def _below_lone(cell, spot, layers, r, z, region):
     """sr, st, sz and trz (4, Z, R) below a lone spot, of waves to 1e-8 of their pressure."""
     k, c = lone_waves(cell.pitch, (spot.b[0] + r.max()) / 2)
-    whole = _of_layers(k, c * k * transform(spot, k), 1 / cell.pitch, layers, r, z, body)
-    if not body:
-        whole += _lone(spot, r, z, float(layers.nu1[0]))
+    whole = _of_layers(k, c * k * transform(spot, k), 1 / cell.pitch, layers, r, z, region)
+    if not region:
+        whole += _lone(spot, r, z, float(layers.poisson[0, 0]))
     return np.stack([*normal.components(whole).values()])
 
 
-def _of_layers(k, weights, h, layers, r, z, body):
-    """The four integrals (4, Z, R) of waves k with weights (K,), in the body, or in the layer less a half-space."""
-    nu = float((layers.nu2 if body else layers.nu1)[0])
-    bodies, kind, whole = Bodies.of(layers), Kind.BODY if body else Kind.DIFFERENCE, np.zeros((4, len(z), len(r)))
+def _of_layers(k, weights, h, layers, r, z, region):
+    """The four integrals (4, Z, R) of waves k with weights (K,), in a region, of the first layer less a half-space."""
+    region = int(region)
+    nu, whole = float(layers.poisson[0, region]), np.zeros((4, len(z), len(r)))
     for thin in (True, False):
         some = np.flatnonzero((k * h < _THIN) == thin)
         for part in np.array_split(some, 1 + len(some) * len(z) // _AT_ONCE) if len(some) else ():
-            state = wave_state(kind, bodies, k[part] * h, np.outer(z, k[part]), (-1.0, 0.0), thin)
+            waves = layers.waves(k[part], np.array([h]), (-1.0, 0.0))
+            state = [v[0] for v in waves.state(region, z[None], region == 0)]
             whole += _summed(state, nu, weights[part], bessel(k[part], r, 2))
     return whole
 

@@ -112,13 +112,16 @@ def are_infinite(problem):
     return is_flat(problem) | (problem.w_adhesion > 0)
 
 
-def pressures_of(scaled, solution, a):
+def pressures_of(scaled, solution, a, with_errors=True):
     """Yield indices of cases, their :class:`~.pressure.Pressure` in units of E2*, and its error (b,). That on a graded
-    layer is the one of its sublayers, whose load differs from that of the solution by about as much as the stresses."""
+    layer is the one of its sublayers, whose load differs from that of the solution by about as much as the stresses.
+
+    with_errors : without that of profiles the error takes less time, as long as finding the pressure
+    """
     graded = is_graded(scaled)
     if graded.any():
         cut = scaled.but(sublayers=np.where(graded, SUBLAYERS, scaled.sublayers))
-        for rows, pressure, missed in pressures_of(cut, solution, a):
+        for rows, pressure, missed in pressures_of(cut, solution, a, with_errors):
             load = 2 * np.pi * a[rows] ** 2 * pressure.mean(np.ones(1))[:, 0]
             change = _OF_GRADED * np.abs(load / solution.P[rows] - 1)
             yield rows, pressure, missed + np.where(graded[rows], change, 0.0)
@@ -129,11 +132,11 @@ def pressures_of(scaled, solution, a):
     for rows, pressure, missed in shaped_pressures(scaled.take(with_shape), a[with_shape], depths):
         yield with_shape[rows], pressure, missed + _LEAST
     others = np.flatnonzero(~of_basis)
-    for rows, pressure, missed in _of_paraboloids(scaled.take(others), solution.take(others), a[others]):
+    for rows, pressure, missed in _of_paraboloids(scaled.take(others), solution.take(others), a[others], with_errors):
         yield others[rows], pressure, missed
 
 
-def _of_paraboloids(scaled, solution, a):
+def _of_paraboloids(scaled, solution, a, with_errors):
     if not len(scaled):
         return
     named = solved_cases(scaled, solution.model_used).named
@@ -146,7 +149,8 @@ def _of_paraboloids(scaled, solution, a):
         iterated = found_again(as_cases(some.written), nodes, a[rows], some.written.rtol)
         q, p_star = iterated.at.curve.q, iterated.at.cases.law.p_star * some.E2
         # panels may be others than those of the solution: their own error counts
-        error = np.where(iterated.closed, answer(iterated, np.zeros(0)).solution.profile_error, np.nan)
+        off = answer(iterated, np.zeros(0)).solution.profile_error if with_errors else 0.0
+        error = np.where(iterated.closed, off, np.nan)
         pressure = Pressure(iterated.at.mesh, np.where(np.isfinite(error)[:, None], p_star[:, None] * q, np.nan))
         edge = np.abs(pressure.at_edge()) / np.abs(pressure.values).max(axis=1)  # ought to be 0, and profiles say so
         yield rows, pressure, error + edge + _LEAST

@@ -43,7 +43,7 @@ def integrals(pressure, r, z, most=2, displacements=True):
     if not displacements:
         halvings = np.where(z == 0, -1, halvings)
     for count in np.unique(halvings[halvings >= 0]):
-        nodes = _Nodes.of(pressure, r, count)
+        nodes = Nodes.of(pressure, r, count)
         for i in np.flatnonzero(halvings == count):
             for whole, of_order in zip((E, F, D), _kernels(nodes, r[:, None], z[i], most, displacements), strict=True):
                 for m, kernel in enumerate(of_order):
@@ -51,7 +51,7 @@ def integrals(pressure, r, z, most=2, displacements=True):
     return Integrals(E, F, D)
 
 
-class _Nodes(NamedTuple):
+class Nodes(NamedTuple):
     """Nodes t (R, T) of the integrals over t, their distance t - r, and φ dt there (B, R, T)."""
 
     t: np.ndarray
@@ -61,36 +61,58 @@ class _Nodes(NamedTuple):
     @classmethod
     def of(cls, pressure, r, halvings):
         """For radii r (R,), on panels halved so many times towards t = r."""
-        centre, mesh = np.arcsin(np.minimum(r, 1.0))[:, None], pressure.mesh
-        fixed = np.arccos(np.array(mesh.breaks[::-1]))
-        widths = np.diff(fixed)
-        pieces = np.ceil(widths * mesh.order / _WIDTH).astype(int)
-        starts = zip(fixed[:-1], widths, pieces, strict=True)
-        fixed = np.concatenate([low + width * np.arange(n) / n for low, width, n in starts])
-        graded = np.pi / 2 * 0.5 ** np.arange(1, halvings + 1)
-        graded = np.concatenate([-graded, [0.0], graded]) + 0 * centre
-        # distances from the centre, because angles lose the digits of small ones
-        ends = np.concatenate([graded, fixed - centre, np.pi / 2 - centre], axis=1)
-        ends = np.sort(np.clip(ends, -centre, np.pi / 2 - centre), axis=1)
-        x, w = gauss_legendre(_POINTS)
-        width = np.diff(ends)[..., None]
-        distance = (ends[:, :-1, None] + width * x).reshape(len(r), -1)
-        angle = centre + distance
-        t, s = np.sin(angle), np.maximum(np.cos(angle), 0.0)
-        beyond = 2 * np.cos(centre + distance / 2) * np.sin(distance / 2) - np.maximum(r - 1, 0.0)[:, None]
+        t, beyond, s, width = _places(pressure.mesh, r, halvings)
         density = pressure.density(s) * s + (2 / np.pi * pressure.at_edge())[:, None, None]
-        weight = density * t * (width * w).reshape(len(r), -1)
+        weight = density * t * width
         if pressure.A is None:
             return cls(t, beyond, weight)
         edge = np.broadcast_to(pressure.A[:, None, None], (len(weight), len(r), 1))
         t, beyond = np.hstack([t, np.ones((len(r), 1))]), np.hstack([beyond, (1 - r)[:, None]])
         return cls(t, beyond, np.concatenate([weight, edge], axis=2))
 
+    @classmethod
+    def of_each(cls, pressure, r, halvings):
+        """The same, weights (R, T), of as many cases as radii: each at its own."""
+        t, beyond, s, width = _places(pressure.mesh, r, halvings)
+        density = pressure.density_of_each(s) * s + (2 / np.pi * pressure.at_edge())[:, None]
+        weight = density * t * width
+        if pressure.A is None:
+            return cls(t, beyond, weight)
+        t, beyond = np.hstack([t, np.ones((len(r), 1))]), np.hstack([beyond, (1 - r)[:, None]])
+        return cls(t, beyond, np.hstack([weight, pressure.A[:, None]]))
+
+
+def _places(mesh, r, halvings):
+    """Nodes t (R, T) for radii r (R,), their distance t - r, s = sqrt(1 - t²), and the width of each in the angle."""
+    centre = np.arcsin(np.minimum(r, 1.0))[:, None]
+    fixed = np.arccos(np.array(mesh.breaks[::-1]))
+    widths = np.diff(fixed)
+    pieces = np.ceil(widths * mesh.order / _WIDTH).astype(int)
+    starts = zip(fixed[:-1], widths, pieces, strict=True)
+    fixed = np.concatenate([low + width * np.arange(n) / n for low, width, n in starts])
+    graded = np.pi / 2 * 0.5 ** np.arange(1, halvings + 1)
+    graded = np.concatenate([-graded, [0.0], graded]) + 0 * centre
+    # distances from the centre, because angles lose the digits of small ones
+    ends = np.concatenate([graded, fixed - centre, np.pi / 2 - centre], axis=1)
+    ends = np.sort(np.clip(ends, -centre, np.pi / 2 - centre), axis=1)
+    x, w = gauss_legendre(_POINTS)
+    width = np.diff(ends)[..., None]
+    distance = (ends[:, :-1, None] + width * x).reshape(len(r), -1)
+    angle = centre + distance
+    t, s = np.sin(angle), np.maximum(np.cos(angle), 0.0)
+    beyond = 2 * np.cos(centre + distance / 2) * np.sin(distance / 2) - np.maximum(r - 1, 0.0)[:, None]
+    return t, beyond, s, (width * w).reshape(len(r), -1)
+
 
 def _halvings(r, z):
-    """(Z,) int: how often panels are halved, until they are as narrow as the singularity is far away."""
+    """(Z,) int: how often panels are halved, until they are as narrow as the singularity is far away from any r."""
+    return halvings_at(r, z[:, None]).max(axis=1)
+
+
+def halvings_at(r, z):
+    """The same at each of the points r, z, which broadcast."""
     most = np.where(z == 0, _ON_SURFACE, _BELOW)
-    far = np.abs(np.arcsin(r + 1j * z[:, None]).imag).min(axis=1)
+    far = np.abs(np.arcsin(r + 1j * z).imag)
     needed = np.ceil(np.log2(np.pi / 2 / np.maximum(far, 2.0 ** -(most - 1))) / _STEP).astype(int)
     return np.clip(needed * _STEP, 0, most)
 

@@ -144,7 +144,7 @@ def _check(numbers):
 
 def _stack(layers, interfaces, nu2, rigid):
     """:class:`Stack` of one case, and the thickness (1,) of its first layer; ValueError."""
-    if isinstance(layers, str) or not isinstance(layers, Sequence) or not 1 <= len(layers) <= MOST:
+    if isinstance(layers, str) or not hasattr(layers, "__len__") or not 1 <= len(layers) <= MOST:
         raise ValueError(f"layers = {layers!r:.60}: must be a list of 1 to {MOST} layers (h, n, nu)")
     for number, layer in enumerate(layers, 1):
         if isinstance(layer, str) or np.shape(layer) != (3,):
@@ -172,7 +172,7 @@ def _stack(layers, interfaces, nu2, rigid):
 def _interfaces(interfaces, count):
     """Whether each interface is frictionless, and its compliances, (1, N) each."""
     interfaces = ["bonded"] * count if interfaces is None else interfaces
-    if isinstance(interfaces, str) or not isinstance(interfaces, Sequence) or len(interfaces) != count:
+    if isinstance(interfaces, str) or not hasattr(interfaces, "__len__") or len(interfaces) != count:
         raise ValueError(f"interfaces = {interfaces!r:.60}: must be a list of {count}, one below each layer")
     springs = np.zeros((count, 2))
     for number, interface in enumerate(interfaces, 1):

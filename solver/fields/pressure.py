@@ -82,6 +82,11 @@ class Pressure(NamedTuple):
         nodal = self.values @ _density(self.mesh).T
         return (nodal @ self.mesh.basis(s.ravel()).T).reshape(len(nodal), *s.shape)
 
+    def density_of_each(self, s):
+        """The same (B, T) at points s (B, T), its own of each case."""
+        nodal = self.values @ _density(self.mesh).T
+        return np.einsum("bn,btn->bt", nodal, self.mesh.basis(s.ravel()).reshape(*s.shape, -1))
+
 
 @lru_cache(maxsize=64)
 def _kept_waves(mesh, k_bytes):
@@ -108,6 +113,15 @@ def _windows(mesh, k):
     low, high = np.append(1.0, x[1:][narrow])[::-1] - _WINDOW / k, np.append(1.0, x[:-1][narrow])[::-1] + _WINDOW / k
     apart = low[1:] > high[:-1]
     return np.clip(np.stack([low[np.append(True, apart)], high[np.append(apart, True)]], axis=1), 0.0, 1.0)
+
+
+def edge_rule(mesh, k):
+    """Rule of ∫ · ds, points s and weights (m,), of what makes waves from k to 2k at the edge, the end of a window;
+    None if the window is not the only one, or as wide as the contact."""
+    windows = _windows(mesh, k)
+    if len(windows) > 1 or windows[0, 0] <= 0:
+        return None
+    return _rule(mesh, np.array([k, 2 * k]), *windows[0])
 
 
 def _rule(mesh, k, low, high):

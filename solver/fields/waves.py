@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..numerics import special
+from ..numerics.kept import Kept
 from ..numerics.quadrature import gauss_legendre
 
 #: A panel of _POINTS Gauss points holds at most so many radians of p^ J_m, and is no longer than its distance from 0,
@@ -17,7 +18,7 @@ from ..numerics.quadrature import gauss_legendre
 #: the largest (tests/fields/test_waves.py).
 _POINTS, _RADIANS = 20, 20.0
 #: The first panel ends at this times min(1/a, 1/h), over n of stiff layers, which bend over 1/n of that.
-_FIRST = 1e-4
+FIRST = 1e-4
 #: A field that decays like e^(-kz) ends at k = _END/z.
 _END = 36.0
 #: But no later than at SHORTEST, whose waves take some seconds: in thinner films, h below THINNEST, a stress next to
@@ -36,6 +37,8 @@ _OF_OCTAVE = 3
 _SMALL, _TERMS = 3.0, 14
 #: Numbers in an array of states: so many waves are taken at once.
 _AT_ONCE = 200_000
+#: Bessel functions of coarse grids, which bodies of one octave of h/a share: half of their time.
+_kept = Kept(3e7)
 
 
 class Load(NamedTuple):
@@ -79,11 +82,11 @@ def farthest(h):
     return np.minimum(_MOST * np.maximum(h / _END, 1 / SHORTEST) - 1, _FARTHEST)
 
 
-def quadrature(first, last, reach):
+def quadrature(first, last, reach, radians=_RADIANS):
     """Nodes k and weights (K,) from 0 to `last`: the first panel ends at `first`, further ones are as long as their
-    distance from 0 until that is _RADIANS/reach. All three are rounded, so that many points and cases have one rule."""
+    distance from 0 until that is radians/reach. All three are rounded, so that many points and cases have one rule."""
     first, last, reach = 2.0 ** np.floor(np.log2(first)), _above(last), _above(reach)
-    widest = _RADIANS / reach
+    widest = radians / reach
     doubling = first * 2.0 ** np.arange(max(np.ceil(np.log2(min(widest, last) / first)), 0) + 1)
     rest = np.arange(doubling[-1], last, widest)[1:] if doubling[-1] < last else []
     ends = np.concatenate([[0.0], doubling, rest, [last] if last > doubling[-1] else []])
@@ -106,12 +109,14 @@ def integrals(load, layers, h, pressure, r, rows, roughly=False):
     end, shortest = (_ROUGH_END, _ROUGH_SHORTEST) if roughly else (_END, SHORTEST)
     z = np.array([row.z for row in rows]).T
     last = np.minimum(end / np.array([row.reach(h) for row in rows]).min(axis=1), shortest)
-    k, weight = quadrature(_FIRST / layers.longest(h), last.max(), 1 + r.max())
+    k, weight = quadrature(FIRST / layers.longest(h), last.max(), 1 + r.max())
     kinds = dict.fromkeys(row[:2] for row in rows)
     p = (pressure.transform(k) * weight)[:, None]
-    whole = np.zeros((len(load.orders), len(h), len(rows), len(r)))
+    whole, most = np.zeros((len(load.orders), len(h), len(rows), len(r))), max(load.orders)
+    kept = _kept.get((k.tobytes(), r.tobytes(), most), lambda: bessel(k, r, most)) if roughly else None
     for part in _parts(layers.few(k, h), len(k), z.size):
-        J, waves = bessel(k[part], r, max(load.orders)), layers.waves(k[part], h, load.traction)
+        J = [values[part] for values in kept] if roughly else bessel(k[part], r, most)
+        waves = layers.waves(k[part], h, load.traction)
         for kind in kinds:
             index = np.array(
                 [i for i, row in enumerate(rows) if row[:2] == kind and last[i] > k[part.start]], dtype=int

@@ -10,7 +10,7 @@ from ..layers import numbers_of
 from ..numerics.threads import one_blas_thread
 from ..scaling import dimensionless
 from ..shapes import shaped
-from .extremes import EXTREMES, coarsely, extremes
+from .extremes import EXTREMES, coarsely, together
 from .loaded import Loaded
 from .stacked.upper_layer import UpperLayer
 
@@ -46,16 +46,30 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
         part, ended = problem.take(index), solution.take(index)
         scaled, a = dimensionless(part), ended.a / part.R
         sharp = corners(scaled, a)
-        for rows, pressure, _ in pressures_of(scaled, ended, a):
-            nu = None if punch is None else punch[index[rows]]
-            for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]], nu):
-                tips = np.isfinite(sharp[rows[some]]) & (_touched(loaded) < 0.5)
-                for name, values in (coarsely if coarse else extremes)(loaded, names).items():
-                    values[0] *= problem.E2[index[rows[some]]]
+        for few in _some(scaled, ended, a, mu, residual[index], None if punch is None else punch[index]):
+            batches = [loaded for _, loaded in few]
+            answers = [coarsely(loaded, names) for loaded in batches] if coarse else together(batches, names)
+            for (rows, loaded), largest in zip(few, answers, strict=True):
+                tips, here = np.isfinite(sharp[rows]) & (_touched(loaded) < 0.5), index[rows]
+                for name, values in largest.items():
+                    values[0] *= problem.E2[here]
                     if name in _OF_TIPS[loaded.bare]:
-                        values[0, tips], values[1, tips], values[2, tips] = np.inf, sharp[rows[some]][tips], 0.0
-                    made[name][:, index[rows[some]]] = values
+                        values[0, tips], values[1, tips], values[2, tips] = np.inf, sharp[rows][tips], 0.0
+                    made[name][:, here] = values
     return made
+
+
+def _some(scaled, ended, a, mu, residual, punch):
+    """Yield lists of indices of cases and their :class:`~.loaded.Loaded`, of some _TOGETHER cases."""
+    few = []
+    for rows, pressure, _ in pressures_of(scaled, ended, a, with_errors=False):
+        nu = None if punch is None else punch[rows]
+        for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[rows], nu):
+            few.append((rows[some], loaded))
+            if sum(len(index) for index, _ in few) >= _TOGETHER:
+                yield few
+                few = []
+    yield few
 
 
 def _touched(loaded):
@@ -83,7 +97,7 @@ def _alike(scaled, a, pressure, mu, residual, punch):
     bare = is_bare(scaled.base) | (punch is not None)
     h = np.where(bare, 1.0, scaled.h / a)
     n = np.where(bare, 1.0, scaled.n)
-    kinds = np.stack([bare, n == 0, np.floor(np.log2(h)), np.floor(np.log2(np.maximum(n, 1.0)))], axis=1)
+    kinds = np.stack([bare, n == 0, np.floor(np.log2(h)), np.floor(np.log2(np.maximum(n, 1.0)) / 3)], axis=1)
     _, kind = np.unique(kinds, axis=0, return_inverse=True)
     for number in range(kind.max() + 1):
         index = np.flatnonzero(kind.ravel() == number)

@@ -12,6 +12,8 @@ from ..numerics.batch import march
 _STEP, _SLOWEST, _LARGEST, _NEAR = 1.1, 0.2, 1.5, 0.7
 #: The coarse grid misses at most this part of the largest stress: above it the stress itself is computed.
 _MISSED = 0.15
+#: So many steps are taken at once where contacts are alike: if a stress allows shorter ones, what is behind it is left.
+_TOGETHER = 8
 #: A place is found when the stress is the strength to _SAME, or given up after _MOST steps.
 _SAME, _MOST = 1e-7, 40
 #: By which part of the place a contact beside the crossing is away: slopes then have an error of about as much.
@@ -46,15 +48,20 @@ class Crossing(NamedTuple):
         return cls(np.zeros(count, bool), at, numbers, r, z, np.zeros(count, bool), slopes)
 
 
-def first_crossing(stress: Callable, start: np.ndarray, last: np.ndarray, slopes: bool = False) -> Crossing:
+def first_crossing(
+    stress: Callable, start: np.ndarray, last: np.ndarray, slopes: bool = False, same_grid: Callable | None = None
+) -> Crossing:
     """From `start` (B,) up to `last` (B,), NaN or start > last: nothing is looked for.
 
     stress : ``stress(index, at, coarse)``, of the cases `index` at the places `at` (b,): the stress over the strength,
         with `coarse` up to a little too small, its r and z, and the :class:`~solver.solution.Solution`
+    same_grid : ``same_grid(index, at)``, up to which places (b,) from `at` on contacts are so alike that several cost
+        as much as one; None: no others are
     """
+    same_grid = (lambda index, at: at) if same_grid is None else same_grid
     made = Crossing.none(len(start))
     index = np.flatnonzero(start <= last)
-    places, values, failed = _bracketed(stress, index, start[index], np.log(last[index]))
+    places, values, failed = _bracketed(stress, index, start[index], np.log(last[index]), same_grid)
     there = np.isfinite(places).all(axis=0)
     made.unsolved[index] = ~there & (failed | np.isfinite(places[1]))
     _searched(made, stress, index[there], places[:, there], values[:, there])
@@ -72,30 +79,60 @@ def _sloped(made, stress, index):
             made.by_strength[number][index] = change / np.log(value)
 
 
-def _bracketed(stress, index, start, last):
+def _bracketed(stress, index, start, last, same_grid):
     """ln of the places before and behind the first crossing, NaN where there is none, and ln of the stress over the
     strength there, (2, b) each; and whether some contact has no solution."""
     places, values = np.full((2, 2, len(index)), np.nan)
-    failed, at = np.zeros(len(index), dtype=bool), np.log(start)
+    failed, at, far = np.zeros(len(index), dtype=bool), np.log(start), np.full(len(index), np.log(_LARGEST))
 
     def step(active):
-        value = stress(index[active], np.exp(at[active]), True)[0]
-        near = np.flatnonzero(value >= 1 - _MISSED)
-        if len(near):
-            some = active[near]
-            value[near] = stress(index[some], np.exp(at[some]), False)[0]
-        over, unknown = value >= 1, np.isnan(value)
-        failed[active] |= unknown
-        for side, here in enumerate((~over & ~unknown, over)):
-            places[side, active[here]] = at[active[here]]
-            values[side, active[here]] = np.log(np.maximum(value[here], np.finfo(float).tiny))
-        farther = np.clip((_NEAR / np.maximum(value, np.finfo(float).tiny)) ** _SLOWEST, _STEP, _LARGEST)
-        done = over | (at[active] >= last[active])
-        at[active] = np.minimum(at[active] + np.log(np.where(unknown, _STEP, farther)), last[active])
+        rows, there = _steps(
+            at[active], far[active], last[active], np.log(same_grid(index[active], np.exp(at[active])))
+        )
+        value = stress(index[active[rows]], np.exp(there), True)[0]
+        near = _near(value, rows)
+        if near.any():
+            value[near] = stress(index[active[rows[near]]], np.exp(there[near]), False)[0]
+        unknown, tiny = np.isnan(value), np.finfo(float).tiny
+        sizes = np.maximum(value, tiny)
+        allowed = np.log(np.where(unknown, _STEP, np.clip((_NEAR / sizes) ** _SLOWEST, _STEP, _LARGEST)))
+        done, left = np.zeros(len(active), dtype=bool), np.ones(len(active), dtype=bool)
+        for j, row in enumerate(rows):
+            case = active[row]
+            if not left[row]:
+                continue
+            failed[case] |= unknown[j]
+            if not unknown[j]:
+                side = int(value[j] >= 1)
+                places[side, case], values[side, case] = there[j], np.log(sizes[j])
+            done[row] = value[j] >= 1 or there[j] >= last[case]
+            left[row] = not done[row] and allowed[j] >= far[case] * (1 - 1e-9)
+            at[case] = min(there[j] + allowed[j], last[case])
+            shorter[case] = allowed[j]
+        far[active] = shorter[active]
         return done
 
+    shorter = far.copy()
     march(step, np.arange(len(index)))
     return places, values, failed
+
+
+def _steps(at, far, last, end):
+    """Places (m,) of several cases, and of which each is, ascending: from `at` by steps `far`, at most to `last`, and
+    as long as they are not beyond `end`; the first always is one."""
+    counts = np.clip(np.floor((np.minimum(end, last) - at) / far + 1e-9), 0, _TOGETHER - 1).astype(int) + 1
+    rows = np.repeat(np.arange(len(at)), counts)
+    number = np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return rows, np.minimum(at[rows] + number * far[rows], last[rows])
+
+
+def _near(value, rows):
+    """Which coarse values (m,) may be those of a crossing, up to the first of each case that is one; `rows` (m,), of
+    which case each is, ascending."""
+    over = np.cumsum(value >= 1)
+    starts = np.searchsorted(rows, rows)
+    before = over - (value >= 1) - np.where(starts > 0, over[starts - 1], 0)
+    return (value >= 1 - _MISSED) & (before == 0)
 
 
 def _searched(made, stress, index, places, values):

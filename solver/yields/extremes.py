@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..fields.invariants import invariants, mises
-from .loaded import Loaded
-from .peaks import peak
+from .search.climb import climb
+from .search.jets import Jets
 
 #: Name -> the function of sr, st, sz, trz whose largest value it is. sz_interface_min is minus the largest of -sz.
 VALUES = {
@@ -33,12 +33,17 @@ EXTREMES = {
 }
 #: Extremes that may not exist: below _NOTHING of the largest pressure they are rounding, and 0.
 _MAY_LACK, _NOTHING = ("s1_surface", "s1_layer", "sr_interface1", "tau_interface", "sz_interface_max"), 1e-11
-#: A second place of the coarse grid is looked at too where it has this part of the best.
-_RIVAL = 0.9
+#: Further places of the coarse grid are looked at too where they have this part of the best, or miss it by less than
+#: _ROUGH of the largest pressure, as rough stresses may.
+_RIVAL, _ROUGH = 0.85, 3e-4
 #: The coarse grid (tests/yields/test_largest_stresses.py finds all references from it): radii in a; beyond the edge in
 #: lengths over which a layer bends, h or n^(1/3) h; depths in a, in octaves of h, and below the interface in a.
 _RADII = np.array([0, 0.15, 0.3, 0.45, 0.6, 0.7, 0.8, 0.9, 0.95, 1, 1.05, 1.15, 1.3, 1.6])
-_BEYOND, _OF_LENGTHS = np.array([0.25, 0.5, 1, 1.5, 2, 3, 4.5, 6.5]), np.array([0.25, 0.4, 0.5, 0.75, 1])
+_BEYOND, _OF_LENGTHS = np.array([0.12, 0.25, 0.5, 1, 1.5, 2, 3, 4.5, 6.5]), np.array([0.25, 0.4, 0.5, 0.75, 1])
+#: Radii of the surface and of the interface where layers thicker than _FELT may have weak tension.
+_AWAY, _FELT = np.array([1.8, 2.2, 2.5, 2.8, 3.2, 3.7, 4.4, 5.5]), 0.1
+#: Those of films that are nearer to the edge than this, inside too.
+_THIN = 1.3
 _DEPTHS = np.array([0.06, 0.12, 0.2, 0.3, 0.4, 0.48, 0.6, 0.8, 1.1])
 _OF_OCTAVE = np.array([0.25, 0.4, 0.55, 0.7, 0.85, 1, 1.2, 1.4, 1.6])
 _BELOW = np.array([0, 0.05, 0.15, 0.3, 0.48, 0.65, 0.9, 1.3])
@@ -48,10 +53,25 @@ _OF_RING, _BELOW_RING = np.array([-1, -0.4, 0, 0.3, 0.6, 1, 1.5, 2.2]), np.array
 _APART, _ALIKE = 25.0, 2.0
 #: No place is farther away than this, in a plus the length over which a layer spreads the pressure.
 _FARTHEST = 10.0
+#: Nearer to the axis than at this s = sqrt(1 - r²) the coordinate along the surface is the radius.
+_NEAR_AXIS = 0.8
+
+
+class Task(NamedTuple):
+    """The function of a case of a batch, a name of :data:`VALUES`, and the point of the coarse grid of a region from
+    which it is followed upwards."""
+
+    function: str
+    batch: int
+    case: int
+    region: str
+    side: int
+    row: int
+    column: int
 
 
 class Grid(NamedTuple):
-    """The coarse grid of a region: u (U,) and v (B, V), bounds of both ((2,), (B, 2)), and whether it is the body.
+    """The coarse grid of a region: u (U,) and v (B, V), bounds of both (B, 2), and whether it is the body.
 
     The radius is u, or on the surface, `root`, sqrt(1 - u |u|), in which stresses are smooth up to the edge; v is the
     depth.
@@ -59,7 +79,7 @@ class Grid(NamedTuple):
 
     u: np.ndarray
     v: np.ndarray
-    u_bounds: tuple
+    u_bounds: np.ndarray
     v_bounds: np.ndarray
     body: bool
     root: bool = False
@@ -71,24 +91,38 @@ class Grid(NamedTuple):
 def extremes(loaded, names=EXTREMES):
     """Of each name of :data:`EXTREMES`: its value (B,) in units of the pressure, and its place r (signed if mu > 0) and
     z in a; mapping name -> (3, B). NaN where there is no such body."""
-    made, wanted, grids, coarse = _on_coarse_grids(loaded, names)
-    for i in np.flatnonzero(np.isfinite(loaded.pressure.values).all(axis=1)):
-        alone, largest = loaded.take([i]), np.abs(loaded.pressure.values[i]).max()
-        fine = {region: _Fine(alone, grid) for region, grid in grids.items()}
-        for name, kinds in wanted.items():
-            kinds = [region for region in kinds if region in grids]
-            if not kinds:
-                continue
-            value = VALUES[EXTREMES[name][0]]
-            peaks = [
-                p for start in _starts(i, value, kinds, coarse, grids) for p in [_refined(i, value, start, grids, fine)]
-            ]
-            best = np.array(max(peaks, key=lambda value_and_place: value_and_place[0]))
+    return together([loaded], names)[0]
+
+
+def together(batches, names=EXTREMES):
+    """The :func:`extremes` of each of several :class:`~.loaded.Loaded`, with or without layers, of one mu."""
+    made, tasks = [], {}  # -> the names whose starts they are
+    boxes = []
+    for number, loaded in enumerate(batches):
+        values, wanted, grids, coarse = _on_coarse_grids(loaded, names)
+        made.append(values)
+        largest = np.abs(loaded.pressure.values).max(axis=1)
+        for i in np.flatnonzero(np.isfinite(loaded.pressure.values).all(axis=1)):
+            for name, kinds in wanted.items():
+                function, here = EXTREMES[name][0], [kind for kind in kinds if kind in grids]
+                for at in _starts(i, VALUES[function], here, coarse, grids, largest[i]):
+                    task = Task(function, number, i, *at)
+                    if task not in tasks:
+                        tasks[task] = []
+                        boxes.append(_box(grids[task.region], task))
+                    tasks[task].append(name)
+    for task, value, place in zip(tasks, *_climbed(batches, list(tasks), boxes), strict=True):
+        for name in tasks[task]:
+            best = made[task.batch][name][:, task.case]
+            if not best[0] >= value:
+                best[:] = value, *place
+    for loaded, values in zip(batches, made, strict=True):
+        largest = np.abs(loaded.pressure.values).max(axis=1)
+        for name, best in values.items():
+            if name in _MAY_LACK:
+                best[:, best[0] <= _NOTHING * largest] = np.array([0.0, np.nan, np.nan])[:, None]
             if name == "sz_interface_min":
                 best[0] *= -1
-            if name in _MAY_LACK and best[0] <= _NOTHING * largest:
-                best[:] = 0.0, np.nan, np.nan
-            made[name][:, i] = best
     return made
 
 
@@ -119,9 +153,9 @@ def _on_coarse_grids(loaded, names):
 
 
 def farthest_of(loaded):
-    """How far from the centre, in a, places are looked at."""
-    stiff = 1.0 if loaded.bare else max(1.0, np.cbrt(loaded.layers.n.max()))
-    return _FARTHEST * (1 + (0.0 if loaded.bare else stiff * loaded.h.max()))
+    """How far from the centre (B,), in a, places are looked at."""
+    stiff = 0 * loaded.h if loaded.bare else np.maximum(1.0, np.cbrt(loaded.layers.n))
+    return _FARTHEST * (1 + stiff * loaded.h)
 
 
 def regions(loaded):
@@ -131,30 +165,34 @@ def regions(loaded):
     stiff = 1.0 if loaded.bare else max(1.0, np.cbrt(loaded.layers.n.max()))
     far = farthest_of(loaded)
     bending = 0.5 if loaded.bare else octave * stiff
-    beyond = np.minimum(1 + bending * _BEYOND, far)
+    beyond = np.minimum(1 + bending * _BEYOND, far.max())
     lengths = _lengths(octave, bending)
     thick = np.outer(lengths, _OF_LENGTHS).ravel() * (not loaded.bare and lengths[-1] > 1)
     ring, deep = (np.unique(loaded.ring * values) for values in (_OF_RING, _BELOW_RING))
-    radii = np.unique(np.concatenate([_RADII, beyond[:5], thick, 1 - ring]))
-    wide = np.unique(np.concatenate([_RADII, beyond, thick, 1 - ring]))
+    within = 2 - beyond[beyond < _THIN]
+    radii = np.unique(np.concatenate([_RADII, beyond[:6], thick, 1 - ring, within]))
+    away = _AWAY * (octave > _FELT)
+    wide = np.unique(np.concatenate([_RADII, beyond, thick, 1 - ring, within, away]))
     surface = np.zeros((B, 1))
-    inner = np.unique(np.concatenate([np.linspace(0, 1, 12), np.sqrt(np.maximum(ring * (2 - ring), 0.0))]))
+    of_ring, of_film = np.sqrt(np.maximum(ring * (2 - ring), 0.0)), np.sqrt((1 - within) * (1 + within))
+    inner, none = np.unique(np.concatenate([np.linspace(0, 1, 12), of_ring, of_film])), np.zeros((B, 2))
+    from_axis = np.stack([0 * far, far], axis=1)
     outer = -np.sqrt(wide[wide >= 1] ** 2 - 1)[::-1]
     made = {
-        "inside": Grid(inner, surface, (0.0, 1.0), np.zeros((B, 2)), loaded.bare, True),
-        "outside": Grid(outer, surface, (-far, 0.0), np.zeros((B, 2)), loaded.bare, True),
+        "inside": Grid(inner, surface, none + [0.0, 1.0], none, loaded.bare, True),
+        "outside": Grid(outer, surface, -from_axis[:, ::-1], none, loaded.bare, True),
     }
     if loaded.bare:
         depths = np.tile(np.unique(np.concatenate([_DEPTHS, [1.5, 2.5], deep[deep > 0]])), (B, 1))
-        return made | {"body": Grid(radii, depths, (0.0, far), np.tile([0.0, far], (B, 1)), True)}
+        return made | {"body": Grid(radii, depths, from_axis, from_axis, True)}
     near = np.concatenate([_DEPTHS, deep[deep > 0]])
     depths = np.unique(np.concatenate([near[2 * octave > near], octave * _OF_OCTAVE]))
-    made["layer"] = Grid(radii, np.tile(depths, (B, 1)), (0.0, far), np.stack([0 * h, h], axis=1), False)
-    made["above"] = Grid(wide, h[:, None], (0.0, far), np.stack([h, h], axis=1), False)
+    made["layer"] = Grid(radii, np.tile(depths, (B, 1)), from_axis, np.stack([0 * h, h], axis=1), False)
+    made["above"] = Grid(wide, h[:, None], from_axis, np.stack([h, h], axis=1), False)
     if np.all(loaded.layers.n > 0):
         bounds = np.stack([h, h + far], axis=1)
         across, below = _of_body(radii, lengths)
-        made["body"] = Grid(across, h[:, None] + below, (0.0, far), bounds, True)
+        made["body"] = Grid(across, h[:, None] + below, from_axis, bounds, True)
     return made
 
 
@@ -175,7 +213,7 @@ def _lengths(octave, bending):
     return np.geomspace(least, bending, 2 + int(np.log(bending / least) / np.log(_APART)))
 
 
-def _starts(i, value, kinds, coarse, grids):
+def _starts(i, value, kinds, coarse, grids, largest):
     """(region, side, row, column) of the coarse points of a case that are larger than their neighbours, and not much
     smaller than the largest."""
     starts = []
@@ -189,35 +227,70 @@ def _starts(i, value, kinds, coarse, grids):
         peaks = (values >= np.max(around, axis=0)) & np.isfinite(values)
         starts += [(values[at], (region, *at)) for at in map(tuple, np.argwhere(peaks))]
     best = max((value for value, _ in starts), default=np.nan)
-    return [start for value, start in starts if value >= best - (1 - _RIVAL) * abs(best)]
+    return [start for value, start in starts if value >= best - (1 - _RIVAL) * abs(best) - _ROUGH * largest]
 
 
-def _refined(i, value, start, grids, fine):
-    """The value of a peak, and its r and z, from a coarse point."""
-    region, side, row, column = start
-    grid = grids[region]
-    half = [_spacing(grid.u, column), _spacing(grid.v[i], row)]
-    at = grid.u[column], grid.v[i, row]
-    stresses = fine[region]
-    largest, (u, v) = peak(lambda u, v: stresses(u, v)[:, side], value, at, half, (grid.u_bounds, grid.v_bounds[i]))
-    return largest, float(grid.radius(u)) * stresses.loaded.signs[side], v
+def _climbed(batches, tasks, boxes):
+    """Largest values (T,) near the starts of tasks, and their places (T, 2), r and z."""
+    if not tasks:
+        return [], []
+    jets, functions = [Jets(loaded) for loaded in batches], _numbered([task.function for task in tasks])
+    areas = _numbered([(task.batch, task.region) for task in tasks])
+    case, side = (np.array([getattr(task, name) for task in tasks]) for name in ("case", "side"))
+    root, boxes = np.array([root for _, root in boxes]), np.array([box for box, _ in boxes]).swapaxes(0, 1)
+
+    def at(index, u, v):
+        made = np.empty((6, 4, len(index)))
+        keys = np.stack([areas.of[index], case[index], side[index], u, v, root[index]])
+        _, first, again = np.unique(keys, axis=1, return_index=True, return_inverse=True)
+        for number in np.unique(areas.of[index]):
+            here = first[areas.of[index[first]] == number]
+            (batch, region), some = areas.names[number], index[here]
+            made[..., here] = jets[batch](region, case[some], side[some], root[some], u[here], v[here])
+        return made[..., first[again.ravel()]]
+
+    def value(index, stresses):
+        made = np.empty(stresses.shape[1:])
+        for number, name in enumerate(functions.names):
+            here = np.flatnonzero(functions.of[index] == number)
+            if len(here):
+                made[here] = VALUES[name](*stresses[:, here])
+        return made
+
+    scales = [np.abs(loaded.pressure.values).max(axis=1) for loaded in batches]
+    scale = np.array([scales[task.batch][task.case] for task in tasks])
+    values, places = climb(at, value, *boxes, scale)
+    r = np.where(root, np.sqrt(np.maximum(1 - places[:, 0] * np.abs(places[:, 0]), 0.0)), places[:, 0])
+    return values, np.stack([r * np.array(batches[0].signs)[side], places[:, 1]], axis=1)
+
+
+class _Numbered(NamedTuple):
+    """Different words, and the number of each (T,)."""
+
+    names: list
+    of: np.ndarray
+
+
+def _numbered(words):
+    names = list(dict.fromkeys(words))
+    numbers = {name: number for number, name in enumerate(names)}
+    return _Numbered(names, np.array([numbers[word] for word in words]))
+
+
+def _box(grid, task):
+    """Start, half widths and bounds (4, 2) of a task, and whether its u is the root and not the radius: near the axis
+    it is the radius."""
+    u, v = grid.u[task.column], grid.v[task.case]
+    half, bounds = _spacing(grid.u, task.column), grid.u_bounds[task.case]
+    root = grid.root and u < _NEAR_AXIS
+    if root and bounds[1] > 0:
+        bounds = 0.0, _NEAR_AXIS + 0.1
+    elif grid.root and not root:
+        u, half, bounds = grid.radius(u), _spacing(grid.radius(grid.u), task.column), (0.0, 0.9)
+    low, high = zip(bounds, grid.v_bounds[task.case], strict=True)
+    return [(u, v[task.row]), (half, _spacing(v, task.row)), low, high], root
 
 
 def _spacing(axis, at):
     """To the neighbours of a point of a coarse axis, the larger."""
     return np.abs(np.diff(axis[max(at - 1, 0) : at + 2])).max() if len(axis) > 1 else 1.0
-
-
-class _Fine:
-    """Stresses of one case in a region, (4, S, V, U) at u (U,), v (V,). Those of a patch are kept: several extremes
-    begin with the same."""
-
-    def __init__(self, loaded: Loaded, grid: Grid):
-        self.loaded, self.grid, self._kept = loaded, grid, {}
-
-    def __call__(self, u, v):
-        key = np.asarray(u).tobytes(), np.asarray(v).tobytes()
-        if key not in self._kept:
-            made = self.loaded.stresses(self.grid.radius(u), np.asarray(v)[None], self.grid.body)
-            self._kept[key] = made[:, 0]
-        return self._kept[key]

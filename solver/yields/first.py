@@ -60,9 +60,19 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slope
             value, r, z = mises_in(part, solution, body, layer, mu, residual[index], nu, coarse)
         return value / strength[index], r, z, solution
 
+    def same_grid(index, at):
+        """Up to where contacts have one coarse grid: h/a is in one octave; of spots it is each its own."""
+        a = reach.flat[index] + at
+        h = np.where(is_bare(problem.base[index]), a, problem.h[index] / problem.R[index])
+        edge = h / 2.0 ** np.floor(np.log2(h / a) + 1e-12)
+        edge = np.where(is_bare(problem.base[index]) | (body == "punch"), 2 * a, edge)
+        return at if body == "asperities" else np.maximum(edge - reach.flat[index], at)
+
     start, round_ = _start(problem, body, left / problem.E2, mu), np.isin(problem.shape, ROUND)
     start = np.where(round_, np.maximum(start, NARROWEST), np.where(reach.sharp, np.nan, reach.start))
-    made = first_crossing(stress, np.where(left > 0, start, np.nan), np.where(round_, WIDEST, reach.last), slopes)
+    made = first_crossing(
+        stress, np.where(left > 0, start, np.nan), np.where(round_, WIDEST, reach.last), slopes, same_grid
+    )
     # the residual stress alone is as large as the strength, or there is a tip or corner below which it is infinite
     rest = (left <= 0) | reach.sharp & (left > 0)
     made.crossed[rest], made.at[rest] = True, 0.0

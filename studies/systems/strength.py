@@ -209,6 +209,14 @@ def shares(contacts: xr.Dataset, largest: xr.Dataset) -> np.ndarray:
     return np.array(made)
 
 
+def _between(values: np.ndarray, axes: tuple, fine: list) -> np.ndarray:
+    """Values (n, h1, h2) at finer axes, linearly in the logarithms of the thicknesses."""
+    for axis, (coarse, points) in enumerate(zip(axes, fine, strict=True), 1):
+        along = [np.log(coarse), np.log(points)]
+        values = np.apply_along_axis(lambda column, along=along: np.interp(along[1], along[0], column), axis, values)
+    return values
+
+
 @figure("which_layer_first", "which_layer_first", long=True, size=(TWO_COLUMNS, 3.6), panels=(1, 2))
 def which_layer_first(panels, contacts: xr.Dataset) -> Columns:
     """A steel ball of 1 mm on DLC on chromium on bearing steel, 40 N, without friction and residual stress. (a) What is
@@ -224,13 +232,19 @@ def which_layer_first(panels, contacts: xr.Dataset) -> Columns:
         for name in ("tau_interface", "sr_interface")
     )
     maps = (part, [colour for _, colour, *_ in _OF_STACK]), (shear, [colour for _, colour in _INTERFACES])
+    fine = [np.geomspace(axis[0], axis[-1], 81) for axis in (h1, h2)]
     for axes, (values, colours) in zip(panels, maps, strict=True):
         look = each | {"cmap": ListedColormap(colours), "vmin": 0, "vmax": len(colours) - 1}
-        axes.pcolormesh(h1, h2, values.argmax(axis=0).T, **look)
-        lines = axes.contour(h1, h2, values.max(axis=0).T, 6, colors="black", linewidths=0.7)
-        axes.clabel(lines, fmt="%.2g", fontsize=7)
+        between = _between(values, (h1, h2), fine)
+        axes.pcolormesh(*fine, between.argmax(axis=0).T, **look)
+        lines = axes.contour(*fine, between.max(axis=0).T, 5, colors="black", linewidths=0.7)
+        axes.clabel(lines, fmt="%.2f", fontsize=7)
         axes.set(xscale="log", yscale="log", xlabel="thickness of the DLC, µm", ylabel="thickness of the chromium, µm")
-    bent = panels[1].contour(h1, h2, bending[0].T, 4, colors=GREY, linewidths=0.7, linestyles="--")
+        axes.set(xlim=(h1[0], h1[-1]), ylim=(h2[0], h2[-1]))
+        axes.set_xticks([1, 2, 5, 10], ["1", "2", "5", "10"])
+        axes.set_yticks([0.5, 1, 2, 5, 10], ["0.5", "1", "2", "5", "10"])
+    bent = panels[1].contour(*fine, _between(bending, (h1, h2), fine)[0].T, 4, colors=GREY, linestyles="--")
+    bent.set(linewidths=0.7)
     panels[1].clabel(bent, fmt="%.2g", fontsize=7)
     panels[0].set_title("(a) closest to its strength", loc="left", fontsize=9)
     panels[1].set_title("(b) interface with the larger shear, GPa", loc="left", fontsize=9)
@@ -238,7 +252,7 @@ def which_layer_first(panels, contacts: xr.Dataset) -> Columns:
     met += [row for i, row in enumerate(_INTERFACES) if (shear.argmax(axis=0) == i).any()]
     handles = [Line2D([], [], color=colour, linewidth=5, alpha=0.5, label=words) for words, colour in met]
     panels[0].figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=7)
-    panels[0].figure.suptitle("ball of steel 52100, DLC a-C:H on chromium on steel 52100, bonded, 40 N", fontsize=7)
+    panels[0].figure.suptitle("ball of steel 52100, DLC ta-C on chromium on steel 52100, bonded, 40 N", fontsize=7)
     grid = {
         name: array.ravel()
         for name, array in zip(("h1 [m]", "h2 [m]"), np.meshgrid(h1 / 1e6, h2 / 1e6, indexing="ij"), strict=True)

@@ -48,7 +48,9 @@ def test_one_layer_in_two_pieces(mu):
 def test_a_stack_of_one_layer_has_its_names_too():
     one, stack = study.extremes(on_one_layer(a=0.1)), study.extremes(on([LAYER | {"nu": 0.2}], a=0.1))
     for name in one.data_vars:
-        assert_allclose(np.squeeze(stack[name]), one[name], rtol=1e-5, atol=1e-12, err_msg=str(name))
+        of_place = str(name).endswith(("_r", "_z"))  # of a maximum: known to the root of what its value is
+        atol = 2e-4 if of_place else 1e-12
+        assert_allclose(np.squeeze(stack[name]), one[name], rtol=1e-7, atol=atol, err_msg=str(name))
 
 
 def test_extremes_bound_the_stresses():
@@ -91,7 +93,7 @@ def test_first_yield_of_each_layer():
     at = on(CUT, P=two.P_Y_layer.sel(layer=layer).item())
     assert_allclose(study.extremes(at).mises_layer.sel(layer=layer), 0.05, rtol=1e-5)
     text = str(study.summary(two))
-    assert "layer 1" in text and "layer 2" in text
+    assert "Layer 1 first yields at P" in text and "to yield, of what is known: layer" in text
 
 
 def test_a_layer_without_a_strength():
@@ -165,3 +167,18 @@ def test_the_picture():
     figure = study.plot_stresses(on(TWO, a=0.05))
     titles = [axes.get_title(loc="left") for axes in figure.axes]
     assert titles[0].startswith("(a) layers: largest") and any("interface 1" in title for title in titles)
+
+
+def test_below_a_spot():
+    """Asperities that feel the stack: as on one layer, in two pieces too where the interface does not count."""
+    rough = {"micro": "disc_cell", "Nbar": 100.0, "Ra": 0.02, "asperities_on": "layer", "hardness": 0.5}
+    pieces = [LAYER | {"nu": 0.2}], CUT
+    one = study.solve(**LAYER, nu1=0.2, base="layered", P=1e-4, profiles=False, **rough)
+    wanted, whole, cut = map(study.extremes, (one, *(study.solve(layers=p, P=1e-4, **rough) for p in pieces)))
+    for name in wanted.data_vars:
+        if "_spot" in name:
+            assert_allclose(whole[name], wanted[name], rtol=1e-6, err_msg=str(name))
+    for name in ("mises1_spot", "mises2_spot", "mises1_spot_z", "mises2_spot_z"):
+        assert_allclose(cut[name], wanted[name], rtol=1e-6, err_msg=name)
+    loads = [study.first_yield(layers=p, **rough).P_Ya for p in pieces]
+    assert_allclose(*loads, rtol=1e-5)

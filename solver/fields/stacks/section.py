@@ -59,10 +59,10 @@ class Section(NamedTuple):
     def rigid(self):
         return bool(self.stack.rigid[0])
 
-    def numbers(self, z, below=False):
+    def numbers(self, z, lower=False):
         """In which layer depths z (Z,) are, from 0, or N, in the body; one at an interface in the upper, or the lower
         one."""
-        return np.searchsorted(self.ends, z, side="right" if below else "left")
+        return np.searchsorted(self.ends, z, side="right" if lower else "left")
 
     def field(self, r, z, number, displacements=True, roughly=False):
         """Name -> (Z, R), at radii r (R,) and depths z (Z,) in the layers `number` (Z,), counted from 0, or N, in the

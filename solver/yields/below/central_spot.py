@@ -7,6 +7,7 @@ contact, which is the same. At the interface tension and shear are looked for up
 import numpy as np
 
 from ...bases import is_stack
+from ...body.graded import has_graded
 from ...fields.contact import have_fields, pressures_of
 from ...fields.invariants import mises
 from ...laws.cell.sums import LATTICES
@@ -69,14 +70,14 @@ def section(problem, solution, r, z, body, residual=0.0):
     for cells, loaded, _ in _cells(problem, solution, 0.0, residual):
         cell = cells[0]
         whole = loaded.stresses(r * cell.pitch, z * cell.pitch, body)[:, 0, 0]
-        return (whole + cell.unit * cell.stresses(cell.b[0], r, z, body)) * problem.E2[0] if cell else None
+        return (whole + cell.unit * cell.stresses(cell.b[0], r, z, int(body))) * problem.E2[0] if cell else None
     return None
 
 
 def spot_of(problem, solution):
     """Radius of the central spot, the pitch and the thickness of the layer of one contact, in units of a: (3,), NaN
     where its asperities do not feel the layer; and half of the distance of neighbours over the pitch."""
-    for cells, loaded, _ in _cells(problem, solution, 0.0, 0.0):
+    for cells, loaded, _ in _cells(problem, solution, 0.0, 0.0) if not is_stack(problem.base).any() else ():
         if cells[0]:
             return np.array([cells[0].b[0] * cells[0].pitch, cells[0].pitch, loaded.h[0]]), half_way(cells[0])
     return np.full(3, np.nan), np.nan
@@ -84,7 +85,7 @@ def spot_of(problem, solution):
 
 def _cells(problem, solution, mu, residual):
     """Yield the cells of contacts, their :class:`~..loaded.Loaded`, and their indices and largest pressures in E2*."""
-    index = np.flatnonzero(problem.feels_layer() & have_fields(problem, solution) & ~is_stack(problem.base))
+    index = np.flatnonzero(problem.feels_layer() & have_fields(problem, solution) & ~has_graded(problem))
     if not len(index):
         return
     residual = np.broadcast_to(residual, len(problem)) / problem.E2
@@ -146,9 +147,10 @@ class _Case:
         if where == "layer":
             edges = _doubling(0.0, least, self.h)
         elif where == "body":
-            if self.loaded.layers.n[0] == 0:
+            if self.loaded.layers.rigid[0]:
                 return []
-            edges = _doubling(self.h, least, self.h + farthest_of(self.loaded))
+            top = self.cell.bottom[1] * self.cell.pitch
+            edges = _doubling(top, least, top + farthest_of(self.loaded).max())
         else:
             edges = _doubling(0.0, least, half_way(self.cell) * self.cell.pitch)
         at = edges[:-1, None] + np.diff(edges)[:, None] * (1 + chebyshev_nodes(_NODES)) / 2
@@ -162,16 +164,17 @@ class _Case:
     def _on_axis(self, z, body):
         """Stresses (4, Z) on the axis at depths z (Z,)."""
         cell, whole = self.cell, self.loaded.stresses(np.zeros(1), z, body)[:, 0, 0, :, 0]
-        near = z <= self.h + _DEPTH * cell.pitch
-        at = np.clip(z[near] / cell.pitch, *((cell.h, None) if body else (None, cell.h)))
-        whole[:, near] += cell.unit * cell.stresses(cell.b[0], np.zeros(1), at, body)[..., 0]
+        number, top = cell.bottom if body else (0, cell.h)
+        near = z <= (top + _DEPTH) * cell.pitch if body else z <= self.h + _DEPTH * cell.pitch
+        at = np.clip(z[near] / cell.pitch, *((top, None) if body else (None, cell.h)))
+        whole[:, near] += cell.unit * cell.stresses(cell.b[0], np.zeros(1), at, number)[..., 0]
         return whole
 
     def _at_interface(self, r):
         """Stresses (4, R) at the interface at radii r (R,)."""
         cell, whole = self.cell, self.loaded.stresses(r, np.array([self.h]), False)[:, 0, 0, 0]
         # those in the body: sz and trz, which alone are looked at, are continuous, and take fewer waves there
-        return whole + cell.unit * cell.stresses(cell.b[0], r / cell.pitch, np.array([cell.h]), True)[:, 0]
+        return whole + cell.unit * cell.stresses(cell.b[0], r / cell.pitch, np.array([cell.h]), 1)[:, 0]
 
 
 def _doubling(start, first, last):

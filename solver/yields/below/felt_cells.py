@@ -1,12 +1,15 @@
 """The cells below asperities that feel their layers, one for each contact, and the stresses below a spot of one."""
 
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
+from ...bases import is_stack
 from ...body import BODIES
 from ...fields.below_spots import EXACT, below_spot, below_summit
-from ...kernels.two_layers import TwoLayers, layer_modulus
+from ...kernels.transfer import Layered
+from ...kernels.two_layers import layer_modulus
 from ...laws.cell.members import Member, members
 from ...laws.cell.spot import spots
 from ...models.spot_pressure import largest_radius
@@ -20,14 +23,14 @@ class FeltCell(NamedTuple):
 
     b : (S,), radii of the spots that are known, the first in the centre, the largest there of random heights
     p : nominal pressure in the centre
-    layers : :class:`~solver.kernels.two_layers.TwoLayers` of the contact
+    layers : :class:`~solver.kernels.transfer.Layered` of the contact
     pitch, unit : the length l in a, and the stress E l/Ra in E2*
     """
 
     member: Member
     b: np.ndarray
     p: float
-    layers: TwoLayers
+    layers: Layered
     pitch: float
     unit: float
 
@@ -35,12 +38,18 @@ class FeltCell(NamedTuple):
     def h(self):
         return 1 / self.member.cell.pitch
 
-    def stresses(self, b, r, z, body, last=EXACT):
+    @property
+    def bottom(self):
+        """The number of the body, and the depth of its top in l."""
+        tops = self.layers.tops(np.array([self.h]))[0]
+        return len(tops) - 1, tops[-1]
+
+    def stresses(self, b, r, z, region, last=EXACT):
         """sr, st, sz and trz (4, Z, R) of the cell below a spot of radius b: :func:`~.below_spot`."""
         cell = self.member.cell
         if self.member.alone:
-            return below_summit(cell, b, self.p, self.layers, r, z, body, last)
-        return below_spot(cell, spots(cell, [b]), self.layers, r, z, body, last)
+            return below_summit(cell, b, self.p, self.layers, r, z, region, last)
+        return below_spot(cell, spots(cell, [b]), self.layers, r, z, region, last)
 
 
 def felt_cells(scaled, a, lam, p0):
@@ -49,20 +58,21 @@ def felt_cells(scaled, a, lam, p0):
     scaled : in units R = E2* = 1, of any laws; a : (B,), radii of the contacts; lam : (B, S), λ at radii of which the
         first is the centre, NaN beyond it where only that is known; p0 : (B,), nominal pressure in the centre
     """
-    made, layers = [None] * len(scaled), TwoLayers.of(scaled)
+    made, stacked = [None] * len(scaled), is_stack(scaled.base)
     pitch, E = 1 / np.sqrt(scaled.Nbar), layer_modulus(scaled.n) / (1 + scaled.m)
     unit = E * pitch / scaled.Ra
-    for micro in dict.fromkeys(scaled.micro.tolist()):
-        rows = np.flatnonzero((scaled.micro == micro) & (lam[:, 0] > 0) & np.isfinite(p0))
+    for micro, on_stack in product(dict.fromkeys(scaled.micro.tolist()), (False, True)):
+        rows = np.flatnonzero((scaled.micro == micro) & (lam[:, 0] > 0) & np.isfinite(p0) & (stacked == on_stack))
         if not len(rows):
             continue
-        part = scaled.take(rows)
-        different, which = members(part.known.laws[micro].cell, pitch[rows] / part.h, layers.take(rows), part.m)
-        body = BODIES["layered"](part)
-        largest = largest_radius(part.but(base="layered"), body, lam[rows, 0], p0[rows])
-        for i, member, b in zip(rows, (different[j] for j in which), largest, strict=True):
+        part = scaled.take(rows) if on_stack else scaled.take(rows).but(base="layered")
+        body = BODIES[str(part.base[0])](part)
+        layers = body.kernel
+        different, which = members(part.known.laws[micro].cell, pitch[rows] / part.h, layers, part.m)
+        largest = largest_radius(part, body, lam[rows, 0], p0[rows])
+        for place, (i, member, b) in enumerate(zip(rows, (different[j] for j in which), largest, strict=True)):
             if member.known:
                 others = np.zeros(0) if member.alone or np.isnan(lam[i]).any() else lam[i, 1:]
                 radii = np.append(b, np.sqrt(np.maximum(others, _LEAST) / np.pi))
-                made[i] = FeltCell(member, radii, p0[i] / unit[i], layers.take([i]), pitch[i] / a[i], unit[i])
+                made[i] = FeltCell(member, radii, p0[i] / unit[i], layers.take([place]), pitch[i] / a[i], unit[i])
     return made

@@ -78,7 +78,7 @@ def table_of(felt):
     member = felt.member
     if member.alone:
         rho, z = _places(member.cell, felt.b[0])
-        return One(felt.stresses(felt.b[0], felt.b[0] * rho, z, False, ROUGH))
+        return One(felt.stresses(felt.b[0], felt.b[0] * rho, z, 0, ROUGH))
     return _kept.get(member.key, lambda: _made(member.cell, felt.layers, member.reach))
 
 
@@ -99,7 +99,7 @@ def _made(cell, layers, reach):
         values = []
         for radius in b:
             spot, (rho, z) = spots(cell, [radius], N), _places(cell, radius)
-            values.append(below_spot(cell, spot, layers, radius * rho, z, False, ROUGH) / (2 * radius / np.pi))
+            values.append(below_spot(cell, spot, layers, radius * rho, z, 0, ROUGH) / (2 * radius / np.pi))
         matrix = np.linalg.inv(chebvander(x, len(x) - 1))
         series.append(np.tensordot(matrix, np.array(values), 1))
     return Table(reach, limit, *series)

@@ -1,7 +1,7 @@
 """The largest stresses in each layer of a stack, at each interface and in the body, with their places.
 
 Each layer, the lower side of each, the body, and the surface inside and outside of the contact are searched by
-themselves, on a coarse grid of radii and depths, then from its peaks with patches that shrink (:mod:`~..peaks`). The
+themselves, on a coarse grid of radii and depths, then from its peaks with patches that shrink (:mod:`.patches`). The
 grid has the lengths of all that is there: a, the thickness of each layer and the depth of its top, and those over which
 stiff layers spread the pressure.
 """
@@ -19,7 +19,7 @@ from ...numerics.threads import one_blas_thread
 from ...scaling import dimensionless
 from ..contact import of_contacts as of_one_layer
 from ..extremes import VALUES
-from ..peaks import peak
+from .patches import climbed
 
 #: Name -> the function of the stresses whose largest value it is, and where it is looked for: in each "layer", at the
 #: "lower" side of each, on the "surface", or in the "body".
@@ -73,8 +73,8 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
         residual = np.broadcast_to(residual, (len(problem), N))[index] / part.E2[:, None]
         for rows, pressure, _ in pressures_of(scaled, ended, a):
             for i, row in enumerate(rows):
-                section = Section.of(scaled.take([row]), a[[row]], pressure.take([i]), mu, residual[row])
-                for name, values in _of_section(section, names, coarse, only).items():
+                case = Section.of(scaled.take([row]), a[[row]], pressure.take([i]), mu, residual[row])
+                for name, values in _of_section(case, names, coarse, only).items():
                     made[name][:, index[row]] = values * np.array([part.E2[row], 1, 1])[:, None]
                 if sharp[row] and part.nu1[row] < 0.5:
                     _at_tip(made, index[row], corners(scaled.take([row]), a[[row]])[0])
@@ -121,33 +121,33 @@ class Grid(NamedTuple):
     def radius(self, u):
         return np.sqrt(np.maximum(1 - u * np.abs(u), 0.0)) if self.root else u
 
-    def stresses(self, section, u, v, roughly=False):
+    def stresses(self, case, u, v, roughly=False):
         """(4, S, V, U)"""
-        return section.stresses(self.radius(u), v, np.full(len(v), self.number), roughly)
+        return case.stresses(self.radius(u), v, np.full(len(v), self.number), roughly)
 
 
-def _of_section(section, names, coarse, only):
+def _of_section(case, names, coarse, only):
     """Name -> (3, N) of one case."""
-    N, largest = len(section.ends), np.abs(section.pressure.values).max()
+    N, largest = len(case.ends), np.abs(case.pressure.values).max()
     made = {name: np.full((3, N), np.nan) for name in names}
-    if not np.isfinite(section.pressure.values).all():
+    if not np.isfinite(case.pressure.values).all():
         return made
-    lengths = lengths_of(section)
+    lengths = lengths_of(case)
     for place in dict.fromkeys(EXTREMES[name][1] for name in names):
         for j in range(N) if DIMENSION[place] else (0,):
             if only is not None and DIMENSION[place] and j != only:
                 continue
             wanted = [name for name in names if EXTREMES[name][1] == place]
-            for name, values in _in_grids(section, _grids(section, place, j, lengths), wanted, coarse).items():
+            for name, values in _in_grids(case, _grids(case, place, j, lengths), wanted, coarse).items():
                 lacks = name in _MAY_LACK and values[0] <= _NOTHING * largest
                 made[name][:, j] = (0.0, np.nan, np.nan) if lacks else values
     return made
 
 
-def _in_grids(section, grids, names, coarse):
+def _in_grids(case, grids, names, coarse):
     """Name -> the largest value and its place (3,) in these regions; NaN without one."""
-    made, fine = {}, [_Fine(section, grid) for grid in grids]
-    on_grid = [grid.stresses(section, grid.u, grid.v, roughly=True) for grid in grids]
+    made, fine = {}, [_Fine(case, grid) for grid in grids]
+    on_grid = [grid.stresses(case, grid.u, grid.v, roughly=True) for grid in grids]
     for name in names:
         value, best = VALUES[EXTREMES[name][0]], np.full(3, np.nan)
         values = [value(*stresses) for stresses in on_grid]
@@ -165,13 +165,13 @@ def _in_grids(section, grids, names, coarse):
     return made
 
 
-def lengths_of(section):
+def lengths_of(case):
     """Lengths over which stresses change, ascending: a, the thickness of each layer, the depths of interfaces, and how
     far stiff layers spread the pressure: h (E/E_below)^(1/3)."""
-    ends, G = section.ends, section.stack.shear[0]
-    of_layers = np.append(section.last, -1)
-    below = np.inf if section.rigid else G[-1]
-    stiff = np.array([np.cbrt(max(G[of_layers[j]] / min(below, G[section.last].min()), 1.0)) for j in range(len(ends))])
+    ends, G = case.ends, case.stack.shear[0]
+    of_layers = np.append(case.last, -1)
+    below = np.inf if case.rigid else G[-1]
+    stiff = np.array([np.cbrt(max(G[of_layers[j]] / min(below, G[case.last].min()), 1.0)) for j in range(len(ends))])
     thickness = np.diff(np.append(0.0, ends))
     wanted = np.sort(np.concatenate([[1.0], thickness, ends, thickness * stiff]))
     chosen = [wanted[0]]
@@ -185,12 +185,12 @@ def farthest_of(lengths):
     return _FARTHEST * (1 + lengths[-1])
 
 
-def _grids(section, place, j, lengths):
+def _grids(case, place, j, lengths):
     """The coarse grids of a place."""
     far = farthest_of(lengths)
     beyond = 1 + np.outer(lengths, _BEYOND).ravel()
     radii = _unlike(np.concatenate([_RADII, beyond[beyond < far]]))
-    tops = np.append(0.0, section.ends)
+    tops = np.append(0.0, case.ends)
     surface = np.zeros(1)
     if place == "surface" or place == "layer" and j == 0:
         inner = Grid(np.linspace(0, 1, 12), surface, ((0.0, 1.0), (0.0, 0.0)), 0, True)
@@ -201,7 +201,7 @@ def _grids(section, place, j, lengths):
     if place == "lower":
         return [Grid(radii, tops[j + 1 : j + 2], ((0.0, far), (tops[j + 1],) * 2), j)]
     if place == "body":
-        if section.rigid:
+        if case.rigid:
             return []
         depths = tops[-1] + _unlike(np.outer(lengths, _BELOW).ravel())
         return [Grid(radii, depths, ((0.0, far), (tops[-1], tops[-1] + far)), len(tops) - 1)]
@@ -232,8 +232,8 @@ def _peaks(values, top):
 def _refined(grid, patches, value, side, row, column):
     """The value of a peak, and its r and z, (3,), from a coarse point."""
     at, half = (grid.u[column], grid.v[row]), [_spacing(grid.u, column), _spacing(grid.v, row)]
-    largest, (u, v) = peak(lambda u, v: patches(u, v)[:, side], value, at, half, grid.bounds)
-    return np.array([largest, float(grid.radius(u)) * patches.section.signs[side], v])
+    largest, (u, v) = climbed(lambda u, v: patches(u, v)[:, side], value, at, half, grid.bounds)
+    return np.array([largest, float(grid.radius(u)) * patches.case.signs[side], v])
 
 
 def _spacing(axis, at):
@@ -245,12 +245,12 @@ class _Fine:
     """Stresses in a region, (4, S, V, U) at u (U,), v (V,). Those of a patch are kept: several extremes begin with the
     same."""
 
-    def __init__(self, section, grid):
-        self.section, self.grid, self._kept = section, grid, {}
+    def __init__(self, case, grid):
+        self.case, self.grid, self._kept = case, grid, {}
 
     def __call__(self, u, v):
         u, v = np.atleast_1d(u), np.atleast_1d(v)
         key = u.tobytes(), v.tobytes()
         if key not in self._kept:
-            self._kept[key] = self.grid.stresses(self.section, u, v)
+            self._kept[key] = self.grid.stresses(self.case, u, v)
         return self._kept[key]

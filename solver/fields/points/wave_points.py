@@ -1,0 +1,223 @@
+"""Stresses at single points, with their derivatives by r and z, of waves on one rule: docs/stresses.md, Extremes.
+
+The constants of the waves of each case, which do not depend on the point, are formed once. The state at a depth is
+linear in them, its derivatives by z are A and A² times it, and those by r are Bessel functions of other orders.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...kernels.transfer import (
+    THIN,
+    Bodies,
+    Kind,
+    antiplane,
+    carried,
+    decaying,
+    derivative,
+    growing,
+    radial_sum,
+    thick_waves,
+    thin_surface,
+)
+from ...numerics import special
+from ...numerics.quadrature import gauss_legendre
+from ..waves import FIRST, SHORTEST, quadrature
+from . import edge_waves
+
+#: A field that decays like e^(-kz) ends at k = _END/z: at the largest stress the rest is 1e-12 of it.
+_END = 28.0
+#: A panel of 20 Gauss points holds at most so many radians: 1e-12 of the integral.
+_RADIANS = 32.0
+#: A panel of short waves is at most this part of its distance from 0: they have 260/k radians at most.
+_SHARE = 0.125
+#: Below _SMALL, J2, J3, ... are series of _TERMS terms: by recurrence they lose digits.
+_SMALL, _TERMS = 1.0, 7
+#: Numbers in an array of states: so many waves times points are taken at once.
+_AT_ONCE = 60_000
+#: The value, and the derivatives by r, z, rr, rz, zz.
+JET = 6
+
+
+class Waves(NamedTuple):
+    """The waves of B cases of one octave of h.
+
+    bodies : :class:`~solver.kernels.transfer.Bodies` (B, 1); h : (B,)
+    k : (K,), ascending; the first `thin` of them are below THIN/h
+    p : (B, K), k times the transform of the pressure times the weight of k
+    f : (B, K) of :mod:`.edge_waves`, of short waves next to the edge, or None: p is then without the transform
+    loads : traction (S, T) -> :class:`_Constants`
+    """
+
+    bodies: Bodies
+    h: np.ndarray
+    k: np.ndarray
+    thin: int
+    p: np.ndarray
+    f: np.ndarray | None
+    loads: dict
+
+
+class _Constants(NamedTuple):
+    """Of a load, times p: the `surface` of thin layers (4, B, thin); tractions `down`, `down_less` (of the difference
+    to a half-space) and `up` (2, B, K - thin) of the waves of thick ones; `base` (2, B, K), S and T of the body."""
+
+    surface: np.ndarray
+    down: np.ndarray
+    down_less: np.ndarray
+    up: np.ndarray
+    base: np.ndarray
+
+
+def waves_of(layers, h, pressure, radius, least, tractions):
+    """:class:`Waves` that reach radii up to `radius` and are felt at depths from `least` h on, of the `tractions`:
+    those that are felt everywhere, and the short ones next to the edge, None if there are none."""
+    octave = 2.0 ** np.floor(np.log2(h.min()))
+    last = _END / (least * octave)
+    first = FIRST * min(1.0, 0.5 / octave) / max(1.0, layers.n.max())
+    split = last > 1.2 * edge_waves.LAST and edge_waves.have_edge_waves(pressure.mesh)
+    k, weight = quadrature(first, edge_waves.LAST if split else min(last, SHORTEST), 1 + radius, _RADIANS)
+    p = edge_waves.transform(pressure, k) * (k * weight * (edge_waves.longer(k) if split else 1.0))
+    long = _waves(layers, h, k, p, None, tractions)
+    if not split:
+        return long, None
+    panels = int(np.ceil(np.log(last / edge_waves.LEAST) / np.log1p(_SHARE)))
+    ends = edge_waves.LEAST * (last / edge_waves.LEAST) ** (np.arange(panels + 1) / panels)
+    t, w = gauss_legendre(20)
+    k, weight = (ends[:-1, None] + np.diff(ends)[:, None] * t).ravel(), (np.diff(ends)[:, None] * w).ravel()
+    p = np.broadcast_to(k * weight, (len(h), len(k)))
+    return long, _waves(layers, h, k, p, edge_waves.of_edge(pressure, k), tractions)
+
+
+def _waves(layers, h, k, p, f, tractions):
+    bodies = Bodies(*(np.broadcast_to(v, len(h))[:, None] for v in Bodies.of(layers)))
+    thin = int((np.sqrt(h.min() * h.max()) * k < THIN).sum())
+    return Waves(bodies, h, k, thin, p, f, {load: _constants(bodies, h, k, thin, p, load) for load in tractions})
+
+
+def _constants(bodies, h, k, thin, p, load):
+    X, low, high = k * h[:, None], slice(None, thin), slice(thin, None)
+    surface = np.stack(np.broadcast_arrays(*thin_surface(bodies, X[:, low], *load))) * p[:, low]
+    down, up = (np.stack(v) for v in thick_waves(bodies, X[:, high], *load))
+    whole, nu = (down + np.array(load)[:, None, None]) * p[:, high], bodies.nu1
+    thin = carried(X[:, low], nu, surface)[2:]
+    thick = zip(decaying(X[:, high], nu, *whole), growing(0.0, nu, *(up * p[:, high])), strict=True)
+    thick = [falls + rises for falls, rises in thick][2:]
+    S, T = (np.concatenate(parts, axis=1) for parts in zip(thin, thick, strict=True))
+    return _Constants(surface, whole, down * p[:, high], up * p[:, high], np.stack([S, np.where(bodies.bonded, T, 0)]))
+
+
+def sums(waves, integrands, load, orders, kind, case, r, z):
+    """The integrals over k of a load and their derivatives (JET, fields, P) at points r, z (P,) of the cases `case`.
+
+    integrands : ``integrands(v, nu, Q, across)`` of the integrands, linear
+    orders : of their Bessel functions
+    kind : :class:`~solver.kernels.transfer.Kind` of all points
+    """
+    made = np.empty((JET, len(orders), len(r)))
+    reach = {Kind.BODY: z, Kind.LAYER: z, Kind.DIFFERENCE: 2 * waves.h[case] - z}[kind]
+    order = np.argsort(-reach)
+    ends = np.searchsorted(waves.k, _END / reach[order])
+    start = 0
+    while start < len(order):
+        stop = start + 1
+        while stop < len(order) and (stop + 1 - start) * ends[stop] <= _AT_ONCE:
+            stop += 1
+        some = order[start:stop]
+        made[..., some] = _of_some(
+            waves, integrands, load, orders, kind, case[some], r[some], z[some], int(ends[stop - 1])
+        )
+        start = stop
+    return made
+
+
+def _of_some(waves, integrands, load, orders, kind, case, r, z, end):
+    k, nu = waves.k[:end], (waves.bodies.nu2 if kind == Kind.BODY else waves.bodies.nu1)[case]
+    v, Q, across = _state(waves, load, kind, case, z, end)
+    first = [k * values for values in derivative(v, nu)]
+    second = [k * values for values in derivative(first, nu)]
+    antiplane = (Q, across), (k * across / 2, 2 * k * Q), (k * k * Q, k * k * across)
+    rows = [integrands(state, nu, *pair) for state, pair in zip((v, first, second), antiplane, strict=True)]
+    if waves.f is None:
+        J = _bessels(k, r, max(orders))
+    else:
+        octave, which = np.unique(edge_waves.last_octave(r), return_inverse=True)
+        window = edge_waves.shorter(k, octave)[which]
+        J = edge_waves.bessels(k, r, waves.f[case, :end] * window, max(orders))
+    slopes = {m: _slopes(J, m, k) for m in set(orders)}
+    made = np.empty((JET, len(orders), len(r)))
+    for i, m in enumerate(orders):
+        f, down, twice = (row[i] for row in rows)
+        across, bent = slopes[m]
+        pairs = (f, J[m]), (f, across), (down, J[m]), (f, bent), (down, across), (twice, J[m])
+        for j, (values, wave) in enumerate(pairs):
+            made[j, i] = np.einsum("pk,pk->p", values, wave)
+    return made
+
+
+def _slopes(J, m, k):
+    """First and second derivatives by r of J_m(kr)."""
+    first = J[1] * -k if m == 0 else (J[m - 1] - J[m + 1]) * (k / 2)
+    return first, ((J[2] if m == 0 else -J[1] if m == 1 else J[m - 2]) + J[m + 2] - 2 * J[m]) * (k * k / 4)
+
+
+def _bessels(k, r, most):
+    """J_m (P, K) of k r, m from 0 to `most` + 2."""
+    x = r[:, None] * k
+    small, inverse = np.nonzero(x < _SMALL), 2 / np.maximum(x, _SMALL)
+    J, few = [special.j0(x), special.j1(x)], x[small]
+    for m in range(1, most + 2):
+        values = m * inverse * J[m] - J[m - 1]
+        values[small] = _series(m + 1, few)
+        J.append(values)
+    return J
+
+
+def _series(m, x):
+    """J_m below _SMALL."""
+    square, term, total = -((x / 2) ** 2), (x / 2) ** m / np.prod(np.arange(1.0, m + 1)), 0.0
+    for j in range(1, _TERMS + 1):
+        total = total + term
+        term = term * square / (j * (j + m))
+    return total
+
+
+def _state(waves, load, kind, case, z, end):
+    """State (4 of (P, K)) of the points times p, and the antiplane pair."""
+    k, h, bodies, made = waves.k[:end], waves.h[case, None], waves.bodies, waves.loads[load]
+    X, x, middle = k * h, k * z[:, None], min(waves.thin, end)
+    nu1, p = bodies.nu1[case], waves.p[case, :end]
+    if kind == Kind.BODY:
+        v = decaying(x - X, bodies.nu2[case], *(part[case, :end] for part in made.base))
+    else:
+        low, high, thick = slice(None, middle), slice(middle, end), slice(0, end - middle)
+        parts = []
+        if middle:
+            state = carried(x[:, low], nu1, [part[case, :middle] for part in made.surface])
+            if kind == Kind.DIFFERENCE:
+                less = decaying(x[:, low], nu1, *(s * p[:, low] for s in load))
+                state = [a - b for a, b in zip(state, less, strict=True)]
+            parts.append(state)
+        if end > middle:
+            down = made.down_less if kind == Kind.DIFFERENCE else made.down
+            falls = decaying(x[:, high], nu1, *(part[case, thick] for part in down))
+            rises = growing((X - x)[:, high], nu1, *(part[case, thick] for part in made.up))
+            parts.append([a + b for a, b in zip(falls, rises, strict=True)])
+        v = parts[0] if len(parts) == 1 else [np.concatenate(pair, axis=1) for pair in zip(*parts, strict=True)]
+    if load[1] == 0:
+        return v, 0.0, 0.0
+    these = Bodies(*(values[case] for values in bodies))
+    return v, *(p * values for values in antiplane(kind, these, X, x))
+
+
+def of_normal(v, nu, Q, across):
+    """Integrands of :data:`~..normal.NORMAL`."""
+    u, _, S, T = v
+    return radial_sum(v, nu), -u, S, T
+
+
+def of_sliding(v, nu, Q, across):
+    """Integrands of :data:`~..sliding.SLIDING`."""
+    u, _, S, T = v
+    return radial_sum(v, nu), u + across, across - u, S, T + Q, T - Q

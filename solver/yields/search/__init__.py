@@ -1,0 +1,1 @@
+"""The way up from a start to the largest stress near it: docs/stresses.md, Extremes."""

@@ -1,0 +1,135 @@
+"""Stresses at points of regions of loaded bodies, with their first and second derivatives: docs/stresses.md, Extremes.
+
+A jet is (6, 4, P): sr, st, sz, trz at P points, and their derivatives by u, v, uu, uv, vv. v is the depth, and u the
+radius or, along the surface next to the edge, sqrt(1 - r²), beyond it -sqrt(r² - 1).
+"""
+
+import numpy as np
+
+from ...fields import normal, sliding
+from ...fields.half_space import on_surface
+from ...fields.points import half_space_points
+from ...fields.points.edge_waves import last_octave
+from ...fields.points.wave_points import of_normal, of_sliding, sums, waves_of
+from ...kernels.transfer import Kind
+
+#: Above this part of the layer the half-space is a closed form, to which waves add the difference: they end sooner.
+NEAR = 0.8
+#: Least depth of points that are not at the surface: the closed form has no digits less.
+_LEAST = 1e-12
+#: The waves of one rule reach one of these 1 + r.
+_REACHES = np.append(2.0 ** np.array([1, 4 / 3]), 2.0 ** np.arange(2, 40))
+#: By this u differs where closed forms of the surface are differentiated.
+_STEP = 1e-3
+#: Loads: traction, integrands, orders, closed form, components.
+_LOADS = (
+    ((-1.0, 0.0), of_normal, normal.NORMAL.orders[:4], half_space_points.normal_below, normal.components),
+    ((0.0, 1.0), of_sliding, sliding.SLIDING.orders[:6], half_space_points.sliding_below, sliding.components),
+)
+
+
+class Jets:
+    """Of the cases of a :class:`~..loaded.Loaded`; the waves are formed when a point first needs them."""
+
+    def __init__(self, loaded):
+        self.loaded, self._waves = loaded, {}
+        self.loads = _LOADS[: 1 + (loaded.mu > 0)]
+
+    def __call__(self, region, case, side, root, u, v):
+        """Jets (6, 4, P) at points of a region of :data:`~..extremes.EXTREMES`.
+
+        case, side, root : (P,), of which case, on which side, and whether u is that of the surface next to the edge
+        u, v : (P,)
+        """
+        loaded, body = self.loaded, region == "body" and not self.loaded.bare
+        r = np.where(root, np.sqrt(np.maximum(1 - u * np.abs(u), 0.0)), u)
+        on_top, outside = region in ("inside", "outside"), region == "outside"
+        fields = {}
+        for load, components in zip(self.loads, (load[-1] for load in self.loads), strict=True):
+            whole = np.zeros((6, len(load[2]), len(r)))
+            if not loaded.bare:
+                whole += self._of_waves(load, on_top, body, case, r, v)
+            if on_top:
+                whole = _along(whole, r, u, root, outside) + self._of_surface(load, case, u, root, outside)
+            elif not body:
+                near = np.ones(len(r), dtype=bool) if loaded.bare else self._is_near(case, v)
+                if near.any():
+                    here = case[near]
+                    nu = (loaded.layers.nu1 if not loaded.bare else loaded.layers.nu2)[here]
+                    whole[..., near] += load[3](loaded.pressure, here, nu, r[near], np.maximum(v[near], _LEAST))
+            factor = loaded.mu if load is _LOADS[1] else 1.0
+            fields |= {name: factor * values for name, values in components(np.swapaxes(whole, 0, 1)).items()}
+        if loaded.mu > 0:
+            sides = [sliding.in_plane(fields, sign < 0) for sign in loaded.signs]
+            fields = {name: np.where(side == 0, sides[0][name], sides[1][name]) for name in sides[0]}
+        made = np.stack([fields[name] for name in ("sr", "st", "sz", "trz")], axis=1)
+        if not body and not loaded.bare:
+            made[0, :2] += loaded.residual[case]
+        return made
+
+    def _is_near(self, case, z):
+        return z < NEAR * self.loaded.h[case]
+
+    def _of_waves(self, load, on_top, body, case, r, v):
+        traction, integrands, orders = load[:3]
+        whole = np.zeros((6, len(orders), len(r)))
+        reach = np.searchsorted(_REACHES, 1 + r)
+        near = on_top | self._is_near(case, v)
+        kinds = np.full(len(r), int(Kind.BODY)) if body else np.where(near, int(Kind.DIFFERENCE), int(Kind.LAYER))
+        for far in np.unique(reach):
+            long, short = self._reaching(int(far))
+            for kind in np.unique(kinds[reach == far]):
+                some = np.flatnonzero((reach == far) & (kinds == kind))
+                for waves in (long, short):
+                    if waves is short:
+                        some = some[last_octave(r[some]) >= 0] if short is not None else some[:0]
+                    if len(some):
+                        here = Kind(kind), case[some], r[some], v[some]
+                        whole[..., some] += sums(waves, integrands, traction, orders, *here)
+        return whole
+
+    def _reaching(self, far):
+        if far not in self._waves:
+            loaded = self.loaded
+            self._waves[far] = waves_of(
+                loaded.layers, loaded.h, loaded.pressure, _REACHES[far] - 1, NEAR, [load[0] for load in self.loads]
+            )
+        return self._waves[far]
+
+    def _of_surface(self, load, case, u, root, outside):
+        """The closed form on the surface, whose derivatives are differences."""
+        low, high = (-np.inf, 0.0) if outside else (0.0, 1.0)
+        middle = np.clip(u, low + _STEP, high - _STEP)
+        points = np.concatenate([u, middle - _STEP, middle, middle + _STEP])
+        made = self._on_surface(load, np.tile(case, 4), points, np.tile(root, 4), outside)
+        values, before, at, after = np.split(made, 4, axis=1)
+        first, second = (after - before) / (2 * _STEP), (after - 2 * at + before) / _STEP**2
+        none = np.zeros_like(values)
+        return np.stack([values, first + second * (u - middle), none, second, none, none])
+
+    def _on_surface(self, load, case, u, root, outside):
+        """The integrals (fields, P) of half-spaces at the surface; at the edge those of its side."""
+        loaded = self.loaded
+        r = np.where(root, np.sqrt(np.maximum(1 - u * np.abs(u), 0.0)), np.abs(u))
+        nu = (loaded.layers.nu2 if loaded.bare else loaded.layers.nu1)[case]
+        p, second, third = np.empty((3, len(r)))
+        for i in np.unique(case):
+            here, pressure = np.flatnonzero(case == i), loaded.pressure.take([i])
+            p[here] = 0.0 if outside else pressure.at(r[here])[0]
+            if load is _LOADS[0]:
+                second[here] = pressure.mean(r[here])[0]
+            else:
+                second[here], third[here] = on_surface(pressure, r[here])[:, 0]
+        if load is _LOADS[0]:
+            return np.stack([-(1 + 2 * nu) * p, (1 - 2 * nu) * (2 * second - p), -p, 0 * p])
+        parts = -2 * (1 + nu) * second, -2 * (2 - nu) * second, -2 * nu * third, 0 * p, 2 * p, 0 * p
+        return np.stack(parts)
+
+
+def _along(whole, r, u, root, outside):
+    """Derivatives by u of what has derivatives by r: where u is the root, r² is 1 - u² inside and 1 + u² outside."""
+    r, sign = np.where(root, np.maximum(r, _STEP), 1.0), 1.0 if outside else -1.0
+    first, second = np.where(root, sign * u / r, 1.0), np.where(root, sign / r**3, 0.0)
+    value, by_r, _, rr, _, _ = whole
+    none = np.zeros_like(value)
+    return np.stack([value, by_r * first, none, rr * first**2 + by_r * second, none, none])

@@ -1,0 +1,70 @@
+"""How long extremes and first yield take: `python tools/fields/benchmark_extremes.py [CHECKOUT]`.
+
+Processor times of one process: the first call, and the shortest of the next ones. With another checkout of this
+repository the two take turns, and ratios follow.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+ROUNDS = 3
+#: What runs in a process whose path begins with a checkout; it prints a name and two times a line.
+PROGRAM = """
+import sys, time, warnings
+sys.path.insert(0, sys.argv[1])
+warnings.simplefilter("ignore")
+import numpy as np
+from solver import Problem, solve
+from solver.yields.contact import of_contacts
+from solver.yields.first import first_yield
+
+E1, E2 = 450e9 / (1 - 0.25**2), 210e9 / (1 - 0.3**2)  # TiN on steel, 3 um below a ball of alumina of 5 mm
+film = {"h": 6e-4, "n": E1 / E2, "nu1": 0.25, "nu2": 0.3, "bonding": "bonded", "micro": "smooth", "m": 0.6}
+
+def told(name, action):
+    times = []
+    for _ in range(3):
+        start = time.process_time()
+        action()
+        times.append(time.process_time() - start)
+    print(name, times[0], min(times[1:]), flush=True)
+
+def extremes(**contact):
+    problem = Problem.of(**contact)
+    solution = solve(problem)
+    return lambda: of_contacts(problem, solution)
+
+told("50_smooth_films", extremes(P=np.geomspace(0.1, 100, 50) / (E2 * 25e-6), **film))
+for thin in (0.02, 0.005):
+    told(f"film_h/a={thin}", extremes(a=6e-4 / thin, **film))
+random = np.random.default_rng(1)
+a, n = 0.03, np.exp(random.uniform(np.log(0.05), np.log(20), 100))
+rough = {"Nbar": 2.5e7, "Ra": 0.004, "bonding": "bonded", "nu1": 0.25}
+told("100_rough_layers", extremes(a=a, h=a * np.exp(random.uniform(np.log(0.05), np.log(3), 100)), n=n, **rough))
+for body, strength in (("layer", 5e9), ("body", 2e9)):
+    told(f"first_yield_{body}", lambda: first_yield(Problem.of(P=1e-6, **film), body, np.array([strength / E2])))
+"""
+
+
+def times_of(checkout: Path) -> dict[str, list[float]]:
+    """Name -> the first and the shortest further time."""
+    output = subprocess.run(
+        [sys.executable, "-c", PROGRAM, str(checkout)], cwd=checkout, check=True, capture_output=True, text=True
+    ).stdout
+    return {name: [float(first), float(later)] for name, first, later in map(str.split, output.splitlines())}
+
+
+def main() -> None:
+    checkouts = [ROOT, *(Path(path).resolve() for path in sys.argv[1:])]
+    rounds = [[times_of(checkout) for checkout in checkouts] for _ in range(ROUNDS if len(checkouts) > 1 else 1)]
+    for name in rounds[0][0]:
+        least = [[min(turn[i][name][j] for turn in rounds) for j in (0, 1)] for i in range(len(checkouts))]
+        words = ", ".join(f"first {first:.3f} s, then {later:.3f} s" for first, later in least)
+        ratios = [f"{b / a:.1f}" for a, b in zip(*least, strict=True)] if len(least) > 1 else []
+        print(f"{name}: {words}" + (f"; ratios {', '.join(ratios)}" if ratios else ""), flush=True)
+
+
+if __name__ == "__main__":
+    main()

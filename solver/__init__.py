@@ -8,7 +8,7 @@ from . import closed_forms, fields
 from .known import register
 from .laws import Curve, Law
 from .laws import disc_cell as micro
-from .laws.fit import Fit, fit_power_law
+from .laws.power_law_fit import Fit, fit_power_law
 from .parameters import Parameter
 from .problem import Problem
 from .sensitivity import Sensitivities, sensitivities

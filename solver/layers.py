@@ -25,7 +25,7 @@ def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
     parameters : of :meth:`solver.problem.Problem.of`. `layers` is a list of mappings, the layer at the surface first:
         h, n = E_j*/E2*, nu = 0.3, `bonding` of the interface below, "frictionless", "bonded" or {"cn": ..., "ct": ...}.
         Of a graded layer n is a pair, top and bottom, nu may be one, and `profile` is "exponential" or "linear"; or,
-        without n, "table:FILE.csv", a :class:`~solver.numerics.profiles.Table`. With `rigid_base` n is E_j*/E1*. A
+        without n, "table:FILE.csv", a :class:`~solver.numerics.profiles.Profile`. With `rigid_base` n is E_j*/E1*. A
         parameter like "layers.2.h" takes the place of what the list says
 
     Returns

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .compiled import newton as compiled
+from .compiled import newton_in_c as compiled
 from .known import register_scheme
 from .numerics.ladder import start_nodes
 from .numerics.mesh import mesh_of

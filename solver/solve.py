@@ -7,14 +7,14 @@ from numpy.typing import ArrayLike
 
 from .bases import is_chosen, is_stack, named, on_springs
 from .body.graded import is_graded
+from .models.asperity_error import left_out
 from .models.auto import cheapest
-from .models.cells import left_out
-from .models.graded import solve_graded
 from .models.model_error import judged
 from .models.named import model_of, solve_named
 from .models.plastic_share import plastic_share
 from .models.range_of_law import beyond_end, has_yield, radii_of, without_family
 from .models.spot_pressure import pressure_in_spots
+from .models.sublayers import solve_graded
 from .models.table_ends import beyond_table
 from .numerics.threads import one_blas_thread
 from .problem import Problem

@@ -8,7 +8,7 @@ import numpy as np
 
 from .bases import is_bare, is_thin_layer, on_springs
 from .numerics.batch import alike
-from .rough.flat import solve_flat
+from .rough.flat_punch import solve_flat
 from .scaling import as_cases, kinds_of_laws
 from .schemes import SCHEMES
 from .shapes import is_flat, shape_of, shaped
@@ -26,7 +26,7 @@ class Way(NamedTuple):
     alike : function of a problem, arrays (B,): cases that differ in none of these are solved together
     solve : ``function(part, x) -> Solution`` of such cases, in units R = E2* = 1, at the radii x (m,)
     equation : by which a solved case can be found again: "nodes", :mod:`.rough.equation`; "flat",
-        :mod:`.rough.flat`; "basis", :mod:`.smooth.equation`
+        :mod:`.rough.flat_punch`; "basis", :mod:`.smooth.galerkin`
     """
 
     name: str
@@ -57,7 +57,7 @@ def _of_equation(part):
 
 
 #: base, rough, shape, sticks -> function. Of rough cases none sticks (:func:`unfit`), and graded layers are many
-#: uniform ones here (:mod:`.models.graded`).
+#: uniform ones here (:mod:`.models.sublayers`).
 WAYS = (
     Way("sticking", lambda p, smooth: p.w_adhesion > 0, lambda p: (p.base, p.shape, p.adhesion), sticking, "basis"),
     Way("shaped", lambda p, smooth: smooth & shaped(p), lambda p: (p.base, p.shape), not_sticking, "basis"),

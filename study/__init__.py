@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from .scan_laws import roughness
     from .solving import solve
     from .specimen import materials
-    from .yields.first import first_yield
-    from .yields.protect import h_protect
+    from .yields.first_yield import first_yield
+    from .yields.protecting_layer import h_protect
 
     __version__: str
 
@@ -86,8 +86,8 @@ _HOME = {
     "feasible": "inverse.design_choice",
     "front": "inverse.design_choice",
     "effective_work": "adhesion",
-    "first_yield": "yields.first",
-    "h_protect": "yields.protect",
+    "first_yield": "yields.first_yield",
+    "h_protect": "yields.protecting_layer",
     "fit": "inverse.fit",
     "curves": "inverse.curves",
     "stresses": "fields",

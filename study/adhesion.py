@@ -74,10 +74,7 @@ def _asked(parameters: dict[str, Any]) -> tuple[Any, Problem]:
     inputs = usual | {name: value for name, value in parameters.items() if value is not None}
     if "w_adhesion" not in inputs:
         raise StudyError(["effective_work: give w_adhesion"])
-    try:
-        definition = from_call(inputs, [], False, {"output": {"profiles": False}})
-    except StudyError as error:
-        raise StudyError(text.replace("solve: ", "effective_work: ", 1) for text in error.messages) from None
+    definition = from_call(inputs, [], False, {"output": {"profiles": False}}, where="effective_work")
     scene = definition.scene
     assert scene is not None  # R has a unit, so all have
     if definition.grid.sizes:

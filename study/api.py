@@ -15,7 +15,7 @@ from .inputs.lexicon import with_known
 from .inputs.places import study_file
 from .inputs.reading import read
 from .store.clean import clean
-from .store.state import glance, verified
+from .store.window_files import glance, verified
 from .store.windows import Store
 from .work.cost import Estimate
 from .work.plan import Report

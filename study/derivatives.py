@@ -12,8 +12,8 @@ from solver import sensitivities as derivatives
 from solver.laws.own_table import LAW_UNIT
 from solver.layers import numbers_of
 
-from .again import Again, of_all_cases
 from .arrays import xarray_later as xr
+from .data.contacts import Contacts, of_all_cases
 from .inputs.definition import StudyError
 from .inputs.lexicon import lexicon_of
 from .inputs.scene.changes import SCALES, changes
@@ -56,7 +56,7 @@ def sensitivities(contact: xr.Dataset) -> xr.Dataset:
     >>> study.sensitivities(contact).a_sensitivity.sel(P=2e-5, input="P").round(6).item()
     0.333333
     """
-    logs, _ = _by_inputs(contact, Again.of(contact, "sensitivities"), ())
+    logs, _ = _by_inputs(Contacts.of(contact, "sensitivities"), ())
     dims, shape = contact["status"].dims, contact["status"].shape
     variables = {}
     for name in QUANTITIES:
@@ -68,12 +68,12 @@ def sensitivities(contact: xr.Dataset) -> xr.Dataset:
     return contact.drop_vars(left_out).assign(variables).assign_coords(input=list(logs["a"]))
 
 
-def _by_inputs(contact: xr.Dataset, again: Again, x: Any) -> tuple[dict, dict]:
+def _by_inputs(contacts: Contacts, x: Any) -> tuple[dict, dict]:
     """Result, A0 too -> input -> sensitivity (B,); and input -> d p/d ln input (B, m) at the radii x, in the unit of p.
 
     NaN in cases that have not converged.
     """
-    problem, numbers, scene, dims, shape = again
+    dataset, problem, numbers, scene, dims, shape = contacts
     used = [name for name in problem.known.table(numbers_of(numbers)) if name in numbers and _counts(problem, name)]
     solution = solve(problem, x)
     solved = derivatives(problem, solution, x, inputs=(problem.control, *used))
@@ -85,7 +85,7 @@ def _by_inputs(contact: xr.Dataset, again: Again, x: Any) -> tuple[dict, dict]:
         p = _by_si(p, of_si, VOCABULARY["p"].powers, solution.p)
         p = {name: values * of_all_cases(scene.unit, dims, shape)[:, None] for name, values in p.items()}
     # those of the control are exact; a load or depth of 0 has no logarithm
-    control, good = problem.control, (solution.status == 0) & (contact["status"].values.ravel() == 0)
+    control, good = problem.control, (solution.status == 0) & (dataset["status"].values.ravel() == 0)
     sized = np.where(problem.value == 0, np.nan, 0.0)
     logs[control] = {name: 0 * values + (name == control) + sized for name, values in logs["a"].items()}
     for by_input in logs.values():
@@ -102,11 +102,11 @@ def spread_of_formula(case: xr.Dataset, formula: Callable[[xr.Dataset], Any]) ->
     if correlated(case):
         return np.nan
     try:
-        again = Again.of(case, "sensitivities")
+        contact = Contacts.of(case, "sensitivities")
     except StudyError:
         return np.nan
-    logs, p = _by_inputs(case, again, case["x"].values)
-    changes_of, sum_of_squares = _in_si(again.scene, (), ()), 0.0
+    logs, p = _by_inputs(contact, case["x"].values)
+    changes_of, sum_of_squares = _in_si(contact.scene, (), ()), 0.0
     for name, part in relative_spreads(case, logs["a"]).items():
         by = {key: slopes[name] * case[key].values for key, slopes in logs.items() if key in case} | {"p": p[name][0]}
         for key, coordinate in {"length": "R", "n": "n", "m": "m"}.items():

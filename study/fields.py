@@ -18,7 +18,7 @@ from solver.yields.below.central_spot import of_contacts as below_spots
 from solver.yields.contact import of_contacts as extremes_of
 from solver.yields.extremes import EXTREMES
 
-from .again import Again, of_all_cases, refuse_without_stresses
+from .data.contacts import Contacts
 from .inputs.definition import StudyError
 from .inputs.vocabulary import VOCABULARY
 from .solving import solve as solve_inputs
@@ -90,15 +90,15 @@ def stresses(
     contact = contact_of("stresses", contact, parameters)
     r = _axis("r", _mirrored(_RADII) if r is None and mu > 0 else _RADII if r is None else r, mu > 0)
     z = _axis("z", _DEPTHS if z is None else z, False)
-    again = Again.of(contact, "stresses")
-    refuse_without_stresses(again, "stresses", largest=False)
-    unit, size = units_of(again)
-    solution = _solved(again, contact)
-    _refuse_far_away(r, again, solution)
-    fields = fields_of(again.problem, solution, np.abs(r), z, mu)
-    residual, bare = residual_stress(sigma_res, again) / unit, is_bare(again.problem.base)
-    within = (z <= (again.problem.h / solution.a)[:, None]) & ~bare[:, None]
-    compressible, variables = np.where(bare, again.problem.nu2, again.problem.nu1) < 0.5, {}
+    contacts = Contacts.of(contact, "stresses")
+    contacts.refuse_without_stresses("stresses", largest=False)
+    unit, size = contacts.units
+    solution = _solved(contacts)
+    _refuse_far_away(r, contacts, solution)
+    fields = fields_of(contacts.problem, solution, np.abs(r), z, mu)
+    residual, bare = residual_stress(sigma_res, contacts) / unit, is_bare(contacts.problem.base)
+    within = (z <= (contacts.problem.h / solution.a)[:, None]) & ~bare[:, None]
+    compressible, variables = np.where(bare, contacts.problem.nu2, contacts.problem.nu1) < 0.5, {}
     places = ("", "r", "z"), ("_above", "r"), ("_below", "r")
     for (end, *axes), field in zip(places, fields[:3], strict=True):
         field = in_plane(field, r < 0) if mu > 0 else field
@@ -112,24 +112,24 @@ def stresses(
         for name, long_name in _LONG_NAMES.items():
             length = name.startswith("u")
             values = field[name] * ((size if length else 1) * (1 if length else unit))[(...,) + (None,) * len(axes)]
-            about = _about(again, long_name + _WHERE[end], "m" if length else "Pa")
-            variables[f"{name}{end}"] = _labelled(again, values.swapaxes(1, -1), axes, about)
+            about = _about(contacts, long_name + _WHERE[end], "m" if length else "Pa")
+            variables[f"{name}{end}"] = _labelled(contacts, values.swapaxes(1, -1), axes, about)
     about = {"long_name": "error of any stress, relative to the largest"}
-    variables["stress_error"] = _labelled(again, fields.error, (), about)
+    variables["stress_error"] = _labelled(contacts, fields.error, (), about)
     coords = {"r": ("r", r, {"long_name": "radius over a" if mu == 0 else "x over a, behind the contact < 0"})}
     coords["z"] = ("z", z, {"long_name": "depth over a"})
-    if again.scene:
+    if contacts.scene:
         lengths = (solution.a * size)[:, None]
         for name, axis in (("r", r), ("z", z)):
             about = {"long_name": "radius" if name == "r" else "depth", "units": "m"}
-            coords[f"{name}_length"] = _labelled(again, lengths * axis, (name,), about)
+            coords[f"{name}_length"] = _labelled(contacts, lengths * axis, (name,), about)
     return carried(contact, variables).assign_coords(coords)
 
 
-def _refuse_far_away(r: np.ndarray, again: Again, solution: Any) -> None:
+def _refuse_far_away(r: np.ndarray, contacts: Contacts, solution: Any) -> None:
     """Raise StudyError for radii whose fields would take minutes."""
-    bare = is_bare(again.problem.base)
-    largest = np.nanmin(farthest(np.where(bare, np.inf, again.problem.h / solution.a)), initial=np.inf)
+    bare = is_bare(contacts.problem.base)
+    largest = np.nanmin(farthest(np.where(bare, np.inf, contacts.problem.h / solution.a)), initial=np.inf)
     if (far := np.abs(r).max()) > largest:
         why = "" if bare.all() else ": farther away the field of the layer takes minutes"
         raise StudyError([f"r = {far:g}: must be at most {largest:.3g} in units of a{why}"])
@@ -176,39 +176,32 @@ def extremes(
     """
     mu = friction(mu)
     contact = contact_of("extremes", contact, parameters)
-    again = Again.of(contact, "extremes")
-    refuse_without_stresses(again, "extremes")
-    unit, _ = units_of(again)
-    residual = residual_stress(sigma_res, again) / unit
-    solution = _solved(again, contact)
-    values, variables = extremes_of(again.problem, solution, mu, residual), {}
+    contacts = Contacts.of(contact, "extremes")
+    contacts.refuse_without_stresses("extremes")
+    unit, _ = contacts.units
+    residual = residual_stress(sigma_res, contacts) / unit
+    solution = _solved(contacts)
+    values, variables = extremes_of(contacts.problem, solution, mu, residual), {}
     for name in EXTREMES:
         long_name = VOCABULARY[name].long_name
         value, r, z = values[name]
         place = {"long_name": f"{long_name}: its {'radius' if mu == 0 else 'x, behind the contact < 0,'} over a"}
-        variables[name] = _labelled(again, value * unit, (), _about(again, long_name, "Pa"))
-        variables[f"{name}_r"] = _labelled(again, r, (), place)
-        variables[f"{name}_z"] = _labelled(again, z, (), {"long_name": f"{long_name}: its depth over a"})
-    if again.problem.feels_layer().any():
-        for name, (value, z) in below_spots(again.problem, solution, mu, residual).items():
+        variables[name] = _labelled(contacts, value * unit, (), _about(contacts, long_name, "Pa"))
+        variables[f"{name}_r"] = _labelled(contacts, r, (), place)
+        variables[f"{name}_z"] = _labelled(contacts, z, (), {"long_name": f"{long_name}: its depth over a"})
+    if contacts.problem.feels_layer().any():
+        for name, (value, z) in below_spots(contacts.problem, solution, mu, residual).items():
             long_name = VOCABULARY[name].long_name
-            variables[name] = _labelled(again, value * unit, (), _about(again, long_name, "Pa"))
-            variables[f"{name}_z"] = _labelled(again, z, (), {"long_name": f"{long_name}: its depth over a"})
+            variables[name] = _labelled(contacts, value * unit, (), _about(contacts, long_name, "Pa"))
+            variables[f"{name}_z"] = _labelled(contacts, z, (), {"long_name": f"{long_name}: its depth over a"})
     return carried(contact, variables)
 
 
-def _solved(again: Again, contact: xr.Dataset) -> Any:
+def _solved(contacts: Contacts) -> Any:
     """The solution of the cases; one that is not converged in the dataset is not either."""
-    solution = solve(again.problem)
-    there = contact["status"].values.ravel() == Status.CONVERGED
+    solution = solve(contacts.problem)
+    there = contacts.dataset["status"].values.ravel() == Status.CONVERGED
     return replace(solution, status=np.where(there, solution.status, Status.INVALID_INPUT))
-
-
-def units_of(again: Again) -> tuple[np.ndarray, np.ndarray]:
-    """The stress and the length that are 1 for the solver, (B,)."""
-    scene = again.scene
-    values = (scene.unit, scene.R) if scene else (1.0, 1.0)
-    return tuple(of_all_cases(value, again.dims, again.shape).astype(float) for value in values)
 
 
 def contact_of(who: str, contact: Any, parameters: dict[str, Any]) -> xr.Dataset:
@@ -262,13 +255,13 @@ def _axis(name: str, values: Any, signed: bool) -> np.ndarray:
     return values
 
 
-def residual_stress(sigma_res: Any, again: Again) -> float:
+def residual_stress(sigma_res: Any, contacts: Contacts) -> float:
     """In Pa, or without a unit where the contact has none. Raises StudyError."""
-    single = not again.scene and np.ndim(sigma_res) == 0 and hasattr(sigma_res, "item")
+    single = not contacts.scene and np.ndim(sigma_res) == 0 and hasattr(sigma_res, "item")
     sigma_res = plain(sigma_res.item() if single else sigma_res)
     number = type(sigma_res) in (int, float)
     try:
-        if again.scene and not (number and sigma_res == 0):
+        if contacts.scene and not (number and sigma_res == 0):
             value = quantity("sigma_res", sigma_res, "Pa").value
         elif sigma_res is None or isinstance(sigma_res, bool):
             raise ValueError(f"sigma_res = {shown(sigma_res)}: must be a finite number")
@@ -280,20 +273,20 @@ def residual_stress(sigma_res: Any, again: Again) -> float:
         raise StudyError([str(error)]) from None
     if not np.isfinite(value):
         raise StudyError([f"sigma_res = {shown(sigma_res)}: must be finite"])
-    unit, _ = units_of(again)
+    unit, _ = contacts.units
     if np.any(np.abs(value) > _MOST_RESIDUAL * unit):
         most = f"{_MOST_RESIDUAL:g} times E2*, or E1* on a rigid base"
         raise StudyError([f"sigma_res = {shown(sigma_res)}: must be at most {most}"])
     return value
 
 
-def _about(again: Again, long_name: str, unit: str) -> dict[str, str]:
+def _about(contacts: Contacts, long_name: str, unit: str) -> dict[str, str]:
     scale = {"Pa": "E2*, E1* on a rigid body", "m": "R"}[unit]
-    return {"long_name": long_name, "comment": SIGNS} | ({"units": unit} if again.scene else {"scale": scale})
+    return {"long_name": long_name, "comment": SIGNS} | ({"units": unit} if contacts.scene else {"scale": scale})
 
 
-def _labelled(again: Again, values: np.ndarray, axes: Any, about: dict[str, str]) -> xr.Variable:
-    return xr.Variable((*again.dims, *axes), values.reshape((*again.shape, *values.shape[1:])), about)
+def _labelled(contacts: Contacts, values: np.ndarray, axes: Any, about: dict[str, str]) -> xr.Variable:
+    return xr.Variable((*contacts.dims, *axes), values.reshape((*contacts.shape, *values.shape[1:])), about)
 
 
 def carried(contact: xr.Dataset, variables: dict[str, xr.Variable]) -> xr.Dataset:

@@ -12,8 +12,7 @@ import numpy as np
 
 from .arrays import xarray_later as xr
 from .data.coordinates import with_coordinates
-from .data.dataset import DatasetParts, parts
-from .data.one_case import OneCase
+from .data.dataset import DatasetParts, OneCase, labelled, parts, status_attributes
 from .data.si import dataset_in_units, in_units
 from .derivatives import sensitivities as derivatives_of
 from .in_words import FarOutside, beside_rules, doubts, far_outside
@@ -23,7 +22,7 @@ from .inputs.lexicon import PACKAGE
 from .inputs.punch.stresses import none_in
 from .inputs.reading import from_call
 from .inputs.scene.hints import Parameters
-from .inputs.vocabulary import VOCABULARY
+from .inputs.vocabulary import NOT_RUN, VOCABULARY
 from .specimen.foreign import plain
 from .terminal import shown
 from .work.engine import solved
@@ -138,21 +137,12 @@ def solve(
     0.02466
     """
     begun, workers = time.monotonic(), plain(workers)
-    if workers is not None and (type(workers) is not int or workers < 1):
-        raise StudyError([f"workers = {shown(workers)}: must be a whole number, 1 or more"])
-    stream = screen_of(plain(progress))
-    if chunks is not None and (workers is not None or plain(progress)):
-        raise StudyError(["chunks: dask divides the work and says how far it is: leave out workers and progress"])
-    ranges = [name for name, given in parameters.items() if isinstance(given, dict) and {"start", "stop"} <= {*given}]
-    if ranges:
-        hint = "a range stands in study files; here give its values, as of numpy.geomspace"
-        raise StudyError([f"{name}: {hint}" for name in ranges])
+    stream = _stream(workers, progress, chunks, sensitivities)
+    _refuse_ranges(parameters)
     rows = [row for row in cases if isinstance(row, dict)] if isinstance(cases, list) else []
     if cases is not None and not (rows and len(rows) == len(cases)):
         table = ' (of a table of pandas: cases=table.to_dict("records"))' * hasattr(cases, "to_dict")
         raise StudyError([f"cases must be a list of dictionaries, at least one{table}"])
-    if not isinstance(sensitivities, (bool, np.bool_)) or (sensitivities and chunks is not None):
-        raise StudyError([f"sensitivities = {shown(sensitivities)}: must be true or false, and false beside chunks"])
     tables = {"title": title, "output": {"x": x, "profiles": profiles}}
     definition = from_call(parameters, rows, same_piece, tables, correlations)
     for text in unloading(definition):
@@ -176,6 +166,45 @@ def solve(
         if beyond:
             warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)
     return found
+
+
+def unsolved(who: str, parameters: dict[str, Any]) -> xr.Dataset:
+    """The contacts of inputs, which are not solved: what :func:`solve` gives, except for results. Their status is
+    NOT_RUN.
+
+    who : the name of the public function, for messages
+    parameters : of `solve`; those that say how it solves are checked, and count for nothing. An input that a contact
+        must have, and on which nothing depends, may be an :class:`~.inputs.request.AnyValue`
+    """
+    call = solve.__kwdefaults__ | parameters
+    options = {name: call.pop(name) for name in solve.__kwdefaults__}
+    _stream(plain(options["workers"]), options["progress"], options["chunks"], options["sensitivities"])
+    _refuse_ranges(call)
+    tables = {"title": options["title"], "output": {"x": 2, "profiles": False}}
+    definition = from_call(call, [], options["same_piece"], tables, options["correlations"], who)
+    made = labelled(definition, {"status": np.full(definition.grid.size, NOT_RUN, np.int8)}, "study.solve")
+    made.variables["status"].attrs |= status_attributes()
+    contacts, _ = with_coordinates(dataset_in_units(definition, in_units(definition, made.settings_apart())), call)
+    return contacts
+
+
+def _stream(workers: Any, progress: Any, chunks: Any, sensitivities: Any) -> TextIO | None:
+    """Where a call says how far it is. Raises StudyError for options that it cannot have, or not together."""
+    if workers is not None and (type(workers) is not int or workers < 1):
+        raise StudyError([f"workers = {shown(workers)}: must be a whole number, 1 or more"])
+    stream = screen_of(plain(progress))
+    if chunks is not None and (workers is not None or plain(progress)):
+        raise StudyError(["chunks: dask divides the work and says how far it is: leave out workers and progress"])
+    if not isinstance(sensitivities, (bool, np.bool_)) or (sensitivities and chunks is not None):
+        raise StudyError([f"sensitivities = {shown(sensitivities)}: must be true or false, and false beside chunks"])
+    return stream
+
+
+def _refuse_ranges(parameters: dict[str, Any]) -> None:
+    ranges = [name for name, given in parameters.items() if isinstance(given, dict) and {"start", "stop"} <= {*given}]
+    if ranges:
+        hint = "a range stands in study files; here give its values, as of numpy.geomspace"
+        raise StudyError([f"{name}: {hint}" for name in ranges])
 
 
 def solve_one(stresses: str = "", /, *, same_piece: bool = False, **parameters: Any) -> OneCase:

@@ -6,8 +6,8 @@ of the family do. Near y = 0 all pieces are equally wide, far from it they widen
 
 import numpy as np
 
+from ..laws.cell.cell_law import exponent, number, settled_slope, spot_guess
 from ..laws.cell.family import NUMBERS
-from ..laws.cell.law import exponent, number, settled_slope, spot_guess
 from ..numerics.kept import Kept
 
 #: As in batch.h: pieces an octave, and coefficients of a polynomial of exp(P), exp(G) and exp(Q); half as many of the

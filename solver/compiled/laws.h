@@ -64,7 +64,7 @@ static inline V of_cell(const Law *law, const double *const *at, int which, V y,
     }
     return value;
 }
-static ALONE Curve cell_curve(const Law *law, V y) {                           /* solver/laws/cell/law.py */
+static ALONE Curve cell_curve(const Law *law, V y) {                           /* solver/laws/cell/cell_law.py */
     const double *at[W];
     I index;
     V t, by_P, by_G, dt = piece(y, law->of_cell[kappa_], law->of_cell[top_], &index, &t);

@@ -23,33 +23,33 @@ LAYOUT = 3
 _LAYERED = ("h", "m", "n", "bonded", "c1", "c2", "one_c1", "one_c2", "plus_c1", "one_c1c2")
 
 
-class Points(Structure):
+class CPoints(Structure):
     """As in batch.h."""
 
     _fields_ = [("m", c_int64), *((name, c_void_p) for name in ("s", "w", "kappa", "basis", "half_space"))]
 
 
-class Mesh(Structure):
+class CMesh(Structure):
     """As in batch.h."""
 
     _fields_ = [
         ("n", c_int64),
         *((name, c_void_p) for name in ("s", "w", "K", "kappa", "at_edge", "fine_s", "fine_w", "fine_K")),
-        *((name, Points) for name in ("fine", "more", "between", "profile")),
+        *((name, CPoints) for name in ("fine", "more", "between", "profile")),
     ]
 
 
-class Rows(Structure):
+class CRows(Structure):
     """As in batch.h."""
 
     _fields_ = [(name, c_void_p) for name in ("product", "J_rows", "J", "phi", "phi_columns")]
 
 
-class Table(Structure):
+class CTable(Structure):
     """As in batch.h."""
 
     _fields_ = [
-        *(("few", c_int64), ("all", c_int64), ("k", c_void_p), ("spread", c_void_p), ("own", Rows), ("fine", Rows)),
+        *(("few", c_int64), ("all", c_int64), ("k", c_void_p), ("spread", c_void_p), ("own", CRows), ("fine", CRows)),
         *((name, c_void_p) for name in ("J_fine", "J_more", "J_profile")),
     ]
 
@@ -57,7 +57,7 @@ class Table(Structure):
 OF_MESH, OF_TABLE = CFUNCTYPE(c_void_p, c_int64), CFUNCTYPE(c_void_p, c_int64, c_int64, c_int64)
 
 
-class Batch(Structure):
+class CBatch(Structure):
     """As in batch.h."""
 
     _fields_ = [
@@ -79,7 +79,7 @@ def pointer(array: np.ndarray, start: int = 0) -> int:
 def layout() -> int:
     """What `roughcoat_layout` of a core built of these sources returns: LAYOUT and the sizes of the structures."""
     number = LAYOUT
-    for structure in (Batch, Mesh, Table):
+    for structure in (CBatch, CMesh, CTable):
         number = number * 4096 + sizeof(structure)
     return number
 
@@ -115,7 +115,7 @@ def _variant(name: str) -> Callable | None:
     if has is None or not has():
         return None
     function = getattr(_library(), f"roughcoat_{name}")
-    function.argtypes, function.restype = [POINTER(Batch), c_int64], c_int
+    function.argtypes, function.restype = [POINTER(CBatch), c_int64], c_int
     return function
 
 

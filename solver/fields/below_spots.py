@@ -38,7 +38,7 @@ _AT_ONCE = 200_000
 def below_spot(cell, spot, layers, r, z, body, last=EXACT):
     """sr, st, sz and trz (4, Z, R) of the waves G != 0 below one spot, in units E = Ra = l = 1; tension is positive.
 
-    cell, spot : :class:`~solver.laws.cell.spot.Cell` and :class:`~solver.laws.cell.spot.Spots` of one radius
+    cell, spot : :class:`~solver.laws.cell.spot.Cell` and :class:`~solver.laws.cell.spot.CellSpots` of one radius
     layers : :class:`~solver.kernels.two_layers.TwoLayers` of the case
     r, z : (R,), radii from the axis, which with b are less than the distance of neighbours; (Z,), depths, in l
     body : bool, in the body, z >= h; else in the layer, z <= h

@@ -11,8 +11,8 @@ from ..numerics.ladder import STACK
 from ..numerics.threads import one_blas_thread
 from ..rough.answer import answer
 from ..scaling import as_cases, dimensionless
-from ..sensitivity.again import found_again, meshes, stacks
-from ..sensitivity.held import held
+from ..sensitivity.same_mesh import found_again, meshes, stacks
+from ..sensitivity.solved_cases import solved_cases
 from ..shapes import is_flat, shaped
 from ..solve import solve
 from ..status import Status
@@ -112,11 +112,11 @@ def pressures_of(scaled, solution, a):
 def _of_paraboloids(scaled, solution, a):
     if not len(scaled):
         return
-    named = held(scaled, solution.model_used).named
+    named = solved_cases(scaled, solution.model_used).named
     fine = np.minimum(named.rtol, _RTOL)
     at_a = replace(named, control="a", value=a).but(rtol=fine, nodes=0, max_iterations=0)
     again = solve(at_a)
-    now = held(at_a, again.model_used)
+    now = solved_cases(at_a, again.model_used)
     for rows, nodes in stacks(now.written, meshes(again, at_a), a, STACK):
         some = now.take(rows)
         iterated = found_again(as_cases(some.written), nodes, a[rows], some.written.rtol)

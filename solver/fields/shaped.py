@@ -9,7 +9,7 @@ from ..numerics.quadrature import radau_nodes
 from ..shapes import shape_of, shaped
 from ..shapes.shape import has_radius
 from ..smooth.contact import kinds_of
-from ..smooth.equation import respond
+from ..smooth.galerkin import respond
 from ..smooth.pressure import pressure_changes, without_edge
 from .pressure import Pressure
 

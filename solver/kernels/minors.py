@@ -24,7 +24,7 @@ _ODD = [6 / factorial(3 + 2 * i) for i in reversed(range(_TERMS))]
 _EVEN = [24 / factorial(4 + 2 * i) for i in reversed(range(_TERMS))]
 
 
-class Layer(NamedTuple):
+class LayerPowers(NamedTuple):
     """B⁰ to B⁵ of one layer, (B, 6, 5, 5)."""
 
     powers: np.ndarray

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..numerics import batch
 from .kernel import Sampler
-from .minors import Layer, across, at_surface, base, numerator, scaled, through
+from .minors import LayerPowers, across, at_surface, base, numerator, scaled, through
 from .two_layers import thin_layer_coefficients
 
 #: Below this u, L - 1 is the difference of two terms, none of which is small there.
@@ -97,12 +97,12 @@ class Stack(NamedTuple):
         return L1, uL
 
     def _blocks(self, u):
-        """Slices of cases, their kernel, its :class:`~.minors.Layer` s, and their u (b, M)."""
+        """Slices of cases, their kernel, its :class:`~.minors.LayerPowers` s, and their u (b, M)."""
         step, G = max(1, _BLOCK // max(1, u.shape[1])), self.n * (1 - self.nu)
-        layers = [Layer.of(G[:, 0] / G[:, j], self.nu[:, j]) for j in range(self.n.shape[1])]
+        layers = [LayerPowers.of(G[:, 0] / G[:, j], self.nu[:, j]) for j in range(self.n.shape[1])]
         for low in range(0, len(u), step):
             rows = slice(low, low + step)
-            yield rows, self.take(rows), [Layer(layer.powers[rows]) for layer in layers], u[rows]
+            yield rows, self.take(rows), [LayerPowers(layer.powers[rows]) for layer in layers], u[rows]
 
     def _near_and_far(self, u, layers):
         """L - 1 and u dL/du (B, M). The part of the numerator x4 - (1 - nu1) x5 and its derivative that vanishes but
@@ -119,7 +119,7 @@ class Stack(NamedTuple):
         return L1, (d_above - L1 * d_below) / below
 
     def _under_top(self, u, layers, slopes):
-        """The top layer (:class:`~.minors.Layer`), and X below it; `slopes`: with derivatives by ln u."""
+        """The top layer (:class:`~.minors.LayerPowers`), and X below it; `slopes`: with derivatives by ln u."""
         g = (1 - self.nu2) / (self.n[:, 0] * (1 - self.nu[:, 0]))
         X = base(g, self.nu2, self.rigid, slopes, u.shape[1])
         for j in reversed(range(self.n.shape[1])):

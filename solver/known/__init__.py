@@ -43,13 +43,13 @@ class Known:
     ----------
     laws : name -> :class:`~solver.laws.Law`
     shapes : name -> :class:`~solver.shapes.Kind`
-    profiles : word "table:FILE" of a graded layer -> its :class:`~solver.numerics.profiles.Table`
+    profiles : word "table:FILE" of a graded layer -> its :class:`~solver.numerics.profiles.Profile`
     schemes : names of the schemes
     """
 
     laws: Mapping[str, Law]
     shapes: Mapping[str, Kind]
-    profiles: Mapping[str, profiles.Table]
+    profiles: Mapping[str, profiles.Profile]
     schemes: tuple[str, ...]
 
     def __repr__(self):

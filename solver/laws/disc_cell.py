@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..parameters import Parameter
-from .cell.law import EDGE, of_spots
+from .cell.cell_law import EDGE, of_spots
 from .law import Curve, Law, inverse, log_step, where_positive
 
 __all__ = ["LAW", "PARAMETERS", "SMOOTH", "contact_fraction", "displacement", "largest_pressure"]

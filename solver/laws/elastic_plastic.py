@@ -16,8 +16,8 @@ X = 2 p*/(pi H), x = X t and f = p_s/(H x),
 
 Where nothing yields all numbers are those of the disc cell to the last bit. The law holds while the load rises.
 
-On the coated body itself (:mod:`.cell.law`) the disc cell's q_e and g_e at t = y are those of its family, and x is the
-mean pressure of the elastic spot there: x = X y exp(P - P0), with P0 that of a half-space,
+On the coated body itself (:mod:`.cell.cell_law`) the disc cell's q_e and g_e at t = y are those of its family, and x is
+the mean pressure of the elastic spot there: x = X y exp(P - P0), with P0 that of a half-space,
 
     exp(P0) = (π/2)/(arccos t + t sqrt(1 - t²)).
 
@@ -37,7 +37,7 @@ import numpy as np
 from ..closed_forms import yield_pressure
 from ..parameters import Parameter
 from . import disc_cell
-from .cell import law as cell
+from .cell import cell_law as cell
 from .cell.family import half_space
 from .law import Bound, Curve, Law, inverse
 

@@ -22,8 +22,8 @@ from ..numerics import special
 from ..numerics.quadrature import gauss_legendre
 from ..parameters import Parameter
 from . import disc_cell, spread
-from .cell import heights as on_body
-from .cell import law as cell
+from .cell import cell_law as cell
+from .cell import random_heights as on_body
 from .cell.family import different, family
 from .cell.summits import SUMMIT, Lookup, summit
 from .law import Bound, Curve, Law, where_positive

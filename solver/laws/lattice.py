@@ -17,7 +17,7 @@ from importlib.resources import files
 import numpy as np
 
 from . import disc_cell
-from .cell.law import of_spots
+from .cell.cell_law import of_spots
 from .tabulated import LawTable, fitted, law_of, t_of
 
 FILE = files(__package__) / "lattices.csv"  # which may be in a zip file
@@ -65,7 +65,7 @@ def _table(name):
 
 
 def _quantity(t, q, X, power, rate, limit, first):
-    """:class:`~solver.laws.tabulated.Quantity` near the rows X (n,) at t and q (n,), with both its ends: X/t^power is
+    """:class:`~solver.laws.tabulated.TableCurve` near the rows X (n,) at t and q (n,), with both its ends: X/t^power is
     `first` for t -> 0, and X tends to `limit` by exp(-rate p^)."""
     rate = rate * P_STAR
     last = -rate * q[-2:] - np.log(1 / X[-2:] - 1 / limit)  # V + m ln t

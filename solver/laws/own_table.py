@@ -235,8 +235,8 @@ def _scales_in_metres(p_star, A_star, E, law_unit):
 
 
 def _curve(column, t, q, X, power, allowed):
-    """:class:`~solver.laws.tabulated.Quantity` near the rows X (n,), of the lowest degree that is near enough, and its
-    largest error at and between them. Raises ValueError where every degree is more than `allowed` away, or falls."""
+    """:class:`~solver.laws.tabulated.TableCurve` near the rows X (n,), of the lowest degree that is near enough, and
+    its largest error at and between them. ValueError where every degree is more than `allowed` away, or falls."""
     degrees = range(min(_DEGREE, len(t) - 2) + 1)
     tried = [fitted(t, q, X, degree, power=power, span=(t[0], t[-1])) for degree in degrees]
     apart, tried = _apart([curve for curve, _ in tried], t), tried[1:]  # degree 1 is compared with degree 0
@@ -275,6 +275,6 @@ def _apart(curves, t):
 
 
 def _falls(quantity, t):
-    """Whether a :class:`~solver.laws.tabulated.Quantity` falls somewhere between the rows at t (n,), or below them."""
+    """Whether a :class:`~solver.laws.tabulated.TableCurve` falls between the rows at t (n,), or below them."""
     points = np.append(np.geomspace(1e-6, t[0], 50), np.linspace(t[0], 1, 2000)[:-1])
     return bool((quantity.power / points + quantity.exponent(points)[1] <= 0).any())

@@ -24,7 +24,7 @@ _LARGE = 1e30
 _TINY = np.finfo(float).tiny
 
 
-class Quantity(NamedTuple):
+class TableCurve(NamedTuple):
     """One X of the module, with m = `power`; V holds the coefficients of a polynomial in 2 t - 1, ascending.
 
     span : the smallest and the largest t of the polynomial. Below, V is a straight line in t; above, V + m ln t is one.
@@ -73,9 +73,9 @@ class Quantity(NamedTuple):
 class LawTable(NamedTuple):
     """The quantities of a law: A/A*, λ, and `above`, (p_max - p)/p*; and the exponent s of q = y t^s."""
 
-    A: Quantity
-    lam: Quantity
-    above: Quantity
+    A: TableCurve
+    lam: TableCurve
+    above: TableCurve
     s: float = 2.0
 
     def pressure(self, y):
@@ -86,15 +86,15 @@ class LawTable(NamedTuple):
 
 
 def fitted(t, q, X, degree, guides=((), (), 0.0), first=None, **form):
-    """:class:`Quantity` near the rows X (n,) at t and q (n,), and its relative error at each row (n,): how far the row
-    is from the curve fitted to the other rows alone. Where rows are far apart, both this and the curve err much.
+    """:class:`TableCurve` near the rows X (n,) at t and q (n,), and its relative error at each row (n,): how far the
+    row is from the curve fitted to the other rows alone. Where rows are far apart, both this and the curve err much.
 
     degree : of the polynomial
     guides : t and V (k,) of guiding points where there are no rows, and their weight, small beside the rows' weights
     first : X/t^power for t -> 0, if it is known; met exactly
-    form : power, and rate, limit and span of the Quantity
+    form : power, and rate, limit and span of the TableCurve
     """
-    quantity = Quantity(**{"rate": 0.0, "limit": np.inf} | form, V=np.zeros(1))
+    quantity = TableCurve(**{"rate": 0.0, "limit": np.inf} | form, V=np.zeros(1))
     share = 1 - X / quantity.limit  # dX/X = (1 - X/limit) dV
     V = -quantity.rate * q - np.log((1 / X - 1 / quantity.limit) * t**quantity.power)
     points, values = np.append(t, guides[0]), np.append(V, guides[1])

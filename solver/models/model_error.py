@@ -12,7 +12,7 @@ import numpy as np
 from ..bases import exact_of
 from ..numerics.batch import alike
 from ..numerics.mesh import mesh_of
-from ..rough.equation import State, evaluate
+from ..rough.equation import Unknowns, evaluate
 from ..rough.newton import solve_on
 from ..rough.results import difference, quantities
 from ..scaling import as_cases, dimensionless, kinds_of_laws, restore
@@ -54,6 +54,6 @@ def distance(cases, cheap, p):
     cases : in units R = E2* = 1; cheap : the cheap solution in the same units
     p : (B, NODES), its nominal pressure at the nodes ``mesh_of(NODES).x``
     """
-    state = State(cases.law.from_pressure(p / cases.law.p_star[:, None]), np.log(cheap.a))
+    state = Unknowns(cases.law.from_pressure(p / cases.law.p_star[:, None]), np.log(cheap.a))
     iterated = solve_on(evaluate(cases, state, mesh_of(NODES)))
     return np.where(iterated.closed, difference(cheap, quantities(iterated.at)), np.inf)

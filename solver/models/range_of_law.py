@@ -4,8 +4,8 @@ import numpy as np
 
 from ..bases import is_bare
 from ..kernels.two_layers import layer_modulus
+from ..laws.cell.cell_law import end
 from ..laws.cell.family import MOST
-from ..laws.cell.law import end
 from ..parameters import one_of
 from ..scaling import dimensionless, law_of, of_one_law
 from ..status import Status

@@ -9,7 +9,7 @@ import numpy as np
 
 from .userfile import content
 
-__all__ = ["GRADED", "PREFIX", "WORDS", "Table", "identity", "read"]
+__all__ = ["GRADED", "PREFIX", "WORDS", "Profile", "identity", "read"]
 
 #: "uniform" is not graded.
 WORDS = ("uniform", "exponential", "linear")
@@ -20,7 +20,7 @@ PREFIX = "table:"
 _ROWS, _LARGEST, _LEAST, _MOST = 10_000, 10_000_000, 1e-9, 1e9
 
 
-class Table(NamedTuple):
+class Profile(NamedTuple):
     """A profile with straight lines between its rows: z from 0 to 1, over the thickness, and n = E*/E2* (N,)."""
 
     z: np.ndarray
@@ -28,7 +28,7 @@ class Table(NamedTuple):
 
 
 def read(word):
-    """The :class:`Table` of a word "table:FILE".
+    """The :class:`Profile` of a word "table:FILE".
 
     The file has two columns, z/h from 0 to 1 and E*/E2* > 0; lines that begin with "#" and a line of words are left
     out. ValueError for a file that cannot be used.
@@ -48,7 +48,7 @@ def read(word):
         raise ValueError(f"profile {word}: z/h must grow from 0 to 1, not from {z[0]:g} to {z[-1]:g}")
     if not np.all((n >= _LEAST) & (n <= _MOST)):
         raise ValueError(f"profile {word}: E*/E2* must be in [{_LEAST:g}, {_MOST:g}]")
-    return Table(z, n)
+    return Profile(z, n)
 
 
 def is_number(text):
@@ -61,7 +61,7 @@ def is_number(text):
 
 
 def identity(word, tables):
-    """Text that tells a profile from all others: the word, and of one of the `tables` (word -> :class:`Table`) its
+    """Text that tells a profile from all others: the word, and of one of the `tables` (word -> :class:`Profile`) its
     numbers."""
     if word not in tables:
         return word

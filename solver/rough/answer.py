@@ -10,7 +10,7 @@ from ..numerics.mesh import gauss_rule
 from ..solution import Solution
 from ..status import Codes, Status
 from . import newton
-from .equation import State
+from .equation import Unknowns
 from .error import completed, estimate, profile_error, refine
 from .results import pointed, profiles, quantities
 
@@ -85,7 +85,7 @@ class Answer(NamedTuple):
     tension: np.ndarray
     gap: np.ndarray
     verdict: np.ndarray
-    finer: State | None
+    finer: Unknowns | None
 
     def lifted(self):
         """(B,) bool: there is tension, in all or in the centre, which is too large to be an error."""

@@ -65,7 +65,7 @@ class Cases(NamedTuple):
 
 
 @batch.of_cases
-class State(NamedTuple):
+class Unknowns(NamedTuple):
     """Unknowns: y (B, n) of the micro law at the nodes, and η = ln a (B,)."""
 
     y: np.ndarray
@@ -79,7 +79,7 @@ class Evaluation:
     (B, 1), K q and the residual F at the nodes (B, n), and edge @ q (B,); in both is what the edge adds."""
 
     cases: Cases
-    state: State
+    state: Unknowns
     operator: Operator
     curve: Curve
     X: np.ndarray

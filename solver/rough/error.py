@@ -11,7 +11,7 @@ import numpy as np
 from ..numerics.ladder import MARGIN, finer_mesh
 from ..numerics.mesh import gauss_rule
 from . import newton
-from .equation import Evaluation, State, evaluate, groups
+from .equation import Evaluation, Unknowns, evaluate, groups
 from .results import cornered, interpolate, judged_difference, pointed, quantities
 
 #: No mesh sees how λ rises between the edge and the node next to it. With λ and s at that node, this ring adds about λ
@@ -82,7 +82,7 @@ def refine(ev, coarse):
     fine, law = finer_mesh(ev.mesh), ev.cases.law
     bent = law.bent(ev.state.y, ev.curve.q)
     y = interpolate(ev, fine.s, np.where(bent, 1e-10, _NEAR)[:, None])
-    start = evaluate(ev.cases, State(y, ev.state.eta), fine, ev.operator)
+    start = evaluate(ev.cases, Unknowns(y, ev.state.eta), fine, ev.operator)
     state, dq_deta = newton.advance(start)
     end = nearby(start, state)
     numbers = quantities(end)

@@ -9,7 +9,7 @@ import numpy as np
 from ..numerics import batch
 from ..numerics.bracket import false_position
 from ..numerics.linalg import solve_stack
-from .equation import State, control_gradient, evaluate, jacobian
+from .equation import Unknowns, control_gradient, evaluate, jacobian
 from .punch import kept_within
 from .start import guess_radius, smooth_start
 
@@ -77,7 +77,7 @@ def tangent(ev):
 
 
 def advance(ev):
-    """The :class:`State` one step from that of `ev`, and dq/dη (B, n) along the branch of solutions.
+    """The :class:`Unknowns` one step from that of `ev`, and dq/dη (B, n) along the branch of solutions.
 
     The step is taken in y: q is nearly a power of y, and g nearly its square. A step changes y by a factor of five at
     most, and the radius by a factor of e at most. From the first guess of :mod:`.start` it needs no line search.
@@ -90,7 +90,7 @@ def advance(ev):
     d_eta = np.clip(d_eta, -1.0, 1.0)
     dy = (dq + dq_deta * d_eta[:, None]) / ev.curve.dq
     y = ev.cases.law.limit(ev.state.y + dy, ev.state.y)
-    return State(y, kept_within(ev.cases.shape, ev.state.eta + d_eta, ev.state.eta)), dq_deta
+    return Unknowns(y, kept_within(ev.cases.shape, ev.state.eta + d_eta, ev.state.eta)), dq_deta
 
 
 def step(ev):

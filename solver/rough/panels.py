@@ -15,7 +15,7 @@ import numpy as np
 
 from ..numerics.mesh import on_panels, panel_mesh
 from ..numerics.quadrature import radau_nodes
-from .equation import State, evaluate
+from .equation import Unknowns, evaluate
 from .newton import Iterated, solve_on
 from .results import interpolate
 from .start import first_guess, guess_radius
@@ -90,7 +90,7 @@ def solve_on_panels(case, rtol, budget, at=None, nearer=1.0):
             break
         work, mesh = work + making, panel_mesh(ORDER, breaks)
         iterated = solve_on(
-            evaluate(case, State(y, iterated.at.state.eta), mesh, iterated.at.operator), budget=budget - work
+            evaluate(case, Unknowns(y, iterated.at.state.eta), mesh, iterated.at.operator), budget=budget - work
         )
         work += iterated.count[0] * case.body.work(radius, mesh.n)[1][0]
     return iterated._replace(count=count + iterated.count), work

@@ -12,7 +12,7 @@ from ..body.operator import Operator
 from ..numerics import batch
 from ..numerics.bracket import false_position
 from ..status import Status
-from .equation import Cases, State, control_residual, evaluate, groups
+from .equation import Cases, Unknowns, control_residual, evaluate, groups
 from .newton import Iterated, iterate
 from .start import guess_radius
 
@@ -86,7 +86,7 @@ def solve(cases, mesh, k, rtol, limit):
     at = batch.join(last, np.arange(size)[:, None], cases=cases)
     status = _status(at, np.abs(at.G), count >= APPROXIMATIONS)
     y = np.maximum(cases.law.from_pressure(at.q), _TINY)
-    at = evaluate(cases, State(y, at.eta), mesh)
+    at = evaluate(cases, Unknowns(y, at.eta), mesh)
     return Iterated(at, status == Status.CONVERGED, count), status
 
 

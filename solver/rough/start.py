@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..numerics.linalg import solve_stack
-from .equation import State, evaluate, groups
+from .equation import Unknowns, evaluate, groups
 from .punch import largest
 
 #: The first guess of the pressure is nowhere below this part of the largest.
@@ -48,9 +48,9 @@ def guess_pressure(cases, a, s):
 
 
 def first_guess(cases, mesh, a=None):
-    """:class:`State` on a mesh from :func:`guess_pressure` at the radii a (B,), or else at :func:`guess_radius`."""
+    """:class:`Unknowns` on a mesh from :func:`guess_pressure` at the radii a (B,), or else at :func:`guess_radius`."""
     a = guess_radius(cases) if a is None else a
-    return State(cases.law.guess(guess_pressure(cases, a, mesh.s)), np.log(a))
+    return Unknowns(cases.law.guess(guess_pressure(cases, a, mesh.s)), np.log(a))
 
 
 def smooth_start(cases, mesh):
@@ -62,7 +62,7 @@ def smooth_start(cases, mesh):
     smooth = solve_stack(operator.K, Y / X * np.ones(mesh.n), (drop / X)[..., None])[..., 0]
     smooth = np.maximum(smooth, _LEAST * smooth.max(axis=1, keepdims=True))
     y = cases.law.guess(1 / (1 / smooth + 1 / cases.law.sparse(drop / Z)))
-    return evaluate(cases, State(y, eta), mesh, operator)
+    return evaluate(cases, Unknowns(y, eta), mesh, operator)
 
 
 def nodes_wanted(cases, rtol, a):

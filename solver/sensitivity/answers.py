@@ -12,10 +12,10 @@ from ..models.auto import area_rule, spots_under
 from ..rough.newton import stiffness
 from ..rough.results import pointed, quantities
 from ..scaling import as_cases, law_of
-from .again import found_again, same
-from .held import Held, held
 from .inputs import STEP, moved_cases, slope_of
 from .points import area_of_corners, between, profiles
+from .same_mesh import found_again, same
+from .solved_cases import SolvedCases, solved_cases
 from .step import Solved, branch_slope, moved_contacts, on_kinks
 
 #: Quantities that have sensitivities, arrays (B,) of a :class:`~solver.solution.Solution`; and those among them whose
@@ -26,17 +26,17 @@ _OF_MODULUS = ("P", "p0", "p_max", "dP_dD")
 _OF_CENTRE = ("p0", "p_max", "A0")
 
 
-def derivatives_of(scaled, now: Held, solution, inputs, nodes, x):
+def derivatives_of(scaled, now: SolvedCases, solution, inputs, nodes, x):
     """(B,) bool, whether the equations of cases of one kind were solved again; quantity -> derivatives of its logarithm
     (k, B); and those of p and λ at the radii x (c,), (2, k, B, c).
 
     scaled, now : the cases as they were asked for, and as they are solved; nodes : as of
-    :func:`~solver.sensitivity.again.found_again`
+    :func:`~solver.sensitivity.same_mesh.found_again`
     """
     others, cases = [name for name in inputs if name != scaled.control], as_cases(now.written)
     iterated = found_again(cases, nodes, solution.a, now.written.rtol)
     asked = moved_cases(scaled, others, copies=1)  # the radius is moved in the last pair
-    solved_as = held(asked, np.tile(solution.model_used, 2 * (len(others) + 1)))
+    solved_as = solved_cases(asked, np.tile(solution.model_used, 2 * (len(others) + 1)))
     answers, at_x = _answers(Solved.of(iterated.at), solved_as, asked, x)
     by = {name: slope_of(np.log(np.abs(values)), len(others) + 1) for name, values in answers.items()}
     p0 = quantities(iterated.at).p0 * now.E2  # as p(0) of the profile, which has no logarithm at the edge
@@ -58,7 +58,7 @@ def _under(control, slopes):
     return np.concatenate([slopes[:-1] - control[:-1] * along, along])
 
 
-def _answers(start, solved_as: Held, asked, x):
+def _answers(start, solved_as: SolvedCases, asked, x):
     """Quantity -> (m B,), and p and λ (2, m B, c), of m blocks of the B cases of `start` with an input moved; the
     radius is moved in the last two. `asked`, `solved_as` : as they were asked for, and as they are solved."""
     cases, size = as_cases(solved_as.written), len(start.at.state.eta)

@@ -20,11 +20,11 @@ from ..problem import Problem
 from ..scaling import dimensionless
 from ..solution import Solution
 from ..status import Status
-from .again import meshes, stacks, without_state
 from .answers import QUANTITIES, derivatives_of
 from .differences import SIGNED, by_differences
-from .held import held
 from .inputs import inputs_of
+from .same_mesh import meshes, stacks, without_state
+from .solved_cases import solved_cases
 
 #: Where a number changes by more than so many times itself with ln input it is taken to be near 0.
 _NEAR_0 = 5.0
@@ -132,7 +132,7 @@ def _of_solved(scaled, solution, inputs, x):
     shapes, left = np.full((2, k, size, len(x)), np.nan), np.ones(size, dtype=bool)
     # what asperities press on stays, also where a moved h is below the pitch
     scaled = scaled.but(asperities_on=np.where(scaled.feels_layer(), "layer", "half_space"))
-    now, stateless = held(scaled, solution.model_used), without_state(scaled)
+    now, stateless = solved_cases(scaled, solution.model_used), without_state(scaled)
     again = np.flatnonzero(~stateless)
     cases = now.written.take(again), meshes(solution, scaled)[again], solution.a[again]
     for rows, nodes in stacks(*cases, _STACK, scaled.micro[again]):

@@ -19,7 +19,7 @@ import numpy as np
 from ..numerics import batch
 from ..numerics.linalg import solve_stack
 from ..numerics.mesh import panel_mesh
-from ..rough.equation import Evaluation, State, evaluate, jacobian
+from ..rough.equation import Evaluation, Unknowns, evaluate, jacobian
 from ..rough.panels import ends_of, followed
 from ..rough.results import quantities
 from .inputs import STEP
@@ -69,10 +69,10 @@ def moved_contacts(start, cases, eta, count=1):
 def _after_steps(start, cases, eta, operator, count):
     times = len(eta) // len(start.tangent)
     y, tangent = np.tile(start.at.state.y, (times, 1)), np.tile(start.tangent, (times, 1))
-    now = evaluate(cases, State(y, eta), operator.mesh, operator)
+    now = evaluate(cases, Unknowns(y, eta), operator.mesh, operator)
     for _ in range(count):
         y = cases.law.limit(y - start.removes(now.F / now.X) / now.curve.dq, y)
-        now = evaluate(cases, State(y, eta), operator.mesh, operator)
+        now = evaluate(cases, Unknowns(y, eta), operator.mesh, operator)
     diagonal, dF_deta = jacobian(now)
     missed = operator.products(tangent)[0] + diagonal * tangent + dF_deta
     return Moved(now, tangent - start.removes(missed))

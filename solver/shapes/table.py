@@ -47,7 +47,7 @@ class Rows(NamedTuple):
 
 
 @batch.of_cases
-class Table(NamedTuple):
+class TableShape(NamedTuple):
     """The :class:`~.shape.Shape` of one table, whose lengths are in `unit` (B,)."""
 
     rows: Rows
@@ -165,7 +165,7 @@ def identity(kind):
 
 
 def _bound(rows, table_unit, size):
-    return Table(rows, np.where(np.isnan(table_unit) & (not rows.metres), 1.0, table_unit))
+    return TableShape(rows, np.where(np.isnan(table_unit) & (not rows.metres), 1.0, table_unit))
 
 
 def _rows(word):

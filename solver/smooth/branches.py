@@ -9,7 +9,7 @@ import numpy as np
 
 from ..numerics.batch import march
 from ..numerics.bracket import between, turns_between
-from .equation import Response, respond
+from .galerkin import Response, respond
 from .radius import LAST, Radii, bracketed, guess
 from .tension import is_tensile
 
@@ -24,7 +24,7 @@ _NARROW = 1e-14
 
 
 def smallest(control, value, shape, body):
-    """The :class:`~.equation.Response` of B contacts without adhesion at the smallest radius where the load or depth is
+    """The :class:`~.galerkin.Response` of B contacts without adhesion at the smallest radius where the load or depth is
     `value` (B,), rises with the radius, and the pressure is nowhere tensile; NaN where there is none. And how often the
     equation was solved (B,)."""
     search = _Search(control, value, shape, body)

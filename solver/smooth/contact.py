@@ -10,10 +10,10 @@ from ..solution import Solution
 from ..status import Status
 from .adhesion import adhesive, limits
 from .branches import smallest
-from .equation import respond
+from .galerkin import respond
 from .radius import touching
 from .state import State, answer, at_corner, beyond_profile, pinned
-from .tabulated import Tabulated, where_slow
+from .tabulated_body import Tabulated, where_slow
 from .tension import judged
 
 

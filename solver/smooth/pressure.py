@@ -13,7 +13,7 @@ import numpy as np
 from ..numerics.quadrature import gauss_legendre
 from ..shapes.shape import column
 from .products import in_blocks
-from .rises import on_half_space
+from .shape_terms import on_half_space
 
 
 def pressures_of(shape, response, A, x):

@@ -2,7 +2,7 @@
 
 On 0 <= τ <= 1, τ = t/a, the basis is e_m = sqrt(4m + 1) P_2m(τ), the even Legendre polynomials, which are orthonormal
 there. With κ = ka their cosine transforms are ê_m = (-1)^m sqrt(4m + 1) j_2m(κ). Those of the difference cos κτ - cos κ
-of :mod:`.equation` are the same but for m = 0, where it is
+of :mod:`.galerkin` are the same but for m = 0, where it is
 
     d_0 = sin κ/κ - cos κ = κ j_1(κ),       d_m = ê_m for m > 0.
 
@@ -98,7 +98,7 @@ class Products(NamedTuple):
         return cls(out[:, :size, :size], out[:, :size, size], out[:, size, size], slope)
 
 
-class Waves(NamedTuple):
+class WaveFunctions(NamedTuple):
     """The functions d_0 ... d_(N-1), cos κ, κ sin κ at G near and G' far nodes κ, and their `weight` (G + G',).
 
     Far waves swing so often that only the means of products count. There a function is the real part of A e^iκ, with
@@ -155,7 +155,7 @@ def _waves(octave, stiffness, size):
     amplitudes = (-1.0) ** m * np.sqrt(4 * m + 1) * waves * turned
     if len(far):
         amplitudes[0] = -1 - 1j / far
-    return Waves(near, np.vstack([amplitudes, np.ones_like(far), -1j * far]), np.append(weight, far_weight))
+    return WaveFunctions(near, np.vstack([amplitudes, np.ones_like(far), -1j * far]), np.append(weight, far_weight))
 
 
 def in_blocks(rows, matrix, block=16):

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..numerics.batch import march
 from ..shapes.shape import column
-from .equation import Response, respond
+from .galerkin import Response, respond
 
 #: Most evaluations of a case, and the relative distance of P or D to what is given at which it is done.
 MOST, NEAR = 80, 1e-13
@@ -77,7 +77,7 @@ def rising_root(evaluate, start, low=-np.inf, high=np.inf):
 
 
 def touching(control, value, shape, body):
-    """The :class:`~.equation.Response` of B contacts without adhesion, at the radius a, or where the load P or the
+    """The :class:`~.galerkin.Response` of B contacts without adhesion, at the radius a, or where the load P or the
     depth D is `value` (B,); and how often the equation was solved (B,). Where there is no such contact it is NaN, and
     where the search ends on another branch than the contact (:mod:`.branches`).
 

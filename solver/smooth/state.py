@@ -6,7 +6,7 @@ import numpy as np
 
 from ..numerics import batch
 from ..solution import Solution
-from .equation import Response, respond
+from .galerkin import Response, respond
 from .pressure import flat_pressure, pressure_changes, pressures_of
 from .radius import NEAR
 from .tension import LOOKED_AT, seen

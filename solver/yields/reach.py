@@ -9,7 +9,7 @@ from ..fields.shaped import corners
 from ..scaling import dimensionless
 from ..shapes import ROUND, shape_of
 from ..smooth.contact import kinds_of
-from ..smooth.rises import on_half_space
+from ..smooth.shape_terms import on_half_space
 
 #: Radii in R that are looked at: of paraboloids and spheres.
 NARROWEST, WIDEST = 1e-8, 0.2

@@ -6,7 +6,7 @@ The law of the lattice takes each neighbour where it is; the paper's disc cell s
 import numpy as np
 import xarray as xr
 
-from solver.laws.fit import least_squares
+from solver.laws.power_law_fit import least_squares
 from study.figures.registry import TWO_COLUMNS, Columns, figure, pick, table
 
 from . import numbers

@@ -9,7 +9,7 @@ import numpy as np
 
 from solver import fit_power_law
 from solver.laws import LAWS
-from solver.laws.fit import Fit
+from solver.laws.power_law_fit import Fit
 from study.figures.annotate import name_curve
 from study.figures.registry import TWO_COLUMNS, Columns, figure, table
 

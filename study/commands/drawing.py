@@ -19,7 +19,7 @@ from ..inputs.definition import StudyError
 from ..inputs.grid import twins
 from ..inputs.places import is_study, study_file
 from ..terminal import answer, on_one_line, say
-from ..work.second import Second
+from ..work.second_process import SecondProcess
 from .computing import completed
 from .spreadsheet import results_of, write_rows
 
@@ -127,7 +127,7 @@ def _prepared(options, kind: str, name: str) -> int:
     return max((_ready(options, study, study_beside(kind, name)) for study in studies), default=0)
 
 
-def _second(options, kind: str, bare: bool) -> Second | None:
+def _second(options, kind: str, bare: bool) -> SecondProcess | None:
     """The second process of a command that draws many figures; None of a few, for it takes a while to start.
 
     It gets those that can be drawn: if studies are run, they are run before the first figure is drawn.
@@ -135,7 +135,7 @@ def _second(options, kind: str, bare: bool) -> Second | None:
     if kind == "figure" and len(options.names) >= MANY and not hasattr(options, "second"):
         names = [name for name in dict.fromkeys(options.names) if _waits(options, kind, name, bare)]
         tasks = {name: (kind, name, options.results, options.folder, bare) for name in names}
-        options.second = Second(catalogue.written, tasks)
+        options.second = SecondProcess(catalogue.written, tasks)
         atexit.register(options.second.end)
     return getattr(options, "second", None)
 

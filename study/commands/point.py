@@ -15,14 +15,13 @@ from typing import Any
 import numpy as np
 
 from ..arrays import xarray_later as xr
-from ..data.dataset import decode
+from ..data.dataset import as_dataset, decode
 from ..data.derived import QUANTITIES
-from ..data.one_case import as_dataset
 from ..derivatives import spread_of_formula
 from ..in_words import SHOWN, FarOutside, doubts, summary
-from ..in_words.inputs import all_inputs
 from ..in_words.notes import OF_PULL_OFF
 from ..in_words.sentences import assumed
+from ..in_words.stated_inputs import all_inputs
 from ..in_words.text import columns
 from ..inputs.definition import StudyError
 from ..inputs.lexicon import lexicon_in

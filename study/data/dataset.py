@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from solver import Model, Status
 from solver.known import Known
+from solver.numerics.kept import once
 from solver.parameters import one_of
 from solver.status import NO_SOLUTION
 
@@ -95,6 +96,44 @@ class DatasetParts(NamedTuple):
         coords = {name: variable for name, variable in self.coords.items() if name not in shared}
         attributes = {name: self.coords[name].values.item() for name in shared}
         return self._replace(coords=coords, attributes=self.attributes | attributes)
+
+
+class OneCase:
+    """A contact without dimensions except `x`, read like a dataset: `contact["a"]`, `"h" in contact`, `contact.attrs`.
+    None is made until `as_dataset` is asked for it: xarray takes as long to import as thousand contacts to solve.
+
+    variables, coords : name -> Labelled, of all and of the coordinates
+    attrs : of the dataset
+    """
+
+    def __init__(self, parts: DatasetParts):
+        self.variables, self.coords, self.attrs = parts.variables | parts.coords, parts.coords, parts.attributes
+        self._parts = parts
+
+    @once
+    def dataset(self) -> xr.Dataset:
+        """The dataset of the contact."""
+        return self._parts.dataset()
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.variables
+
+    def __getitem__(self, name: str) -> Labelled:
+        return self.variables[name]
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """The variable of a name, or the default."""
+        return self.variables.get(name, default)
+
+
+def as_dataset(contact: xr.Dataset | OneCase) -> xr.Dataset:
+    """The dataset of a contact, whichever of both it is."""
+    return contact.dataset if isinstance(contact, OneCase) else contact
+
+
+def is_contact(value: Any) -> bool:
+    """Whether it is a dataset, or one contact."""
+    return isinstance(value, OneCase) or xr.is_dataset(value)
 
 
 def validity_of_rows(arrays: dict[str, np.ndarray], known: Known, times: float = 1.0) -> Labelled:

@@ -36,8 +36,8 @@ from ..rules.assumptions import (  # noqa: F401 - names of study.derived
     STEEP_SPOT,
     STRETCHED,
 )
-from ..rules.punch import SLOPE, ZONE  # noqa: F401 - names of study.derived
 from ..rules.rule import ASSUMPTIONS, validity  # noqa: F401 - names of study.derived
+from ..rules.slope_and_adhesion import SLOPE, ZONE  # noqa: F401 - names of study.derived
 from .units import physical_attributes, reduced_modulus
 
 ROUNDING = 1e-12

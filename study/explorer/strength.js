@@ -9,7 +9,7 @@ const Strength = ((Core, Stress, Contact, DATA) => {
   const NEVER = 0.3, NO_SPOT = 0.7;
 
   /** Strengths in Pa of punch, layer, body and asperities; NaN: not known. Asperities have that of the softer surface, of
-      named materials; study/again.py. */
+      named materials; study/data/body_strengths.py. */
   function strengths({ texts, inputs, case_ }) {
     const named = (body) => Contact.MATERIALS[texts[body]]?.Y ?? NaN, own = (body) => inputs.strengths[INPUTS[body]] ?? named(body);
     const below = named(case_.p.layered ? "layer" : "body"), hard = case_.p.m === 0;

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
-from ..in_words.inputs import all_inputs, is_rigid, used_inputs
+from ..in_words.stated_inputs import all_inputs, is_rigid, used_inputs
 from ..inputs.lexicon import Lexicon, default, lexicon_in
 from ..inputs.vocabulary import over_scale
 from ..specimen import quantities

@@ -21,7 +21,7 @@ END = {0: 40, 1: 44, 2: 28, 3: 28}
 """Version of an HDF5 file, which is its byte 8 -> place of the 8 bytes that tell the length of the file."""
 
 
-class Described(NamedTuple):
+class VariableHeader(NamedTuple):
     """A variable without its values.
 
     kind : its type, `str` for netCDF's own texts; dims : names of its dimensions, a text of ours has one more, of its
@@ -78,11 +78,11 @@ class File:
             return _attributes(self._file)
 
     @property
-    def variables(self) -> dict[str, Described]:
+    def variables(self) -> dict[str, VariableHeader]:
         """Variables by their names."""
         with self._access():
             variables = self._file.variables.items()
-            return {name: Described(of.dtype, of.dimensions, of.shape, _attributes(of)) for name, of in variables}
+            return {name: VariableHeader(of.dtype, of.dimensions, of.shape, _attributes(of)) for name, of in variables}
 
     def read(self, name: str, window: dict[str, slice] | None = None, characters: bool = False) -> np.ndarray:
         """A variable, or its part within a window, a slice for each dimension; texts as `characters` if asked for."""

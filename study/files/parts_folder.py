@@ -22,7 +22,7 @@ NAME = re.compile(r"(\d{12})-([0-9a-f]{16})\.nc")  # of a part: its first case a
 AGAIN = "run the study, which computes the right ones"
 
 
-class Described(NamedTuple):
+class PartFile(NamedTuple):
     """A part as its file describes it.
 
     counts : how many parts there are along each dimension that is cut; axes : dimension -> values of its coordinate
@@ -59,7 +59,7 @@ def open_parts(folder: Path) -> xr.Dataset:
     return opened_together([part.path for part in parts], folder, counts)
 
 
-def _strangers(parts: list[Described], counts: dict[str, int]) -> set[int]:
+def _strangers(parts: list[PartFile], counts: dict[str, int]) -> set[int]:
     """The numbers of the parts whose coordinates do not fit those of the others."""
     numbers, strangers = np.arange(len(parts)).reshape(tuple(counts.values())), set[int]()
     for dim in parts[0].axes:
@@ -100,7 +100,7 @@ def divided(text: str) -> dict[str, int]:
     return {dim: int(number) for dim, number in words}
 
 
-def _described(path: Path) -> Described:
+def _described(path: Path) -> PartFile:
     """What a part says of itself. Raises Unusable for a file that is no part of large results."""
     condition = examine(path, most=0)
     condition.raise_if_bad()
@@ -115,4 +115,4 @@ def _described(path: Path) -> Described:
         raise Unusable(path, "foreign", "is no part of the results in this folder; move it away")
     if name[2] != condition.digest[:16]:
         raise Unusable(path, "misplaced", f"holds results of another study than its name says; {AGAIN}")
-    return Described(path, condition.digest, counts, axes, int(name[1]), None if stated is None else int(stated))
+    return PartFile(path, condition.digest, counts, axes, int(name[1]), None if stated is None else int(stated))

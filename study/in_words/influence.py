@@ -14,6 +14,9 @@ from ..terminal import rounded
 _NEARLY = 0.99
 #: A thickness that must change by more than this part of itself hardly acts; nor does a derivative reach so far.
 _FAR = 0.5
+#: A relative spread that no printed digit shows. Its parts are lost in the error of the solution, which is below 1e-9.
+#: The sentence says it in words.
+_UNSEEN = 1e-7
 
 
 def influence(case: xr.Dataset, name: str) -> list[str]:
@@ -30,7 +33,9 @@ def influence(case: xr.Dataset, name: str) -> list[str]:
     symbol = VOCABULARY[name].symbol
     parts = {key: by_input[key] * part for key, part in relative_spreads(case, by_input).items()}
     found = []
-    if not correlated(case):
+    if float(case[f"{name}_spread"]) < _UNSEEN * abs(float(case[name])):
+        found = [f"the ± of the inputs changes {symbol} by less than a part in ten million"]
+    elif not correlated(case):
         largest = max(parts, key=lambda one: abs(parts[one]))
         share = parts[largest] ** 2 / sum(part**2 for part in parts.values())
         most = "nearly all" if share > _NEARLY else f"{100 * share:.0f} %"

@@ -18,8 +18,9 @@ from solver.yields.below.central_spot import SPOT_EXTREMES
 from solver.yields.contact import of_contacts
 from solver.yields.extremes import EXTREMES
 
-from ..again import Again, known_strengths, no_stresses, of_all_cases, strengths
 from ..arrays import xarray_later as xr
+from ..data.body_strengths import known_strengths, strengths
+from ..data.contacts import Contacts
 from ..data.dataset import flag_words
 from ..inputs.definition import StudyError
 from ..inputs.vocabulary import bodies_of
@@ -28,7 +29,7 @@ from ..rules.yield_bounds import stress_below_one
 from ..specimen import materials
 from ..specimen.quantities import readable
 from ..terminal import rounded
-from .inputs import is_rigid
+from .stated_inputs import is_rigid
 
 #: Below this modulus in Pa a material is a rubber or a gel, which tears and does not yield. Nearly all have a Poisson
 #: ratio close to 0.5.
@@ -101,13 +102,13 @@ class _Compared(NamedTuple):
 
 
 class _Looked(NamedTuple):
-    """A contact of which something is known: its problem and solution at the radius, and what was compared, the closest
-    first; of those whose strength is not known, the stress.
+    """A contact of which something is known: its inputs, its problem and solution at the radius, and what was compared,
+    the closest first; of those whose strength is not known, the stress.
 
     hard : bool, no body is rubber or gel
     """
 
-    again: Again
+    contact: Contacts
     problem: Problem
     solution: Any
     compared: list[_Compared]
@@ -120,13 +121,13 @@ def holds(case: xr.Dataset) -> Margin:
     looked = _looked_at(case)
     if isinstance(looked, str):
         return Margin([looked] * bool(looked))
-    again, compared, hard = looked.again, looked.compared, looked.hard
+    compared, hard = looked.compared, looked.hard
     far = not compared or not hard and compared[0].share < _FAR
     said = [] if far else _closest(looked, case)
     if "pitch_not_small_against_h" in flag_words(case["validity"]).item().split() and not is_rigid(case, "base"):
         said = [*said, _THROUGH] if said else []
-    said += _needed(again, looked.lacking) if looked.lacking and hard else []
-    said = [*(_flowing(case) if said else []), *said, *_of_own_law(again, said)]
+    said += _needed(looked.contact, looked.lacking) if looked.lacking and hard else []
+    said = [*(_flowing(case) if said else []), *said, *_of_own_law(looked.contact, said)]
     return Margin(said, bool(compared) and compared[0].share > 1)
 
 
@@ -143,28 +144,28 @@ def closest(case: xr.Dataset) -> str:
 def _looked_at(case: xr.Dataset) -> _Looked | str:
     """The stresses and limits of a contact; else why they are not known, "" where nothing is to be said."""
     try:
-        again = Again.of(case, "summary")
+        contact = Contacts.of(case, "summary")
     except StudyError:  # of a mean, say
         return ""
-    known = {body: [column[0] for column in columns] for body, columns in known_strengths(case, again, {}).items()}
+    known = {body: [column[0] for column in columns] for body, columns in known_strengths(contact, {}).items()}
     moduli = [case[name] for name, _, _ in bodies_of(case.variables).values() if name in case]
     moduli = [modulus for modulus in moduli if modulus.attrs.get("units") == "Pa"]
     hard = bool(moduli) and min(moduli) >= RUBBER
     if not (hard or np.isfinite([value for value, *_ in known.values()]).any()):
         return ""
-    problem = again.problem
-    if reason := no_stresses(again):
+    problem = contact.problem
+    if reason := contact.without_stresses():
         return f"Not known: {reason}."
     if problem.shape[0] not in ROUND:
         return _SHAPE
-    if not is_bare(problem.base[0]) and problem.h[0] < _THINNEST * _radius(case, again):
+    if not is_bare(problem.base[0]) and problem.h[0] < _THINNEST * _radius(contact):
         return _FILM + "."
-    at_a = replace(problem, control="a", value=np.array([_radius(case, again)]))
-    solution, limits = solve(at_a), _limits(case, again, known)
+    at_a = replace(problem, control="a", value=np.array([_radius(contact)]))
+    solution, limits = solve(at_a), _limits(contact, known)
     found = [_Compared(*pair) for pair in _stresses(limits, at_a, solution, case) if np.isfinite(pair[1])]
     compared = sorted((one for one in found if np.isfinite(one.limit.strength)), key=lambda one: -one.share)
     lacking = [one for one in found if np.isnan(one.limit.strength) and one.limit.needs]
-    return _Looked(again, at_a, solution, compared, lacking, hard)
+    return _Looked(contact, at_a, solution, compared, lacking, hard)
 
 
 def _stresses(limits: list[_Limit], problem: Problem, solution: Any, case: xr.Dataset) -> list[tuple]:
@@ -203,11 +204,11 @@ def _below(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
     return E * problem.E2, np.where(bare, problem.nu2, problem.nu1)
 
 
-def _of_own_law(again: Again, said: list[str]) -> list[str]:
+def _of_own_law(contact: Contacts, said: list[str]) -> list[str]:
     """A sentence on asperities of which no more than pmax is known, where something is said of them."""
-    if np.isfinite(again.problem.Ra[0]) or not any("asperities" in text for text in said):
+    if np.isfinite(contact.problem.Ra[0]) or not any("asperities" in text for text in said):
         return []
-    return [_OWN_LAW.format(q=float(yield_pressure(_below(again.problem)[1])[0]))]
+    return [_OWN_LAW.format(q=float(yield_pressure(_below(contact.problem)[1])[0]))]
 
 
 def _flowing(case: xr.Dataset) -> list[str]:
@@ -219,17 +220,17 @@ def _flowing(case: xr.Dataset) -> list[str]:
     return [yielded if share else "No asperity yields."]
 
 
-def which_yields(contacts: xr.Dataset) -> str:
+def which_yields(dataset: xr.Dataset) -> str:
     """Whether it is the layer or the body, of the contacts in which one of them yields."""
-    flags = contacts["validity"].values.ravel() & 512
+    flags = dataset["validity"].values.ravel() & 512
     try:
-        again = Again.of(contacts, "summary")
+        contacts = Contacts.of(dataset, "summary")
     except StudyError:  # of a mean, say
         return ""
-    some, known = np.flatnonzero(flags), strengths(contacts, again, {})
-    if not any(np.isfinite(known[body]).any() for body in ("layer", "body")) or no_stresses(again):
+    some, known = np.flatnonzero(flags), strengths(contacts, {})
+    if not any(np.isfinite(known[body]).any() for body in ("layer", "body")) or contacts.without_stresses():
         return ""
-    problem = again.problem.take(some)
+    problem = contacts.problem.take(some)
     stress, parts = of_contacts(problem, solve(problem), names=("mises1", "mises2")), []
     for body, name in (("layer", "mises1"), ("body", "mises2")):
         count = int((stress[name][0] > known[body][some]).sum())
@@ -237,13 +238,13 @@ def which_yields(contacts: xr.Dataset) -> str:
     return f"{_capital(', '.join(parts))}." if parts else ""
 
 
-def _radius(case: xr.Dataset, again: Again) -> float:
-    return float(case["a"]) / (float(again.scene.R) if again.scene else 1.0)
+def _radius(contact: Contacts) -> float:
+    return float(contact.dataset["a"]) / contact.units[1].item()
 
 
-def _limits(case: xr.Dataset, again: Again, known: dict[str, list]) -> list[_Limit]:
+def _limits(contact: Contacts, known: dict[str, list]) -> list[_Limit]:
     """The limits of a contact at which something fails."""
-    problem, limits = again.problem, []
+    case, problem, limits = contact.dataset, contact.problem, []
     coated, mises, Y = not is_bare(problem.base[0]), "largest von Mises stress", "yield strength"
 
     def yields(who: str, stress: str, body: str, needs: str, what: str = mises) -> _Limit:
@@ -253,7 +254,7 @@ def _limits(case: xr.Dataset, again: Again, known: dict[str, list]) -> list[_Lim
     felt, below = bool(problem.feels_layer()[0]), "below the asperities"
     if coated:
         limits.append(yields("the layer", "mises1", "layer", "Y1"))
-        coating, unit = _material(case, "layer"), float(again.scene.unit) if again.scene else 1.0
+        coating, unit = _material(case, "layer"), contact.units[0].item()
         places = [
             ("the layer", "s1_layer", "largest tension", "fracture"),
             ("the interface", "tau_interface", "largest shear stress", "interface"),
@@ -292,11 +293,11 @@ def _part(share: float) -> str:
 
 def _closest(looked: _Looked, case: xr.Dataset) -> list[str]:
     """Sentences on the closest limit, on the others, and on the load at which the closest is reached."""
-    again, first, *others = looked.again, *looked.compared
+    contact, first, *others = looked.contact, *looked.compared
     limit, share = first.limit, first.share
-    place = _place(again, first.r, first.z, float(looked.problem.value[0])) if np.isfinite(first.z) else ""
+    place = _place(contact, first.r, first.z, float(looked.problem.value[0])) if np.isfinite(first.z) else ""
     place = "" if limit.what.endswith("pmax") else f" {place}"
-    value, strength = _with_unit(again, first.stress), _with_unit(again, limit.strength, spread=limit.spread)
+    value, strength = _with_unit(contact, first.stress), _with_unit(contact, limit.strength, spread=limit.spread)
     where = f"closest to {limit.ing}" if share <= 1 else f"beyond {limit.ing}"
     of = f"{_part(share)} the {limit.of}{' from hardness' * limit.hard}, {strength}"
     said = [f"{limit.who} {'are' if limit.plural else 'is'} {where}: the {limit.what}, {value}{place}, is {of}."]
@@ -309,14 +310,14 @@ def _closest(looked: _Looked, case: xr.Dataset) -> list[str]:
 
 def _at_which_load(looked: _Looked, first: _Compared, case: xr.Dataset) -> list[str]:
     """At which load the limit is reached. Where few asperities touch there, how many do."""
-    limit, share, again = first.limit, first.share, looked.again
+    limit, share, contact = first.limit, first.share, looked.contact
     found = _load(looked, first, case)
     if found is None:
         farther = f"No load up to a = 0.2 R makes {limit.who} {limit.verb}, as far as that was looked for."
         return [farther] * (share < 1)
     P, slope, solution = found
     spread = P * slope * limit.spread / limit.strength
-    text = f"P = {_with_unit(again, P, 2, spread)}"
+    text = f"P = {_with_unit(contact, P, 2, spread)}"
     who, verb, begin = limit.who, limit.verb, "begin" if limit.plural else "begins"
     if limit.stress != _SPOTS or not (touching := _spots_of(looked.problem, solution)) < FEW_SPOTS:
         return [f"At about {text} {who} {begin} to {verb}." if share > 1 else f"{who} would {verb} at about {text}."]
@@ -324,7 +325,7 @@ def _at_which_load(looked: _Looked, first: _Compared, case: xr.Dataset) -> list[
     alone = (np.pi * limit.strength * yield_pressure(nu)[0]) ** 3 * looked.problem.Ra[0] ** 2 / (6 * E[0] ** 2)
     if abs(P / alone - 1) < 3 * _SAME:
         return [f"One asperity alone {'begins to yield' if share > 1 else 'would yield'} at about {text}."]
-    one = _with_unit(again, alone, 2, 3 * alone * limit.spread / limit.strength)
+    one = _with_unit(contact, alone, 2, 3 * alone * limit.spread / limit.strength)
     where = f"{text}, where {rounded(touching)} of them touch; one asperity alone yields at about P = {one}"
     return [f"They begin to yield at about {where}." if share > 1 else f"They would yield at about {where}."]
 
@@ -355,28 +356,29 @@ def _load(looked: _Looked, first: _Compared, case: xr.Dataset) -> tuple[float, f
     return None
 
 
-def _needed(again: Again, lacking: list[_Compared]) -> list[str]:
+def _needed(contact: Contacts, lacking: list[_Compared]) -> list[str]:
     """Which strengths would say more, and how large they must be for the contact to hold."""
     parts = [
-        f"of {limit.who}, which need{'' if limit.plural else 's'} above {_with_unit(again, stress)} ({limit.needs})"
+        f"of {limit.who}, which need{'' if limit.plural else 's'} above {_with_unit(contact, stress)} ({limit.needs})"
         for limit, stress, *_ in lacking
     ]
     return [f"Not known {'; '.join(parts)}."]
 
 
-def _place(again: Again, r: float, z: float, a: float) -> str:
+def _place(contact: Contacts, r: float, z: float, a: float) -> str:
     where = "on the axis" if abs(r) < 1e-3 else f"at r = {abs(r):.2g} a"
     if z == 0:
         return f"on the surface {where}" if abs(r) >= 1e-3 else "in the middle of the surface"
-    deep = readable(float(f"{z * a * float(again.scene.R):.2g}"), "m") if again.scene else f"{z * a:.2g} R"
+    deep = readable(float(f"{z * a * contact.units[1].item():.2g}"), "m") if contact.scene else f"{z * a:.2g} R"
     return f"{where} {deep} deep"
 
 
-def _with_unit(again: Again, value: float, length: int = 0, spread: float = 0.0) -> str:
+def _with_unit(contact: Contacts, value: float, length: int = 0, spread: float = 0.0) -> str:
     """A stress, or with length = 2 a load, with ± if it has a spread."""
-    if not again.scene:
+    if not contact.scene:
         return f"{value:.2g} E2*{' R^2' * (length == 2)}"
-    scale = float(of_all_cases(again.scene.unit, (), ())[0]) * float(of_all_cases(again.scene.R, (), ())[0]) ** length
+    stress, size = (unit.item() for unit in contact.units)
+    scale = stress * size**length
     unit = "N" if length else "Pa"
     if spread > 0:
         return readable(value * scale, unit, spread * scale)

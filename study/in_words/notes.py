@@ -10,15 +10,15 @@ from solver import Status, solve
 from solver.bases import is_bare
 from solver.laws import heights
 from solver.laws.cell.family import MOST, REACH
-from solver.models.cells import last_fraction
+from solver.models.asperity_error import last_fraction
 from solver.models.range_of_law import without_family
 from solver.parameters import one_of
 from solver.scaling import dimensionless, law_of
 from solver.shapes import PARABOLOID
 from solver.shapes.cone import KIND, PYRAMIDS
 
-from ..again import Again
 from ..arrays import xarray_later as xr
+from ..data.contacts import Contacts
 from ..inputs.definition import StudyError
 from ..inputs.lexicon import lexicon_in
 from ..inputs.punch.asperities import USED
@@ -171,7 +171,7 @@ def ended(contacts: xr.Dataset) -> list[str]:
     if not outside.any():
         return []
     try:
-        problem = Again.of(contacts, "summary").problem
+        problem = Contacts.of(contacts, "summary").problem
     except StudyError:  # of a mean, say
         return []
     index, last = np.flatnonzero(outside), np.full(outside.shape, np.nan)
@@ -194,13 +194,13 @@ def falling(contacts: xr.Dataset) -> list[str]:
     if not yielding.any():
         return []
     try:
-        again = Again.of(contacts, "summary")
+        problems = Contacts.of(contacts, "summary").problem
     except StudyError:  # of a mean, say
         return []
-    solved = (contacts["status"].values.ravel() == Status.CONVERGED) & one_of(again.problem.micro, laws)
+    solved = (contacts["status"].values.ravel() == Status.CONVERGED) & one_of(problems.micro, laws)
     where, index = np.zeros(len(solved), dtype=bool), np.flatnonzero(solved)
     if len(index):
-        problem = again.problem.take(index)
+        problem = problems.take(index)
         now = solve(problem, _RADII)
         before = solve(replace(problem, control="P", value=_LESS * now.P), _RADII)
         r = _RADII * (now.a / before.a)[:, None]

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import xarray_later as xr
 from ..arrays.labelled import as_xarray
 from ..data import derived
-from ..data.one_case import OneCase, as_dataset
+from ..data.dataset import OneCase, as_dataset
 
 #: A ring is one whose pressure exceeds p(0) by this. What is less changes no two digits.
 RING = 1.01

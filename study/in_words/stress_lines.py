@@ -8,8 +8,8 @@ from ..arrays import xarray_later as xr
 from ..data.dataset import flag_words
 from ..inputs.vocabulary import VOCABULARY
 from ..rules.rule import RULES
-from .inputs import is_rigid
 from .numbers import given_text, in_its_unit, spread_of
+from .stated_inputs import is_rigid
 
 MOST_CASES = 20  # of a grid that are written out
 _BODIES = {"Y1": "layer", "Y2": "body", "Ya": "asperities", "Y_punch": "punch"}

@@ -7,18 +7,17 @@ import re
 import numpy as np
 
 from ..arrays import xarray_later as xr
-from ..data.dataset import decode
-from ..data.one_case import as_dataset, is_contact
+from ..data.dataset import as_dataset, decode, is_contact
 from ..inputs.lexicon import lexicon_in
 from ..inputs.vocabulary import NOT_RUN, VOCABULARY
 from ..specimen.pictures import curve, with_picture
 from .fits import of_fit
-from .inputs import given, is_rigid
 from .margins import closest
 from .notes import OF_PULL_OFF
 from .numbers import given_text, peak_text, result_text, ring_text, spot_text
 from .pressures import largest
 from .sentences import sentences
+from .stated_inputs import given, is_rigid
 from .stress_lines import of_stresses
 
 MOST_CASES = 20  # of a grid that a summary writes out

@@ -65,11 +65,17 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
 
 
 def from_call(
-    parameters: dict, rows: list[dict], same_piece: bool, tables: dict, correlations: Any = None
+    parameters: dict,
+    rows: list[dict],
+    same_piece: bool,
+    tables: dict,
+    correlations: Any = None,
+    where: str = "solve",
 ) -> Definition:
-    """Definition of a call of `study.solve`; tables : title and output, as those of a study file."""
+    """Definition of a call of `study.solve`; tables : title and output, as those of a study file; `where` begins every
+    message."""
     correlations = {} if correlations is None else correlations
-    return complete(Request.in_python(parameters, rows, same_piece, correlations), tables, "solve", "", "solve", LARGE)
+    return complete(Request.in_python(parameters, rows, same_piece, correlations), tables, "solve", "", where, LARGE)
 
 
 def complete(request: Request, tables: dict, name: str, text: str, where: str, most: float = MOST_VALUES) -> Definition:

@@ -23,6 +23,15 @@ NEEDS_NAMES = (
 )
 
 
+@dataclass(frozen=True)
+class AnyValue:
+    """The value of an input that a contact must have and on which nothing depends: the number where inputs have no
+    units, else the text."""
+
+    number: float
+    text: str
+
+
 @dataclass
 class Input:
     """A parameter as it stands in the call or file: numbers, texts, quantities of pint, or names of materials.
@@ -240,12 +249,15 @@ class Request:
             entry.array = entry.values = None
 
     def _decided(self) -> "Request":
-        """The request itself, with its `sign`, and its cases before its axes."""
+        """The request itself, with its `sign`, values in place of any, and its cases before its axes."""
         signs = [entry for name, entry in self.inputs.items() if name in SCENE or name in BODIES or entry.has_unit]
         for entry in sorted(signs, key=lambda entry: bool(entry.dims))[:1]:  # a single value rather than several
             values = [value for value in entry.values if value is not None] if isinstance(entry.values, list) else []
             value = next(filter(has_unit, values), values[0] if values else entry.values)
             self.sign = f"the unit of {entry.name}" if entry.array is not None else f"{entry.name} = {shown(value)}"
+        for entry in self.inputs.values():
+            if not entry.dims and entry.values and type(any_value := entry.values[0]) is AnyValue:
+                entry.values = [any_value.text if self.physical else any_value.number]
         if self.same_piece and not self.physical:
             self.errors.append(f"same_piece: {NEEDS_NAMES}")
         if self.correlations and not self.physical:

@@ -16,8 +16,8 @@ from ..inputs.definition import StudyError
 from ..inputs.vocabulary import VOCABULARY
 from ..specimen.quantities import quantity
 from ..terminal import shown
-from .afm.force_curves import Reading, is_of_instrument, place, reading_of
-from .afm.force_curves import read as of_instrument
+from .force_curves import Reading, is_of_instrument, place, reading_of
+from .force_curves import read as of_instrument
 
 COLUMNS = ("D", "P", "a", "dP_dD")
 _AS_IT_IS = Reading()

@@ -8,7 +8,7 @@ from ..files.lock import held
 from ..inputs.definition import StudyError
 from ..terminal import counted
 from .blocks import inventory
-from .state import glance
+from .window_files import glance
 from .windows import Store, is_large
 
 OF_A_WINDOW = re.compile(r"\d{12}-[0-9a-f]{16}-")  # the beginning of the name of a block of one of many windows

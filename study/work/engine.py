@@ -25,7 +25,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from solver.compiled.library import core
-from solver.compiled.newton import BASES, TAKEN
+from solver.compiled.newton_in_c import BASES, TAKEN
 
 from ..data.dataset import failed_cases
 from ..inputs.definition import USUAL, Definition, usual_block

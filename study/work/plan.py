@@ -19,7 +19,7 @@ from ..inputs.reading import same_tables
 from ..inputs.vocabulary import NOT_RUN, suggest
 from ..store.blocks import lost_cases
 from ..store.edits import owner_of
-from ..store.state import State, belongs, of_what
+from ..store.window_files import WindowFiles, belongs, of_what
 from ..store.windows import Store, Window
 from ..terminal import counted, on_one_line, program, shown
 from .cost import describe, estimate
@@ -97,7 +97,7 @@ class Order:
         """Whether other runs compute other parts at the same time."""
         return self.part[1] > 1
 
-    def lacking(self, state: State) -> list[Window]:
+    def lacking(self, state: WindowFiles) -> list[Window]:
         """The windows whose results are to be written: they are not there, or hold cases to be tried again.
 
         A single file with another title is written anew if its blocks are there.
@@ -110,18 +110,18 @@ class Order:
                 windows.append(window)
         return windows
 
-    def done(self, state: State) -> bool:
+    def done(self, state: WindowFiles) -> bool:
         """Whether there is nothing to do."""
         return not state.others and not self.lacking(state)
 
-    def report(self, state: State, counts: dict[int, int] | None = None, **what) -> Report:
+    def report(self, state: WindowFiles, counts: dict[int, int] | None = None, **what) -> Report:
         """A report; without `counts`, that there was nothing to do."""
         counts = counts or {}
         report = Report(state.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN))
         return replace(report, **what)
 
 
-def check_replaceable(order: Order, state: State) -> None:
+def check_replaceable(order: Order, state: WindowFiles) -> None:
     """Raise StudyError if results of another study or another version of the numerics would be lost, unless these may
     be replaced.
 
@@ -156,7 +156,7 @@ def _refusal(order: Order, condition: Condition, way: str) -> str:
     return f"{condition.path}: holds results of {owner}, {what}: {choice}{made}"
 
 
-def _refusal_of_many(order: Order, state: State, rivals: list[Condition], way: str) -> str:
+def _refusal_of_many(order: Order, state: WindowFiles, rivals: list[Condition], way: str) -> str:
     """Why files of other results must not be removed."""
     what = f"holds {counted(len(rivals), 'part')} of {of_what(rivals[0], order.definition)}"
     return f"{state.path}: {what}: {way} removes them, --results DIR writes elsewhere"

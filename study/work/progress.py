@@ -171,7 +171,7 @@ def duration(seconds: float) -> str:
     return f"{whole // 3600} h {whole % 3600 // 60} min"
 
 
-class Cell(io.TextIOBase):
+class NotebookCell(io.TextIOBase):
     """The output of a cell in a notebook, as a terminal of one line, which can be rewritten and erased."""
 
     def __init__(self):
@@ -209,7 +209,7 @@ def screen_of(progress: bool | None) -> TextIO | None:
         return None
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
     if hasattr(shell, "kernel"):  # that of IPython in a terminal has none
-        return Cell()
+        return NotebookCell()
     if sys.stderr is None or sys.stderr.closed:
         return None
     return sys.stderr if progress or sys.stderr.isatty() else None

@@ -14,7 +14,7 @@ from ..files.atomic import make_folder, target
 from ..files.lock import held
 from ..inputs.definition import Definition, StudyError
 from ..store.blocks import add, count_statuses, inventory, put_in_memory, write_rest
-from ..store.state import State, add_counts, checked, glance, put_away
+from ..store.window_files import WindowFiles, add_counts, checked, glance, put_away
 from ..store.windows import Window
 from ..store.writer import Export, exporting
 from ..terminal import end_if_interrupted, say
@@ -55,7 +55,7 @@ def run(definition: Definition, results="results", **options) -> Report:
     return _export_if_last(order, report) if order.shared and now.is_one else report
 
 
-def _make_room(order: Order, state: State) -> None:
+def _make_room(order: Order, state: WindowFiles) -> None:
     """Remove what is in the way of the results, and say which damaged files stay under another name."""
     for path in state.others:  # as --force has said
         path.unlink(missing_ok=True)
@@ -71,7 +71,7 @@ def _make_room(order: Order, state: State) -> None:
             log.warning("%s: %s; it is computed again, %s keeps it", file.path, file.reason, aside)
 
 
-def _compute(order: Order, state: State) -> Report:
+def _compute(order: Order, state: WindowFiles) -> Report:
     """Compute what is missing, this run's part of it, and write the results meanwhile."""
     make_folder(state.windows[0].path.parent)
     with Harvest(order, state) as harvest:
@@ -92,7 +92,7 @@ class Harvest:
     alone, and is begun with its first block. If it is whole within BRIEF seconds, its blocks are never on the disk.
     """
 
-    def __init__(self, order: Order, state: State):
+    def __init__(self, order: Order, state: WindowFiles):
         self.order, self.state, self.computed = order, state, 0
         self._begun, self._ended, self._opened = dict[int, tuple[Export, ExitStack]](), dict[int, dict](), ExitStack()
         share, shares = (1, 1) if state.is_one else order.part

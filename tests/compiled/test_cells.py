@@ -8,11 +8,11 @@ from both_paths import SCALARS, X, contacts, of_the_sources  # noqa: F401
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solver import Problem
-from solver.compiled import cells, library, newton
+from solver.compiled import cells, library, newton_in_c
 from solver.compiled.library import available
 from solver.kernels.two_layers import TwoLayers
 from solver.laws import LAWS
-from solver.laws.cell import law
+from solver.laws.cell import cell_law
 from solver.rough.equation import Cases
 from solver.scaling import as_cases
 
@@ -45,7 +45,7 @@ def cases_of(problem: Problem) -> Cases:
 def solved(problem: Problem, path: str, cases: Cases | None = None):
     with pytest.MonkeyPatch.context() as patched, np.errstate(all="ignore"):
         patched.setenv(library.VARIABLE, path)
-        return newton.solve_newton(cases or cases_of(problem), problem.rtol, problem.nodes, 0, X)
+        return newton_in_c.solve_newton(cases or cases_of(problem), problem.rtol, problem.nodes, 0, X)
 
 
 @pytest.mark.parametrize("micro", LATTICES)
@@ -56,7 +56,7 @@ def test_numbers_of_random_contacts(micro):
     numpy = solved(problem, "numpy", cases)
     for variant in available():
         core = solved(problem, variant, cases)
-        inside = numpy.p0 < law.end(cases.law)
+        inside = numpy.p0 < cell_law.end(cases.law)
         assert inside.sum() > 10
         for name in ("status", "nodes"):
             assert_array_equal(getattr(core, name), getattr(numpy, name), name)
@@ -70,8 +70,8 @@ def test_numbers_of_random_contacts(micro):
 
 def test_most_contacts_are_solved_by_the_core(monkeypatch):
     """Also those beyond the end of the law, unless their corner there needs finer meshes."""
-    handed, plain = [], newton.adaptive.solve_newton
-    monkeypatch.setattr(newton.adaptive, "solve_newton", lambda *case: handed.append(len(case[1])) or plain(*case))
+    handed, plain = [], newton_in_c.adaptive.solve_newton
+    monkeypatch.setattr(newton_in_c.adaptive, "solve_newton", lambda *case: handed.append(len(case[1])) or plain(*case))
     solved(problem_of(30, "hex_lattice", seed=3), "")
     assert sum(handed) <= 3
 
@@ -86,14 +86,14 @@ def test_the_same_bits_in_any_company_and_in_calls_of_few_families(variant, monk
         part = solved(problem.take(index), variant)
         for name in SCALARS:
             assert getattr(part, name).tobytes() == getattr(whole, name)[index].tobytes(), (size, name)
-    monkeypatch.setattr(newton, "_FAMILIES", 5)
+    monkeypatch.setattr(newton_in_c, "_FAMILIES", 5)
     assert solved(problem, variant).P.tobytes() == whole.P.tobytes()
 
 
 def rows_of(n: float, pitch: float) -> np.ndarray:
     one = np.ones(1)
     kernel = TwoLayers(n * one, 0.25 * one, 0.3 * one, one > 0)
-    return law.rows_of("hex", kernel, 0 * one, one / pitch, one)
+    return cell_law.rows_of("hex", kernel, 0 * one, one / pitch, one)
 
 
 @pytest.mark.parametrize(("n", "pitch"), [(3.0, 0.1), (0.05, 4.0), (5.0, 8.0), (100.0, 16.0), (30.0, 40.0)])
@@ -116,12 +116,12 @@ def test_the_polynomials_are_the_series(n, pitch):
 
     z = np.minimum(1 + kappa * y, top)
     row_size = cells.ROW
-    wanted = [np.exp(law.exponent(row, which, y[None])[0][0]) for which in range(3)]
+    wanted = [np.exp(cell_law.exponent(row, which, y[None])[0][0]) for which in range(3)]
     assert_allclose(at(z, 16, 2 * row_size, row_size), wanted[0], rtol=3e-13)
     assert_allclose(at(z, 16 + row_size, 2 * row_size, row_size), wanted[1], rtol=3e-13)
     assert_allclose(at(z, at_Q, row_size, row_size), wanted[2], rtol=1e-11)
     r = np.geomspace(1e-9, 1, 300) * end_r
-    guess = law.spot_guess(2 / np.pi * r[None] ** 3, row)[0] / r
+    guess = cell_law.spot_guess(2 / np.pi * r[None] ** 3, row)[0] / r
     assert_allclose(at(np.minimum(1 + kappa_r * r, top_r), at_r, row_size // 2, row_size // 2), guess, rtol=1e-5)
 
 
@@ -134,9 +134,9 @@ def test_a_core_of_other_sources_is_not_taken(monkeypatch, tmp_path):
     monkeypatch.undo()
 
     class Longer(ctypes.Structure):
-        _fields_ = [("batch", library.Batch), ("more", ctypes.c_int64)]
+        _fields_ = [("batch", library.CBatch), ("more", ctypes.c_int64)]
 
-    monkeypatch.setattr(library, "Batch", Longer)
+    monkeypatch.setattr(library, "CBatch", Longer)
     assert not library._fits(core)
     monkeypatch.undo()
     assert not library._fits(ctypes.CDLL(None))  # which has no layout, as cores built before there was one

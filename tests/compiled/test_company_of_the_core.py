@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from both_paths import by, contacts, of_the_sources  # noqa: F401
 
-from solver.compiled import newton
+from solver.compiled import newton_in_c
 from solver.compiled.library import available
-from solver.compiled.tables import mesh_for
+from solver.compiled.structures import mesh_for
 
 VARIANTS = available()
 pytestmark = pytest.mark.skipif(not VARIANTS, reason="no compiled core was built here")
@@ -32,9 +32,9 @@ def handed_back(variant, problem) -> np.ndarray:
     with pytest.MonkeyPatch.context() as patched:
 
         def left(cases, rtol, nodes, limit, x):
-            return newton.Solution.of(len(rtol), len(x), status=9)
+            return newton_in_c.Solution.of(len(rtol), len(x), status=9)
 
-        patched.setattr(newton.adaptive, "solve_newton", left)
+        patched.setattr(newton_in_c.adaptive, "solve_newton", left)
         alone = (problem.micro == "smooth") & (problem.base != "layered")
         return alone | (by(variant, problem).status == 9)
 
@@ -42,7 +42,7 @@ def handed_back(variant, problem) -> np.ndarray:
 def test_the_same_bits_in_blocks_of_a_large_batch(monkeypatch):
     problem = contacts(100, 8, base="layered", micro="disc_cell", h=0.05)
     whole = by("", problem)
-    monkeypatch.setattr(newton, "_CHUNK", 17)
+    monkeypatch.setattr(newton_in_c, "_CHUNK", 17)
     assert by("", problem).P.tobytes() == whole.P.tobytes()
     assert by("", problem).p.tobytes() == whole.p.tobytes()
 
@@ -50,6 +50,6 @@ def test_the_same_bits_in_blocks_of_a_large_batch(monkeypatch):
 def test_meshes_are_made_for_cases_alone(monkeypatch):
     """The first contact of a program would wait for all of the ladder."""
     asked = []
-    monkeypatch.setattr(newton, "mesh_for", lambda n, s: asked.append(n) or mesh_for(n, s))
+    monkeypatch.setattr(newton_in_c, "mesh_for", lambda n, s: asked.append(n) or mesh_for(n, s))
     coarse = by(VARIANTS[0], contacts(5, 11, base="layered", h=0.1, n=0.5, micro="disc_cell", rtol=1e-3))
     assert coarse.nodes.max() < 22 and len(asked) >= 2 and max(asked) == coarse.nodes.max()

@@ -8,7 +8,7 @@ from both_paths import SCALARS, X, by, contacts, of_the_sources  # noqa: F401
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solver import Problem, Status
-from solver.compiled import newton
+from solver.compiled import newton_in_c
 from solver.compiled.library import available
 from solver.rough import adaptive
 
@@ -142,7 +142,7 @@ def test_what_goes_wrong_with_a_table_is_raised(monkeypatch, error):
     def failing(*key):
         raise error("a table")
 
-    monkeypatch.setattr(newton, "table_for", failing)
+    monkeypatch.setattr(newton_in_c, "table_for", failing)
     with pytest.raises(error, match="a table"):
         by("", contacts(5, 5, base="layered"))
 

@@ -10,7 +10,8 @@ import pytest
 from conftest import ROOT
 
 import study
-from study.again import Again, of_all_cases, strengths
+from study.data.body_strengths import strengths
+from study.data.contacts import Contacts
 from study.explorer.page import contents
 from study.specimen.quantities import READABLE, quantity
 
@@ -164,9 +165,8 @@ def test_asperities_have_the_strength_of_the_softer_surface():
     for form, surface in ((bare, "body"), (coated, "layer")):
         texts += [form | {"punch": punch, surface: body} for punch in punches for body in bodies]
         contacts = study.solve(**form, punch=punches, **{surface: bodies}, x=2).transpose("punch", surface, ...)
-        again = Again.of(contacts, "test")
-        unit = of_all_cases(again.scene.unit, again.dims, again.shape)
-        wanted += [*(strengths(contacts, again, {})["asperities"] * unit)]
+        contacts = Contacts.of(contacts, "test")
+        wanted += [*(strengths(contacts, {})["asperities"] * contacts.units[0])]
     shown = np.array(by_node(STRENGTHS, contents(), json.dumps(texts)), float)
     np.testing.assert_allclose(shown, wanted, rtol=1e-10)
     soft_punch = shown[texts.index(bare | {"punch": "steel carbon", "body": "steel 52100"})]

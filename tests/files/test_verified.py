@@ -164,7 +164,7 @@ def test_lazily_read_chunks_are_verified_and_the_file_is_named(file, monkeypatch
     line.run()
     flip(line.results / "line.nc", line.open().p.values[7, 1], byte=3)
     assert line.verify().kind == "damaged"
-    monkeypatch.setattr("study.store.state.LAZY", 0)
+    monkeypatch.setattr("study.store.window_files.LAZY", 0)
     monkeypatch.setattr(results_file, "LAZY", 0)
     for found in (line.open(), study.open_results(line.results / "line.nc")):
         with pytest.raises(study.StudyError, match=r"line.nc: is damaged: a part of it cannot be read \(NetCDF: HDF"):

@@ -19,7 +19,7 @@ from solver import Problem, laws, solve
 from solver.known import PARAMETERS, register
 from solver.parameters import Parameter
 from study.figures.labels import stated
-from study.in_words.inputs import used_inputs
+from study.in_words.stated_inputs import used_inputs
 from study.inputs.identity import case_keys
 from study.inputs.reading import from_tables
 from study.work.cases import parcel

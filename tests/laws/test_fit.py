@@ -7,7 +7,7 @@ from scipy.optimize import least_squares
 
 from solver import fit_power_law
 from solver.laws.disc_cell import displacement
-from solver.laws.fit import power_law_error, pressures
+from solver.laws.power_law_fit import power_law_error, pressures
 
 
 @pytest.mark.parametrize(("Nbar_Ra2", "B", "beta"), [(4, 0.0919, 0.4908), (1, 0.3157, 0.5342), (0.25, 1.0006, 0.5664)])

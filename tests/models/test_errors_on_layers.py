@@ -7,7 +7,7 @@ from solver_cases import JUDGED, difference
 
 from solver import Model, Problem, Status, sensitivities, solve
 from solver.laws.cell.family import REACH
-from solver.models.cells import last_fraction
+from solver.models.asperity_error import last_fraction
 
 #: The whole spheres of the specification: R = E2* = 1, bonded.
 SPHERE = {"Nbar": 0.0054**-2, "Ra": 0.004, "h": 0.001, "nu1": 0.25, "nu2": 0.3, "bonding": "bonded"}

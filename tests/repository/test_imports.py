@@ -30,7 +30,7 @@ ROOMS = {
         *("schemes", "smooth", "ways", "models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (
-        *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives"),
+        *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "derivatives"),
         *("in_words", "files", "store", "work", "lazy", "solving", "fields", "inverse", "adhesion"),
         *("scan_laws", "yields", "figures", "api", "catalogue", "explorer", "commands", "__main__"),
     ),
@@ -242,7 +242,7 @@ def test_only_blocks_and_dataset_and_tables_know_the_solver():
     """The seam between solver and study stays narrow: the vocabulary knows the table of parameters alone."""
     users = {path.stem: {full for full in imported(path) if full.split(".")[0] == "solver"} for path in STUDY}
     assert users["vocabulary"] == {"solver.parameters"}
-    own = {"solver.parameters", "solver.laws", "solver.laws.fit"}
+    own = {"solver.parameters", "solver.laws", "solver.laws.power_law_fit"}
     assert users["laws"] == own, "those of the words of a study, and fits"
     assert not any(users[name] for name in ("grid", "request", "draft", "run", "api", "units", "progress"))
 
@@ -334,7 +334,7 @@ LOCKS = {
     "study/work/engine.py": "renewed",
     "study/work/processes.py": "of processes, which a fork starts anew",
     "study/work/progress.py": "of one call",
-    "study/work/second.py": "of one command",
+    "study/work/second_process.py": "of one command",
 }
 
 

@@ -52,7 +52,7 @@ OWN = {
     "study/work/processes.py": "the pipe to a process of its own",
     "study/store/": "blocks of results: likewise",
     "study/inverse/fits/block.py": "a field of a tuple",
-    "study/inverse/afm/force_curves.py": "by afmformats, what the door has checked",
+    "study/inverse/force_curves.py": "by afmformats, what the door has checked",
     "study/specimen/scan_files.py": "by SurfaceTopography, what the door has checked",
     "study/specimen/scan_grids.py": "numpy, from a file that the door has opened",
     "study/specimen/netcdf_heights.py": "netCDF, from bytes",

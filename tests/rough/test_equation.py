@@ -8,7 +8,7 @@ from solver.body.half_space import half_space
 from solver.laws import LAWS, Curve
 from solver.numerics.mesh import mesh_of
 from solver.rough import newton
-from solver.rough.equation import _ROUNDING, Cases, Evaluation, State, evaluate
+from solver.rough.equation import _ROUNDING, Cases, Evaluation, Unknowns, evaluate
 from solver.rough.newton import solve_on
 from solver.rough.start import first_guess
 from solver.scaling import as_cases
@@ -23,7 +23,7 @@ def evaluation(q, F, G):
     curve = Curve(q=q, g=np.full_like(q, 1e-3), dq=np.ones_like(q), dg=np.ones_like(q))
     body = half_space(0 * ONE)
     cases = Cases("a", LAWS["smooth"].bind(ONE), body, ONE, Paraboloid(2 * ONE))
-    return Evaluation(cases, State(q, np.array([G])), body.at(ONE, mesh_of(2)), curve, one, one, one, q, q[:, 0], F)
+    return Evaluation(cases, Unknowns(q, np.array([G])), body.at(ONE, mesh_of(2)), curve, one, one, one, q, q[:, 0], F)
 
 
 @pytest.mark.parametrize(("F", "G", "expected"), [([1e-3, -0.2], 0.1, 0.2), ([1e-3, -0.2], -0.5, 0.5)])

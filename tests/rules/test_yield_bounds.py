@@ -12,6 +12,7 @@ from solver.laws import LAWS
 from solver.yields import spots
 from solver.yields.contact import of_contacts
 from study.arrays.labelled import Labelled
+from study.data.contacts import Contacts
 from study.data.dataset import model_attributes
 from study.rules import strength, yield_bounds
 from study.rules.rule import numbers
@@ -139,8 +140,8 @@ def test_asperities_have_the_strength_of_the_softer_surface():
 
 def spot_stress(contact):
     """In Pa, of one rough contact in SI units."""
-    again = study.again.Again.of(contact, "test")
-    return (spots.of_contacts(again.problem, solve(again.problem))[0] * again.scene.unit).item()
+    contact = Contacts.of(contact, "test")
+    return (spots.of_contacts(contact.problem, solve(contact.problem))[0] * contact.units[0]).item()
 
 
 @pytest.mark.parametrize(

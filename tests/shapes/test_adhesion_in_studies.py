@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import study
-from study.rules.punch import rises_from_tension
+from study.rules.slope_and_adhesion import rises_from_tension
 from study.studies.literature.pull_off import THIN
 
 GEL = {"R": "5 um", "E2": "10 kPa", "nu2": 0.49, "base": "half_space", "micro": "smooth"}

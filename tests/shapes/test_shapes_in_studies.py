@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 import study
 from study.inputs.identity import case_keys
 from study.inputs.reading import from_call
-from study.rules.punch import SLOPE
+from study.rules.slope_and_adhesion import SLOPE
 
 ALONE = {"base": "half_space", "micro": "smooth"}
 GEL = {"E2": "1 MPa", "nu2": 0.3, **ALONE}

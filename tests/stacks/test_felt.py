@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from solver_cases import difference
 
 from solver import Problem, Status, scaling, solve
-from solver.models import cells
+from solver.models import asperity_error
 
 CASE = {"a": 0.03, "Nbar": 250000.0, "Ra": 0.004, "micro": "square_lattice", "rtol": 1e-4}
 GRADED = {"nu": 0.3, "profile": "exponential", "bonding": "bonded"}
@@ -22,7 +22,7 @@ def test_finer_sublayers_change_less_than_the_error(pitch, monkeypatch):
     more = solve(problem)
     assert few.status == more.status == Status.CONVERGED
     change = difference(few, more, ("D", "p_max", "Ar_An"))
-    cut = cells._CUT * np.log(4.0)
+    cut = asperity_error._CUT * np.log(4.0)
     assert 1e-5 < change < cut < few.model_error < 0.02
 
 

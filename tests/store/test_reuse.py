@@ -13,7 +13,7 @@ import study
 from study.inputs import identity
 from study.inputs.grid import Grid
 from study.inputs.identity import case_keys, find
-from study.store import blocks, state
+from study.store import blocks, window_files
 
 BASE = {"micro": '"smooth"', "base": '"thin_layer"', "n": "0.5"}
 AXES = {"P": "[1e-6, 2e-6, 4e-6]", "h": "[0.001, 0.002]"}
@@ -145,7 +145,7 @@ def renumber(monkeypatch, version: str) -> None:
     from study.data import provenance
     from study.work import cases, plan
 
-    for module in (identity, blocks, state, plan, cases, provenance):
+    for module in (identity, blocks, window_files, plan, cases, provenance):
         monkeypatch.setattr(module, "NUMERICS_VERSION", version)
 
 

@@ -40,7 +40,7 @@ def test_results_that_are_removed_while_one_asks_for_them(file, monkeypatch):
         path.unlink(missing_ok=True)
         raise FileNotFoundError(path)
 
-    monkeypatch.setattr("study.store.state.statuses", removed)
+    monkeypatch.setattr("study.store.window_files.statuses", removed)
     assert load(file).status()["state"] == "partial"
 
 

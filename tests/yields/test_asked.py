@@ -36,6 +36,15 @@ def test_strengths_of_a_contact_have_units_and_spreads():
     assert "P_Y2_spread" not in first_yield("body", contact=contact, Y2="500 MPa")
 
 
+def test_no_contact_is_solved_to_know_the_inputs(monkeypatch):
+    """The load that a contact must have is any, and is never named: the first input with a unit is the user's own."""
+    monkeypatch.setattr(study.solving, "solved", None)
+    assert first_yield("body", Y2=0.005, **LAYER).P_Y2 > 0
+    assert study.h_protect(P=1e-5, Y2=0.005, n=2.0, bonding="bonded", micro="smooth").h_protect > 0
+    with pytest.raises(study.StudyError, match='E2 = "1 GPa" makes this a study with units'):
+        study.first_yield(E2=["1 GPa", "2 GPa"], h=0.1)
+
+
 def test_the_load_of_a_contact_counts_for_what_protects(loads):
     """And its thickness does not; the load of a contact with a or D is the one that was found."""
     wanted = study.h_protect(P=1e-5, Y2=0.005, **{name: v for name, v in LAYER.items() if name != "h"})

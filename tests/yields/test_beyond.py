@@ -16,6 +16,7 @@ CASES = {
     "asperities on a layer": COATED | COARSE | {"Nbar": ["0.0001 1/um^2", "0.1 1/um^2"]},
     "a smooth coating": COATED | {"micro": "smooth", "Y1": "1 GPa", "E_punch": "70 GPa", "Y_punch": "100 MPa"},
     "a cup": {**BARE, "R": None, "R1": "5 mm", "R2": "-5.05 mm"},
+    "two balls in a cup": {**BARE, "R": None, "R1": ["5 mm", "4 mm"], "R2": "-5.05 mm"},
     "a blunt cone": {**BARE, "R": None, "shape": "blunt_cone", "half_angle": "82 deg", "tip_radius": "1 mm"},
 }
 
@@ -27,7 +28,8 @@ def test_the_flags_are_those_of_the_contact_at_that_load(kind):
     given = {name: value for name, value in CASES[kind].items() if value is not None}
     yielding = study.first_yield(**given)
     without = {name: value for name, value in given.items() if name not in ("Y1", "Y2", "Y_punch")}
-    cases = [without | {"Nbar": Nbar} for Nbar in given["Nbar"]] if "Nbar" in given else [without]
+    axes = [(name, value) for name, value in given.items() if isinstance(value, list)]
+    cases = [without | {name: one} for name, values in axes for one in values] or [without]
     for end in ("Y1", "Y2", "Ya", "Y_punch"):
         loads, flags = (yielding[f"{name}_{end}"].values.ravel().tolist() for name in ("P", "validity"))
         loads = [f"{P} N" if np.isfinite(P) else "" for P in loads]
@@ -47,8 +49,8 @@ def test_a_comment_says_it_in_words():
     assert "comment" not in study.first_yield(**COATED, micro="smooth").P_Y2.attrs
 
 
-def test_no_warning_of_the_contact_that_is_tried():
-    """The user gives no load, so that one of any radius is solved: such a contact may be far outside the model."""
+def test_no_warning_of_a_contact_that_nobody_asked_for():
+    """The user gives no load: a contact of any radius may be far outside the model."""
     soft = {name: value for name, value in (COATED | COARSE).items() if name != "Y2"} | {"E1": "0.5 GPa"}
     with pytest.warns(UserWarning) as caught:
         study.solve(**soft, a="1 um", x=2)

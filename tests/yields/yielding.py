@@ -8,7 +8,7 @@ import xarray as xr
 import study
 from solver.yields.contact import of_contacts
 from study import fields
-from study.yields import first
+from study.yields import first_yield as searching
 
 
 def largest(contact: xr.Dataset, *names: str, mu: float = 0.0) -> xr.Dataset:
@@ -22,5 +22,5 @@ def largest(contact: xr.Dataset, *names: str, mu: float = 0.0) -> xr.Dataset:
 def first_yield(*bodies: str, **given) -> xr.Dataset:
     """`study.first_yield` with the loads of these bodies alone: "layer", "body", "asperities", "punch"."""
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(first, "BODIES", {body: first.BODIES[body] for body in bodies})
+        patched.setattr(searching, "BODIES", {body: searching.BODIES[body] for body in bodies})
         return study.first_yield(**given)

@@ -15,7 +15,7 @@ from benchmark_work import load_axis
 from solver import solve
 from solver.numerics.mesh import mesh_of
 from solver.rough import adaptive
-from solver.rough.equation import State, evaluate
+from solver.rough.equation import Unknowns, evaluate
 from solver.rough.start import first_guess
 from solver.scaling import as_cases, dimensionless
 
@@ -58,7 +58,7 @@ def started(known: dict, size: float | None = None):
         if size is None or state is None:
             return real(cases, mesh, a)
         y = state.y * (1 + size * random.standard_normal((len(state.y), 1)))
-        return State(y, state.eta + size * random.standard_normal(len(state.eta)))
+        return Unknowns(y, state.eta + size * random.standard_normal(len(state.eta)))
 
     def solved(begin, limit):
         found = solve_on(begin, limit)

@@ -23,7 +23,7 @@ import numpy as np
 
 from solver import Problem, Status, solve
 from solver.body import wave_rule
-from solver.smooth import contact, equation, products
+from solver.smooth import contact, galerkin, products
 from solver.smooth.adhesion import maugis
 
 SHAPES = (
@@ -97,10 +97,10 @@ def finer() -> None:
     wave_rule._LESS, wave_rule._MORE, wave_rule._LEAST = 0.0, 16, (18, 22)
     wave_rule._END, wave_rule._END_MIDDLE = 30.0, 26.0
     wave_rule.quadrature.cache_clear()
-    products.has_few = equation.has_few = lambda *_: False
+    products.has_few = galerkin.has_few = lambda *_: False
     products._WAVES = products.Kept(products._MOST)
     few = products.size_of
-    equation.size_of = maugis.size_of = lambda octave, even: int(1.5 * few(octave, even)) + 6
+    galerkin.size_of = maugis.size_of = lambda octave, even: int(1.5 * few(octave, even)) + 6
     contact.Tabulated = type("Untabulated", (), {"of": staticmethod(lambda body: body)})
 
 

@@ -18,7 +18,7 @@ from ...kernels.two_layers import TwoLayers
 from ...numerics import special
 from ...numerics.quadrature import gauss_legendre, lagrange
 from .rows import of_kernel, refuse_cells, refuse_layers
-from .spot import Cell, Spots, panels_of, spots
+from .spot import Cell, CellSpots, panels_of, spots
 from .sums import LATTICES, lattice_waves
 
 __all__ = ["axis_stresses", "cell_axis", "lone_on_axis", "long_waves", "transform"]
@@ -86,7 +86,7 @@ def cell_axis(
     return sr / (1 + m), sz / (1 + m)
 
 
-def axis_stresses(cell: Cell, spot: Spots, layers: TwoLayers, z: np.ndarray, side: int) -> tuple:
+def axis_stresses(cell: Cell, spot: CellSpots, layers: TwoLayers, z: np.ndarray, side: int) -> tuple:
     """sr and sz (Z,) below one spot at depths z (Z,), in units E = Ra = l = 1; arguments as in :func:`cell_axis`."""
     b, h, lattice = spot.b[0], 1 / cell.pitch, "hex" if cell.lattice == "disc" else cell.lattice
     bodies, load, x = Bodies.of(layers), (-1.0, 0.0), np.asarray(z, dtype=float)[:, None]

@@ -172,7 +172,7 @@ class _Largest(NamedTuple):
 
 
 def pressures(spot, y):
-    """q (S, Y) of :class:`~.spot.Spots` at r = b sqrt(1 - y²), for y (Y,) in [0, 1]."""
+    """q (S, Y) of :class:`~.spot.CellSpots` at r = b sqrt(1 - y²), for y (Y,) in [0, 1]."""
     return spot.b[:, None] * (spot.fall @ _weights(spot.t.shape[1], y.tobytes()).T)
 
 

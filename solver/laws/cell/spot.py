@@ -17,7 +17,7 @@ import numpy as np
 from ...numerics.quadrature import gauss_legendre
 from .sums import LATTICES, lone_waves, neighbours, waves
 
-__all__ = ["Cell", "Spots", "panels_of", "pieces", "spots"]
+__all__ = ["Cell", "CellSpots", "panels_of", "pieces", "spots"]
 
 #: Points on a panel of the radius, least number of points, and the widest panel in h (tests/laws/cell/test_rows.py).
 POINTS, _LEAST, _WIDEST = 24, 48, 5.0
@@ -42,7 +42,7 @@ class Cell(NamedTuple):
     L1: object = None
 
 
-class Spots(NamedTuple):
+class CellSpots(NamedTuple):
     """Spots of the radii b (S,): nominal pressure p, approach A, pressure p_max in the middle; (S,) each. And phi and
     -phi'(t)/t at the points t of each, with their weights w; (S, T) each. Units E = Ra = l = 1."""
 
@@ -147,7 +147,7 @@ def kernels(N, ends, t, w):
 
 
 def spots(cell, b, N=None, rule=None):
-    """:class:`Spots` of a :class:`Cell` of the radii b (S,), in l, 0 < b < d/2.
+    """:class:`CellSpots` of a :class:`Cell` of the radii b (S,), in l, 0 < b < d/2.
 
     N : :func:`pieces` of the cell up to the largest radius and farther, where others are solved too: the radii then
         have as few points as serve the largest of them
@@ -181,4 +181,4 @@ def spots(cell, b, N=None, rule=None):
     phi = np.einsum("stk,sk->st", phi, parts)
     slope = np.einsum("stk,sk->st", slopes, parts) - np.einsum("stu,su->st", d_kernel[:, :-1], phi)
     fall = -slope / (np.pi * t)
-    return Spots(b, p, A, (w * fall).sum(axis=1), t, w, phi, fall)
+    return CellSpots(b, p, A, (w * fall).sum(axis=1), t, w, phi, fall)

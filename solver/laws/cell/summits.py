@@ -25,7 +25,7 @@ import numpy as np
 from ...numerics.kept import Kept
 from .family import REACH, chebyshev_series, in_groups
 from .rows import of_kernel
-from .spot import Cell, Spots, kernels, pieces, points, spots
+from .spot import Cell, CellSpots, kernels, pieces, points, spots
 
 __all__ = ["SUMMIT", "SUMMIT_NUMBERS", "Lookup", "Parts", "Summit", "at", "clenshaw", "parts", "summit"]
 
@@ -88,7 +88,7 @@ def _made(disc, kernel, m):
 class Parts(NamedTuple):
     """Spots of radii b (S,) of their own load: phi and -phi'(t)/t (S, T, 3) of A, of the shape and of p, each alone, at
     points t with weights w (S, T); their load and pressure in the middle (S, 3), and phi at b (S, 3); and the
-    :class:`~.spot.Spots` of equal heights."""
+    :class:`~.spot.CellSpots` of equal heights."""
 
     t: np.ndarray
     w: np.ndarray
@@ -97,16 +97,16 @@ class Parts(NamedTuple):
     load: np.ndarray
     middle: np.ndarray
     at_b: np.ndarray
-    equal: Spots
+    equal: CellSpots
 
     def spots(self, p):
-        """:class:`~.spot.Spots` under the nominal pressures p (S,)."""
+        """:class:`~.spot.CellSpots` under the nominal pressures p (S,)."""
         of_shape, of_others = self.at_b[:, 1] / self.at_b[:, 0], self.at_b[:, 2] / self.at_b[:, 0]
         A = of_shape - p * of_others
         factors = np.stack([A, -np.ones_like(A), p], axis=1)
         phi, fall = ((values * factors[:, None]).sum(axis=2) for values in (self.phi, self.fall))
         load, middle = ((values * factors).sum(axis=1) for values in (self.load, self.middle))
-        return Spots(self.equal.b, load, A, middle, self.t, self.w, phi, fall)
+        return CellSpots(self.equal.b, load, A, middle, self.t, self.w, phi, fall)
 
 
 def parts(cell, b, of_lattice, lone):

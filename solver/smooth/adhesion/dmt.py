@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...status import Status
-from ..equation import Response, respond
+from ..galerkin import Response, respond
 from ..radius import NEAR, Radii, guess, rising_root, touching
 from ..state import Scales, State, answer
 
@@ -39,7 +39,7 @@ def solve(part, shape, body, k, x):
 
 
 def _jump(shape, body, pull, k):
-    """The :class:`~..equation.Response` without adhesion at which D + (P - pull)/k is 0; where k is infinite, all its
+    """The :class:`~..galerkin.Response` without adhesion at which D + (P - pull)/k is 0; where k is infinite, all its
     numbers are 0."""
     radii, pieces = Radii(shape), []
 

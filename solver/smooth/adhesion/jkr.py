@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...numerics import batch
-from ..equation import respond
+from ..galerkin import respond
 from ..state import State
 
 #: Numbers above this have all their digits.

@@ -1,7 +1,7 @@
 """Adhesion in a ring around the contact, after Maugis and Dugdale, of any shape on any kernel.
 
 The stress -σ₀ acts where a < r < c, up to the gap w/σ₀. Inside c the pressure is -σ₀ and that of a contact with
-φ(a) = 0, whose equation (:mod:`..equation`) has F - Q in place of F,
+φ(a) = 0, whose equation (:mod:`..galerkin`) has F - Q in place of F,
 
     Q(t) = (2 σ₀/E) [sqrt(c² - t²) + c ∫ (L - 1) J1(kc) cos kt dk/k],      P = 2 E a ∫₀¹ y dτ - π c² σ₀,
 
@@ -21,11 +21,11 @@ from ...numerics import batch, special
 from ...numerics.bracket import false_position, secant
 from ...numerics.quadrature import gauss_legendre
 from ...shapes.shape import column
-from ..equation import Response, at_the_edge, error_of_waves, left_out, matrix_of, sizes, solved
+from ..galerkin import Response, at_the_edge, error_of_waves, left_out, matrix_of, sizes, solved
 from ..products import Products, differences_at, size_of
-from ..rises import functions, longest, rises
+from ..shape_terms import functions, lifted_drop, longest
 from ..state import State
-from ..tabulated import excess
+from ..tabulated_body import excess
 
 #: Relative steps in a and in γ - 1 of the differences that are the slopes of P and D, of fourth order.
 _STEP = 2e-3
@@ -50,7 +50,7 @@ class Ring(NamedTuple):
     bent: np.ndarray
 
 
-class Layer(NamedTuple):
+class RingResponse(NamedTuple):
     """What a kernel makes of a ring, B cases: y (B, N), and what it adds to D, `at_edge`, and to u(c), `moved`, (B,);
     errors (3, B) of y_0 and of these two; `changes` (B, N), by how much y may be off."""
 
@@ -155,7 +155,7 @@ class Maugis(NamedTuple):
         depth, height = self.shape.lifted(column(a)), self.shape.height(column(c))[:, 0]
         pulled = (unit * a)[:, None] * (root - edge[:, None])
         exact = depth - self.shape.lifted(column(a) * tau) + pulled
-        side = rises(self.shape, a, N) + np.einsum("bq,bnq->bn", pulled * dz * root, basis)
+        side = lifted_drop(self.shape, a, N) + np.einsum("bq,bnq->bn", pulled * dz * root, basis)
         layer = self._layer(a, gamma, (octave, place), side, with_errors)
         whole = exact + np.einsum("bn,bnq->bq", layer.y - side, basis)
         D = depth[:, 0] - unit * a * edge + layer.at_edge
@@ -171,9 +171,9 @@ class Maugis(NamedTuple):
         )  # fmt: skip
 
     def _layer(self, a, gamma, which, side, with_errors):
-        """The :class:`Layer` of contacts whose right-hand side on a half-space is `side` (B, N)."""
+        """The :class:`RingResponse` of contacts whose right-hand side on a half-space is `side` (B, N)."""
         if self.body.kernel is None:
-            return Layer(side, 0 * a, 0 * a, np.zeros((3, len(a))), 0 * side)
+            return RingResponse(side, 0 * a, 0 * a, np.zeros((3, len(a))), 0 * side)
         N, (d, cosine, by, q) = side.shape[1], self._waves(a, gamma, *which, side.shape[1])
         kappa, J0 = by / gamma[:, None], special.j0(by)
         J1 = column(2 * self.sigma / self.body.E * a * gamma) * special.j1(by) / kappa
@@ -196,7 +196,7 @@ class Maugis(NamedTuple):
         film = self.body.h < 2.0 ** OCTAVES[0] * a * gamma  # the quadrature ends where L - 1 has not decayed
         of_waves = np.where(film, 1.0, error_of_waves(None, which[0]))
         of_waves = of_waves * np.array([bends, bends + np.abs(at_edge), bends + np.abs(moved)])
-        return Layer(y, at_edge, moved, np.array([of_y, of_edge, of_moved]) + of_waves, changes)
+        return RingResponse(y, at_edge, moved, np.array([of_y, of_edge, of_moved]) + of_waves, changes)
 
     def _rule(self, a, gamma, edge, N):
         """Points z and weights (B, Q), τ = γ sin z <= 1. Beyond each kink of the shape, and beyond 0 where it is not

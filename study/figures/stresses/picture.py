@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ...fields import contact_of, friction
-from ...in_words.inputs import is_rigid
+from ...in_words.stated_inputs import is_rigid
 from ...inputs.definition import StudyError
 from ...rules.rule import RULES, broken
 from ...terminal import shown as shown_text

@@ -7,10 +7,11 @@ import xarray as xr
 
 from solver.bases import is_bare
 
-from ...again import Again, refuse_without_stresses, strengths
+from ...data.body_strengths import strengths
+from ...data.contacts import Contacts
 from ...data.dataset import decode
 from ...fields import extremes, stresses
-from ...in_words.inputs import is_rigid
+from ...in_words.stated_inputs import is_rigid
 from ...inputs.definition import StudyError
 
 _NEAR = np.linspace(0, 0.4, 17) ** 2 / 0.4
@@ -56,7 +57,7 @@ class Stresses(NamedTuple):
 def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tuple[xr.Dataset, Stresses]:
     """The contact without dimensions, and its stresses. Raises StudyError for several contacts, or one not solved."""
     contact = one_contact(contact)
-    refuse_without_stresses(Again.of(contact, "plot_stresses"), "plot_stresses")
+    Contacts.of(contact, "plot_stresses").refuse_without_stresses("plot_stresses")
     largest = extremes(contact, mu, sigma_res)
     bare, rigid = is_bare(str(contact["base"].values)), is_rigid(contact, "base")
     h = None if bare else float(contact["h"] / contact["a"])
@@ -83,9 +84,8 @@ def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tu
 
 def yield_strengths(contact: xr.Dataset) -> dict[str, float]:
     """Yield strengths of layer and body, in Pa or in units of the solver; NaN where they are not known."""
-    again = Again.of(contact, "plot_stresses")
-    unit = float(again.scene.unit) if again.scene else 1.0
-    known = strengths(contact, again, {})
+    contacts = Contacts.of(contact, "plot_stresses")
+    (unit,), known = contacts.units[0].tolist(), strengths(contacts, {})
     return {body: known[body].item() * unit for body in ("layer", "body")}
 
 

@@ -8,7 +8,7 @@ from matplotlib.contour import QuadContourSet
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
-from ...in_words.inputs import is_rigid
+from ...in_words.stated_inputs import is_rigid
 from ...specimen import quantities
 from ..labels import multiple
 from .regions import Region, Stresses

@@ -7,9 +7,9 @@ from solver import solve
 from solver.fields.invariants import mises
 from solver.yields.below.central_spot import section, spot_of
 
-from ...again import Again, refuse_without_stresses
-from ...fields import residual_stress, units_of
-from ...in_words.inputs import is_rigid
+from ...data.contacts import Contacts
+from ...fields import residual_stress
+from ...in_words.stated_inputs import is_rigid
 from ...inputs.definition import StudyError
 from .regions import Region, Stresses, one_contact, yield_strengths
 
@@ -22,9 +22,9 @@ def of_central_spot(contact: xr.Dataset, sigma_res: float | str) -> tuple[xr.Dat
     """The contact without dimensions, and the stresses below its central spot, up to half of the pitch beside the axis.
     Raises StudyError for several contacts, one that is not solved, and asperities that do not feel the layer."""
     contact = one_contact(contact)
-    again = Again.of(contact, "plot_stresses")
-    refuse_without_stresses(again, "plot_stresses")
-    problem, unit = again.problem, float(units_of(again)[0][0])
+    contacts = Contacts.of(contact, "plot_stresses")
+    contacts.refuse_without_stresses("plot_stresses")
+    problem, unit = contacts.problem, float(contacts.units[0][0])
     solution = solve(problem)
     (b, pitch, h), far = spot_of(problem, solution)
     if np.isnan(b):
@@ -32,7 +32,7 @@ def of_central_spot(contact: xr.Dataset, sigma_res: float | str) -> tuple[xr.Dat
         raise StudyError([f'plot_stresses: below = "spot" needs asperities that feel the layer: {way_out}'])
     r = np.linspace(0, far, _RADII)
     r[np.argmin(np.abs(r - b / pitch))] = b / pitch
-    residual = float(residual_stress(sigma_res, again)) / unit
+    residual = float(residual_stress(sigma_res, contacts)) / unit
 
     def at(z, body):
         """sr, st, sz, trz (4, Z, R) on both sides of the axis."""

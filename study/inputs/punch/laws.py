@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from solver.laws import Law
-from solver.laws.fit import fit_power_law
+from solver.laws.power_law_fit import fit_power_law
 from solver.parameters import allowed, one_of
 
 from ..grid import Grid, along

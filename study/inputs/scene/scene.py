@@ -84,8 +84,9 @@ class Scene:
 
 
 def over(value: Any, dims: tuple[str, ...]) -> np.ndarray:
-    """A number, a text or the values of a DataArray, with all dimensions `dims`; of length 1 along those it lacks."""
-    if not xr.is_array(value):
+    """A number, a text or the values of a DataArray or Variable, with all dimensions `dims`; of length 1 along those it
+    lacks."""
+    if not hasattr(value, "sizes"):
         return np.array(value).reshape((1,) * len(dims))
     sizes, ordered = value.sizes, value.transpose(*(dim for dim in dims if dim in value.dims))
     return ordered.values.reshape([sizes.get(dim, 1) for dim in dims])

@@ -9,8 +9,8 @@ import xarray as xr
 from solver import Status
 
 from ...in_words.fits import NAMES_OF_SHIFTS
-from ...in_words.inputs import given
 from ...in_words.sentences import assumed
+from ...in_words.stated_inputs import given
 from ...inputs.scene.layers import moduli_of
 from ...inputs.vocabulary import NOT_RUN, ROWS
 from ...rules.rule import RULES

@@ -281,10 +281,7 @@ def _bounds(name: str, pair: Any, errors: list[str], lexicon: Lexicon) -> dict[s
 
 
 def _definition(parameters: dict, where: str) -> Definition:
-    try:
-        return from_call(parameters, [], False, {"output": {"profiles": False}})
-    except StudyError as error:
-        raise StudyError(message.replace("solve: ", f"{where}: ", 1) for message in error.messages) from None
+    return from_call(parameters, [], False, {"output": {"profiles": False}}, where=where)
 
 
 def _check_ends(parameters: dict, bounds: dict, called: dict, lexicon: Lexicon) -> None:

@@ -10,7 +10,7 @@ import xarray as xr
 
 import study
 from study.arrays.labelled import Labelled
-from study.data.one_case import as_dataset
+from study.data.dataset import as_dataset
 from study.solving import solve_one
 
 HEAVY = ("xarray", "pandas", "dask", "dask.array", "scipy.special", "scipy.linalg", "scipy.ndimage", "pint")

@@ -13,7 +13,7 @@ from solver import Problem, solve
 
 nanite = pytest.importorskip("nanite", reason="pip install 'roughcoat[afm]'")
 afmformats = pytest.importorskip("afmformats", reason="pip install 'roughcoat[afm]'")
-FILE = ROOT / "study/inverse/afm/nanite_layer.py"
+FILE = ROOT / "study/inverse/nanite_layer.py"
 GEL = {"R": 5e-6, "nu": 0.49, "h": 1.5e-6}
 
 

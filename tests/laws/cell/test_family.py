@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from solver.kernels.stack import Stack
 from solver.kernels.two_layers import TwoLayers
 from solver.laws import LAWS, cell_rows
-from solver.laws.cell import family, law
+from solver.laws.cell import cell_law, family
 from solver.numerics.kept import Kept
 
 LATTICES = {"square_lattice": "square", "hex_lattice": "hex", "disc_cell": "disc"}
@@ -30,7 +30,7 @@ def layers(cases: dict) -> TwoLayers:
     return TwoLayers(*(np.array(cases[name]) for name in ("n", "nu1", "nu2", "bonded")))
 
 
-def bound_of(name: str, cases: dict, **change) -> law.Bound:
+def bound_of(name: str, cases: dict, **change) -> cell_law.Bound:
     cases = cases | change
     E, Nbar = cases["n"] / (1 + cases["m"]), 1 / (cases["pitch"] * cases["h"]) ** 2
     return LAWS[name].on_body(layers(cases), cases["m"], cases["h"], E, Nbar=Nbar, Ra=cases["Ra"])
@@ -39,7 +39,7 @@ def bound_of(name: str, cases: dict, **change) -> law.Bound:
 def compare(name: str, cases: dict, rtol: float) -> None:
     """p, A and p_max of the law against the equation at contact fractions from 1e-14 to the end of the law."""
     bound = bound_of(name, cases)
-    y_end = bound.own[0][:, law._AT["end"], None]
+    y_end = bound.own[0][:, cell_law._AT["end"], None]
     y = y_end * np.sqrt([2e-14, 1e-5, 0.02, 0.3, 0.7, 1])
     q, g, *_ = bound.evaluate(y)
     assert_allclose(bound.area(y, q), y**2, rtol=1e-15)
@@ -80,12 +80,12 @@ def test_derivatives_and_inverses(name):
     bound = bound_of(name, random_cases(8, (0.5, 24.0), seed=5))
     y = np.geomspace(1e-7, 30.0, 90) * np.ones((8, 1))
     curve, up, down = (bound.evaluate(y * np.exp(step)) for step in (0.0, 1e-4, -1e-4))
-    away = np.abs(np.log(y / bound.own[0][:, law._AT["end"], None])) > 1e-3
+    away = np.abs(np.log(y / bound.own[0][:, cell_law._AT["end"], None])) > 1e-3
     for i in (0, 1):
         slope = np.log(up[i] / down[i]) / 2e-4
         assert_allclose((y * curve[i + 2] / curve[i])[away], slope[away], rtol=3e-7)
         assert (np.diff(curve[i]) > 0).all()
-    inside = y < bound.own[0][:, law._AT["end"], None]
+    inside = y < bound.own[0][:, cell_law._AT["end"], None]
     assert_allclose(bound.guess(curve.q)[inside], y[inside], rtol=2e-3)
     assert_allclose(bound.guess(curve.q), y, rtol=0.1)
     assert_allclose(bound.from_pressure(curve.q), y, rtol=1e-13)
@@ -120,8 +120,8 @@ def test_the_end_of_a_law():
     """λ = 0.55 on lattices; beyond q and g soon are powers of y. A pitch above 300 h is beyond the end at once."""
     cases = random_cases(4, (1.0, 24.0), seed=8)
     bound = bound_of("square_lattice", cases)
-    assert_allclose(bound.at(law.end(bound)[:, None]).lam, 0.55, rtol=1e-12)
-    step, ends = 1e-3, bound.own[0][:, law._AT["end"], None]
+    assert_allclose(bound.at(cell_law.end(bound)[:, None]).lam, 0.55, rtol=1e-12)
+    step, ends = 1e-3, bound.own[0][:, cell_law._AT["end"], None]
     logs = [np.log(v) for v in bound.evaluate(ends * np.exp(step * np.arange(-4.0, 5.0)))[:2]]
     for values in logs:  # the second derivative is continuous, the third is not
         bends = np.diff(values, 2, axis=1) / step**2
@@ -130,11 +130,11 @@ def test_the_end_of_a_law():
     for values in far:
         assert_allclose(np.diff(values, 2, axis=1), 0.0, atol=1e-6)
     thin = bound_of("square_lattice", cases, pitch=np.array([300.1, 1e3, 1e5, 1e9]))
-    assert_allclose(law.end(thin), 0.0)
+    assert_allclose(cell_law.end(thin), 0.0)
     for name, numbers in (("power_law", {"scale": 1.0, "beta": 0.5}), ("disc_cell", {"Nbar": 1.0, "Ra": 1.0})):
         other = LAWS[name]
         values = {key: np.full(4, numbers.get(key, 1.0)) for key in other.arguments}
-        assert np.isposinf(law.end(other.bind(np.ones(4), **values))).all()
+        assert np.isposinf(cell_law.end(other.bind(np.ones(4), **values))).all()
 
 
 def test_bodies_and_pitches_that_are_no_numbers_have_no_family():
@@ -151,15 +151,15 @@ def test_the_disc_cell_ends_where_a_soft_layer_makes_it_wrong():
     soft = {"n": 0.1, "nu1": 0.25, "nu2": 0.3, "bonded": True, "m": 0.0, "pitch": 16.0, "h": 0.01, "Ra": 0.02}
     soft = {name: np.array([value]) for name, value in soft.items()}
     bound = bound_of("disc_cell", soft)
-    lam = bound.at(law.end(bound)[:, None]).lam[0]
+    lam = bound.at(cell_law.end(bound)[:, None]).lam[0]
     assert 0.1 < lam[0] < 0.2
     case = 0.1, 0.25, 0.3, "bonded"
     A = [[cell_rows(lattice, lam[0], pitch, *case)[1] for lattice in ("disc", "hex")] for pitch in (16.0, 0.1)]
     assert_allclose(A[0][0] / A[0][1] - A[1][0] / A[1][1], 0.1, rtol=1e-2)
     stiff = bound_of("disc_cell", soft, n=np.array([5.0]))
-    assert_allclose(stiff.at(law.end(stiff)[:, None]).lam, 0.55, rtol=1e-12)
+    assert_allclose(stiff.at(cell_law.end(stiff)[:, None]).lam, 0.55, rtol=1e-12)
     negative = bound_of("disc_cell", soft, n=np.array([1e-3]), nu1=np.array([0.5]), pitch=np.array([50.0]))
-    assert 0 < negative.at(law.end(negative)[:, None]).lam[0, 0] < 0.05
+    assert 0 < negative.at(cell_law.end(negative)[:, None]).lam[0, 0] < 0.05
 
 
 def test_one_family_serves_a_body_at_all_radii(monkeypatch):
@@ -231,4 +231,4 @@ def test_a_batch_of_no_cases(name):
         bound = bound.take(np.zeros(0, dtype=int))
         y = np.zeros((0, 5))
         assert bound.evaluate(y).q.shape == bound.guess(y).shape == bound.peak(y, y).shape == (0, 5)
-        assert bound.area(y, y).shape == (0, 5) and law.end(bound).shape == (0,)
+        assert bound.area(y, y).shape == (0, 5) and cell_law.end(bound).shape == (0,)

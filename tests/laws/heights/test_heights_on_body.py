@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose
 
 from solver.kernels.two_layers import TwoLayers
 from solver.laws import LAWS, heights, periodic_rows, spread
-from solver.laws.cell import heights as on_body
-from solver.laws.cell import law as cell
+from solver.laws.cell import cell_law as cell
+from solver.laws.cell import random_heights as on_body
 from solver.laws.cell import summits
 from solver.laws.cell.family import families
 

@@ -5,7 +5,7 @@ from numpy.testing import assert_allclose
 
 from solver.kernels.two_layers import TwoLayers
 from solver.laws import LAWS, elastic_plastic
-from solver.laws.cell import law as cell
+from solver.laws.cell import cell_law as cell
 
 LAW = LAWS["elastic_plastic"]
 Y = np.geomspace(1e-6, 3.0, 120)

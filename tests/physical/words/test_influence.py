@@ -52,3 +52,15 @@ def test_an_input_that_makes_nearly_all_and_a_layer_that_hardly_acts():
     thick = quiet(**FILM | {"h": "10.0 ± 0.1 mm", "P": "5 N"}, micro="smooth")
     assert sentence(thick) == "Spreads: E1 makes nearly all of the variance of p(0); h hardly changes p(0)."
     assert np.isfinite(thick.p0_spread)
+
+
+def test_a_spread_that_no_digit_shows_has_no_parts():
+    """The glass of a bead on a soft gel: the parts of such a spread are below the error of the solution."""
+    gel = {"R": "2.5 um", "E1": "5 kPa", "nu1": 0.5, "h": "2 um", "bonding": "bonded", "D": "50 nm", "micro": "smooth"}
+    glass = {"E_punch": "64.0 ± 0.6 GPa", "nu_punch": "0.2 ± 0.005", "E2": "71 ± 1 GPa", "nu2": "0.22 ± 0.01"}
+    contact = quiet(**gel, **glass, x=2, workers=1)
+    assert 0 < contact.p0_spread < 1e-8 * contact.p0
+    assert sentence(contact) == (
+        "Spreads: the ± of the inputs changes p(0) by less than a part in ten million; "
+        "p(0) is 1 % larger where h is 10 % smaller."
+    )

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import study
-from study.in_words.inputs import is_rigid, used_inputs
+from study.in_words.stated_inputs import is_rigid, used_inputs
 from study.inputs.vocabulary import ROWS
 from study.rules.rule import sentences
 

@@ -1,6 +1,6 @@
 """The four terms of a contact with adhesion: powers of inputs times functions of the radius and of the other inputs.
 
-P = P₀ - pull_P and D = D₀ - pull_D, :mod:`solver.smooth.adhesion.apart`. P₀ and pull_P have the modulus E of
+P = P₀ - pull_P and D = D₀ - pull_D, :mod:`solver.smooth.adhesion.curve_terms`. P₀ and pull_P have the modulus E of
 the touched body as a factor. Under :mod:`~solver.smooth.adhesion.jkr` both pulls go with the root of w/E, and
 under a paraboloid or a cone lengths act through a/h alone. So w and k_machine are no coordinates of a table, and often
 E, h, R and half_angle are not.
@@ -12,7 +12,7 @@ import numpy as np
 
 from solver import Problem
 from solver.shapes import PARABOLOID
-from solver.smooth.adhesion.apart import apart
+from solver.smooth.adhesion.curve_terms import curve_terms
 
 from ....inputs.scene.scales import with_unit
 from ..model import CurveModel, is_ratio
@@ -108,7 +108,7 @@ class Terms(NamedTuple):
         names["base"] = {"auto": "layered"}.get(word := names.get("base", "layered"), word)
         problem = Problem.of(known=changed.lexicon.known, **names, a=np.full(count, 0.01))
         shift = np.log(names["h"]) if self.length == "h" else 0.0
-        terms = apart(problem, np.broadcast_to(x + np.reshape(shift, (-1, 1)), (count, len(x))))
+        terms = curve_terms(problem, np.broadcast_to(x + np.reshape(shift, (-1, 1)), (count, len(x))))
         factors = np.broadcast_to(self.factors(values).reshape(4, -1), (4, count))
         out = np.empty((8, count, len(x)))
         for i, powers in enumerate(_OF_PARTS):

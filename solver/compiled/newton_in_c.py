@@ -10,7 +10,7 @@ from ..body.wave_rule import OCTAVES, STIFFEST
 from ..kernels.closed_form import bond_constants
 from ..kernels.two_layers import TwoLayers
 from ..laws import LAWS
-from ..laws.cell.law import number, spot_curve
+from ..laws.cell.cell_law import number, spot_curve
 from ..numerics.ladder import LADDER
 from ..parameters import one_of
 from ..rough import adaptive
@@ -21,8 +21,8 @@ from ..shapes.paraboloid import Paraboloid
 from ..solution import Solution
 from ..status import Status
 from .cells import cells_of
-from .library import OF_MESH, OF_TABLE, Batch, core, pointer
-from .tables import mesh_for, table_for
+from .library import OF_MESH, OF_TABLE, CBatch, core, pointer
+from .structures import mesh_for, table_for
 
 #: The laws and controls of the core, in the order of batch.h. Behind these laws, CELL stands for those on the coated
 #: body whose curve is that of a family.
@@ -103,7 +103,7 @@ def _solved(function, cases, rtol, nodes, x):
             families, addresses = cells_of(cases.law.own[0][low : low + chunk])
             own["cells"] = pointer(addresses)
         own |= {"size": min(chunk, size - low), "scalars": pointer(scalars.T, low)}
-        if not function(byref(Batch(**shared, **own)), -(-max(3 * _MESHES[-1], len(place)) // 32) * 32):
+        if not function(byref(CBatch(**shared, **own)), -(-max(3 * _MESHES[-1], len(place)) // 32) * 32):
             raise MemoryError("no memory for the compiled core")
         given.raise_what_was_raised()
     values = dict(zip(_SCALARS, scalars, strict=True))

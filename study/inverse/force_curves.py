@@ -9,9 +9,9 @@ import numpy as np
 
 from solver.numerics.userfile import checked, opened
 
-from ...inputs.definition import StudyError
-from ...specimen.quantities import quantity
-from ...terminal import shown
+from ..inputs.definition import StudyError
+from ..specimen.quantities import quantity
+from ..terminal import shown
 
 ENDINGS = (".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series", ".ibw", ".tab", ".h5", ".zip")
 """Of files that only afmformats reads."""

@@ -9,8 +9,8 @@ import numpy as np
 from solver.solve import solve
 from solver.yields.crossing import Crossing
 
-from ..again import Again, of_all_cases
 from ..arrays.labelled import Labelled
+from ..data.contacts import Contacts
 from ..data.dataset import validity_of_rows
 from ..inputs.identity import STRENGTHS
 from ..inputs.punch.laws import results_of
@@ -18,18 +18,18 @@ from ..rules.rule import RULES, broken, of_cases, validity_attributes
 from ..work.cases import arrays_of
 
 
-def validity_at(again: Again, crossing: Crossing) -> np.ndarray:
+def validity_at(contacts: Contacts, crossing: Crossing) -> np.ndarray:
     """`validity` of the contact at the first yield of each case, (B,) int32; 0 where there is none, or no load."""
-    flags, rows = np.zeros(len(again.problem), np.int32), np.flatnonzero(crossing.numbers["P"] > 0)
+    flags, rows = np.zeros(len(contacts.problem), np.int32), np.flatnonzero(crossing.numbers["P"] > 0)
     if not len(rows):
         return flags
-    problem = replace(again.problem.take(rows), control="P", value=crossing.numbers["P"][rows])
+    problem = replace(contacts.problem.take(rows), control="P", value=crossing.numbers["P"][rows])
     solution = solve(problem)
     # without strengths, whose masks say that something yields: at these loads it does
     numbers = {name: value for name, value in problem.parameters.items() if name not in STRENGTHS}
-    radii = again.scene.radii() if again.scene else {}
+    radii = contacts.scene.radii() if contacts.scene else {}
     results = results_of(problem.known.laws, problem.micro, felt=bool(problem.feels_layer().any()))
-    numbers |= {name: of_all_cases(value.to_xarray(), again.dims, again.shape)[rows] for name, value in radii.items()}
+    numbers |= {name: contacts.column(value.to_xarray())[rows] for name, value in radii.items()}
     flags[rows] = validity_of_rows(numbers | arrays_of(solution, results, ()), problem.known).values
     return flags
 

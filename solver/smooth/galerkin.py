@@ -21,8 +21,8 @@ import numpy as np
 from ..body.wave_rule import FILM, MILD, place_of
 from ..numerics import batch
 from .products import LAST, Products, coarser, has_few, size_of, wave_nodes
-from .rises import rises
-from .tabulated import Tabulated, excess
+from .shape_terms import lifted_drop
+from .tabulated_body import Tabulated, excess
 
 _EPS, _TINY = np.finfo(float).eps, np.finfo(float).tiny
 #: Number of classes of stiffness.
@@ -133,7 +133,7 @@ def _on_kernel(shape, body, a, products, of_waves):
     N, E = products.edge.shape[1], body.E
     depth, slope = (f(a[:, None])[:, 0] for f in (shape.lifted, shape.lifted_slope))
     sides = np.zeros((len(a), N, 3))
-    sides[:, :, 0], sides[:, 0, 1], sides[:, :, 2] = rises(shape, a, N), 1.0, products.edge
+    sides[:, :, 0], sides[:, 0, 1], sides[:, :, 2] = lifted_drop(shape, a, N), 1.0, products.edge
     y, matrix = solved(products, sides, N), matrix_of(products, N)
     at_edge = at_the_edge(products, y)
     flat_D = 1 + at_edge[:, 1]

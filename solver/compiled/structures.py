@@ -13,7 +13,7 @@ from ..numerics.mesh import mesh_of
 from ..rough.answer import denser_rule
 from ..rough.error import another_rule
 from ..rough.results import stiffness_between
-from .library import Mesh, Points, Rows, Table, pointer
+from .library import CMesh, CPoints, CRows, CTable, pointer
 
 #: Most numbers k of a quadrature for which there is room in the core. The thinnest layer that is no film has 2,180.
 MOST_WAVES = 4096
@@ -32,13 +32,13 @@ class Made(tuple):
 
 
 def mesh_for(n, s_bytes):
-    """:class:`Made` of the :class:`.library.Mesh` of n nodes, with the points of profiles."""
+    """:class:`Made` of the :class:`.library.CMesh` of n nodes, with the points of profiles."""
     return _kept.get(("mesh", n, s_bytes), lambda: _mesh(mesh_of(n), np.frombuffer(s_bytes)))
 
 
 def table_for(n, octave, stiffness, s_bytes):
-    """:class:`Made` of the :class:`.library.Table` of an octave of h/a and a class of stiffness on n nodes; None if the
-    core has no room for it."""
+    """:class:`Made` of the :class:`.library.CTable` of an octave of h/a and a class of stiffness on n nodes; None if
+    the core has no room for it."""
     key = "table", n, octave, stiffness, s_bytes
     return _kept.get(key, lambda: _table(mesh_of(n), octave, stiffness, np.frombuffer(s_bytes)))
 
@@ -54,13 +54,13 @@ def _mesh(mesh, profile):
         s = np.ascontiguousarray(s)
         w = s if w is None else w
         summed = (at(_blocks(values.T)) for values in (mesh.basis(s), mesh.rows(s)))
-        return Points(len(s), at(s), at(w), at(stiffness_between(mesh, s)), *summed)
+        return CPoints(len(s), at(s), at(w), at(stiffness_between(mesh, s)), *summed)
 
     def operator(mesh):
         return at(np.vstack([mesh.K, mesh.edge]))
 
     (s, w), (dense, dense_w) = another_rule(mesh), denser_rule(mesh)
-    made = Mesh(
+    made = CMesh(
         *(mesh.n, at(mesh.s), at(mesh.w), operator(mesh), at(stiffness_between(mesh, mesh.s))),
         *(at(mesh.basis(np.zeros(1))[0]), at(fine.s), at(fine.w), operator(fine)),
         *(points(fine.s), points(s, 2 * w * s), points(dense, dense_w * dense), points(profile)),
@@ -86,8 +86,8 @@ def _table(mesh, octave, stiffness, profile):
         of_mesh = table(mesh, SAMPLER, octave, stiffness, mesh.n <= _PRODUCT)
         J, phi, columns = of_mesh.J, of_mesh.phi, at(_blocks(of_mesh.phi.T))
         if mesh.n <= _PRODUCT:
-            return of_mesh, Rows(at(_blocks(of_mesh.product)), None, None, None, columns)
-        return of_mesh, Rows(None, at(J.T), at(_blocks(J)), at(_blocks(phi)), columns)
+            return of_mesh, CRows(at(_blocks(of_mesh.product)), None, None, None, columns)
+        return of_mesh, CRows(None, at(J.T), at(_blocks(J)), at(_blocks(phi)), columns)
 
     (of_mesh, own), (_, fine) = rows(mesh), rows(finer_mesh(mesh))
     if of_mesh.spread.shape[1] > MOST_WAVES:
@@ -95,5 +95,5 @@ def _table(mesh, octave, stiffness, profile):
     s, _ = another_rule(mesh)
     points = (_blocks(between(octave, stiffness, np.ascontiguousarray(v))) for v in (finer_mesh(mesh).s, s, profile))
     k = at(few(SAMPLER, octave, stiffness).k)
-    made = Table(*of_mesh.spread.shape, k, at(_blocks(of_mesh.spread)), own, fine, *map(at, points))
+    made = CTable(*of_mesh.spread.shape, k, at(_blocks(of_mesh.spread)), own, fine, *map(at, points))
     return Made((made, arrays))

@@ -31,7 +31,7 @@ _MOST, _CLOSE, _LONGEST, _SOLVED, _AT_A_TIME = 14, 1e-9, 2.0, 1e-6, 2**14
 _AT_FIRST, PAST, _SLOWER = 20, 4, 0.98
 
 
-class Spots(NamedTuple):
+class SpotsAtAngles(NamedTuple):
     """Spots at angles θ: their approach a at the field k, and da/dθ; their own load over 2/pi, and what it gains for
     each q; df/dθ at this k; c²."""
 
@@ -44,7 +44,7 @@ class Spots(NamedTuple):
 
 
 def spots(theta, k, values, slopes):
-    """:class:`Spots` at angles and fields, from G, P, B and F there and their derivatives by ln c."""
+    """:class:`SpotsAtAngles` at angles and fields, from G, P, B and F there and their derivatives by ln c."""
     (G, P, B, F), (dG, dP, dB, dF) = values, slopes
     c, v = np.sin(theta), np.cos(theta)
     v_c, expG, expP = v / np.maximum(c, 1e-300), np.exp(G), np.exp(P)
@@ -52,7 +52,7 @@ def spots(theta, k, values, slopes):
     da = c * v * expG * (2 + dG) + 2 * k * (c - dB * v_c)
     more = theta - v * c + F
     df = 2 / np.pi * (c * c * v * expP * (3 + dP) + 1.5 * k * (2 * c * c + dF * v_c))
-    return Spots(a, da, c**3 * expP, more, df, c * c)
+    return SpotsAtAngles(a, da, c**3 * expP, more, df, c * c)
 
 
 def angle(approach, k, series):

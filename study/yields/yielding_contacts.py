@@ -1,16 +1,15 @@
 """The contacts that first yield and the protecting layer are asked about: those of inputs, or of a dataset."""
 
-import warnings
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from ..again import Again, refuse_without_stresses
+from ..data.contacts import Contacts, refuse_no_results
 from ..inputs.definition import StudyError
-from ..inputs.request import Request
+from ..inputs.request import AnyValue
 from ..inputs.vocabulary import CONTROLS
-from ..solving import solve
+from ..solving import unsolved
 from ..specimen.foreign import plain
 from ..specimen.materials import Material
 from ..specimen.quantities import quantity
@@ -23,25 +22,18 @@ def refuse(who: str, parameters: dict, names: tuple, reason: str) -> None:
         raise StudyError(wrong)
 
 
-def contacts(who: str, parameters: dict, name: str, value: float) -> tuple[xr.Dataset, Again]:
-    """Contacts with these inputs, of which one is any value: no warning of these contacts is shown."""
-    physical = Request.in_python(parameters, [], False, {}).physical
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        try:
-            any_ = ("1 nN" if name == "P" else "1 um") if physical else value
-            contact = solve(**parameters, **{name: any_}, x=2, profiles=False)
-        except StudyError as error:
-            raise StudyError(message.replace("solve: ", f"{who}: ", 1) for message in error.messages) from None
-    again = Again.of(contact, who)
-    refuse_without_stresses(again, who)
-    return contact, again
+def of_inputs(who: str, parameters: dict, name: str, value: float) -> Contacts:
+    """The contacts with these inputs and any value of one more, `value` where they have no units. None is solved."""
+    any_value = AnyValue(value, "1 nN" if name == "P" else "1 um")
+    contacts = Contacts.of(unsolved(who, parameters | {name: any_value}), who)
+    contacts.refuse_without_stresses(who)
+    return contacts
 
 
-def of_dataset(who: str, contact: Any, strengths: dict[str, Any], left_out: tuple) -> tuple[xr.Dataset, Again]:
+def of_dataset(who: str, contact: Any, strengths: dict[str, Any], left_out: tuple) -> Contacts:
     """The contacts of a dataset with these `strengths`, in place of its own. left_out : what is looked for, and is no
     dimension of the answer."""
-    Again.of(contact, who)  # refuses what is no dataset of contacts
+    refuse_no_results(contact, who)
     contact = contact.isel({name: 0 for name in left_out if name in contact["status"].dims})
     for name, strength in strengths.items():
         value, spread = _strength(who, name, strength, "R" in contact.coords)
@@ -49,9 +41,9 @@ def of_dataset(who: str, contact: Any, strengths: dict[str, Any], left_out: tupl
         contact = contact.drop_vars(f"{name}_spread", errors="ignore").assign_coords({name: ((), value, about)})
         if spread:
             contact = contact.assign_coords({f"{name}_spread": ((), spread, about)})
-    again = Again.of(contact, who)
-    refuse_without_stresses(again, who)
-    return contact, again
+    contacts = Contacts.of(contact, who)
+    contacts.refuse_without_stresses(who)
+    return contacts
 
 
 def _strength(who: str, name: str, strength: Any, physical: bool) -> tuple[float, float]:

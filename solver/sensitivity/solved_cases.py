@@ -18,7 +18,7 @@ _SMOOTH = (Model.SMOOTH_LAYER_ALONE, Model.SMOOTH_THIN_LAYER)
 
 
 @batch.of_cases
-class Held(NamedTuple):
+class SolvedCases(NamedTuple):
     """Cases whose base is the one that was used.
 
     named : Problem, with the name of that base
@@ -33,9 +33,9 @@ class Held(NamedTuple):
     added: np.ndarray
 
 
-def held(scaled, used):
-    """:class:`Held` of a problem in units R = E2* = 1; used : (B,), the :class:`~solver.solution.Model` of each case.
-    The base "auto" stays at the model that it chose."""
+def solved_cases(scaled, used):
+    """:class:`SolvedCases` of a problem in units R = E2* = 1; used : (B,), the :class:`~solver.solution.Model` of each
+    case. The base "auto" stays at the model that it chose."""
     auto, thin, exact = is_chosen(scaled.base), np.isin(used, _THIN), np.isin(used, _EXACT)
     alone, added = auto & ~thin & ~exact, auto & np.isin(used, _SMOOTH) & scaled.rough()
     of_model = np.select([thin, exact], ["thin_layer", "layered"], "half_space")
@@ -48,4 +48,4 @@ def held(scaled, used):
         model_check="closed_form",
     )
     moved = with_a_stiff_base(with_rigid_punch(named))
-    return Held(named, dimensionless(moved), moved.E2, added)
+    return SolvedCases(named, dimensionless(moved), moved.E2, added)

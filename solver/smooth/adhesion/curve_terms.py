@@ -12,9 +12,9 @@ from ...body import BODIES
 from ...body.graded import is_graded
 from ...scaling import dimensionless, with_rigid_punch
 from ...shapes import shape_of
-from ..equation import respond
+from ..galerkin import respond
 from ..radius import Radii
-from ..tabulated import where_slow
+from ..tabulated_body import where_slow
 from .jkr import Jkr
 from .maugis import Maugis, ring_stress
 
@@ -22,7 +22,7 @@ from .maugis import Maugis, ring_stress
 _SUBLAYERS = (4, 8)
 
 
-class Apart(NamedTuple):
+class CurveTerms(NamedTuple):
     """P₀, D₀, pull_P and pull_D, in units R = E2* = 1: `values` (4, B, m), and their derivatives `slopes` (4, B, m) by
     the variable of :class:`~..radius.Radii`. What a contact does not have is NaN."""
 
@@ -30,18 +30,18 @@ class Apart(NamedTuple):
     slopes: np.ndarray
 
 
-def apart(problem, x):
-    """:class:`Apart` of B contacts with w > 0, of one base, shape and law of adhesion, in units R = E2* = 1.
+def curve_terms(problem, x):
+    """:class:`CurveTerms` of B contacts with w > 0, of one base, shape and law of adhesion, in units R = E2* = 1.
 
     x : (B, m), at which radii; the load, depth or radius of the problem do not count
     """
     if not is_graded(problem).any():
-        return _apart(problem, x)
-    few, many = (_apart(problem.but(sublayers=np.full(len(problem), count)), x) for count in _SUBLAYERS)
-    return Apart(*((4 * more - less) / 3 for less, more in zip(few, many, strict=True)))
+        return _curve_terms(problem, x)
+    few, many = (_curve_terms(problem.but(sublayers=np.full(len(problem), count)), x) for count in _SUBLAYERS)
+    return CurveTerms(*((4 * more - less) / 3 for less, more in zip(few, many, strict=True)))
 
 
-def _apart(problem, x):
+def _curve_terms(problem, x):
     rigid = with_rigid_punch(problem)
     part, (rows, points) = dimensionless(rigid), x.shape
     shape, body = shape_of(part), where_slow(BODIES[str(part.base[0])](part))
@@ -50,7 +50,7 @@ def _apart(problem, x):
         a, da = Radii(shape).at(x.ravel(), index)
         values, slopes = _at(part.take(index), shape.take(index), body.take(index), a)
     unit = np.stack([rigid.E2, np.ones(rows)] * 2)[:, :, None]  # R is 1
-    return Apart(values.reshape(4, rows, points) * unit, (slopes * da).reshape(4, rows, points) * unit)
+    return CurveTerms(values.reshape(4, rows, points) * unit, (slopes * da).reshape(4, rows, points) * unit)
 
 
 def _at(part, shape, body, a):

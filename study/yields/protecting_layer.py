@@ -9,11 +9,12 @@ import xarray as xr
 from solver.bases import is_bare
 from solver.yields.protect import protection
 
-from ..again import Again, strengths
-from ..fields import carried, friction, refuse_both, units_of
+from ..data.body_strengths import strengths
+from ..data.contacts import Contacts
+from ..fields import carried, friction, refuse_both
 from ..inputs.definition import StudyError
-from .asked import contacts, of_dataset, own_materials, refuse, without_control
-from .first import about_of, labelled
+from .first_yield import about_of, labelled
+from .yielding_contacts import of_dataset, of_inputs, own_materials, refuse, without_control
 
 
 def h_protect(
@@ -53,18 +54,18 @@ def h_protect(
     given = {} if Y2 is None else {"Y2": Y2}
     if contact is not None:
         refuse_both("h_protect", contact, parameters | ({} if P is None else {"P": P}))
-        contact, again = of_dataset("h_protect", contact, given, ("h",))
-        again = _under_its_load(contact, again)
+        contacts = _under_its_load(of_dataset("h_protect", contact, given, ("h",)))
     else:
-        contact, again = _of_inputs(P, parameters, given)
-    if np.any(is_bare(again.problem.base)):
+        contacts = _of_inputs(P, parameters, given)
+    problem = contacts.problem
+    if np.any(is_bare(problem.base)):
         raise StudyError(['h_protect: base = "half_space" has no layer that could protect it'])
-    known = strengths(contact, again, own_materials(parameters))["body"]
-    if np.isnan(known[again.problem.n > 0]).any():
+    known = strengths(contacts, own_materials(parameters))["body"]
+    if np.isnan(known[problem.n > 0]).any():
         raise StudyError(["h_protect needs Y2, the yield strength of the body: it is not given, or not known of it"])
-    stiff = again.problem.n == 0
-    found = protection(again.problem.but(n=np.where(stiff, 1.0, again.problem.n)), np.where(stiff, np.nan, known), mu)
-    _, size = units_of(again)
+    stiff = problem.n == 0
+    found = protection(problem.but(n=np.where(stiff, 1.0, problem.n)), np.where(stiff, np.nan, known), mu)
+    _, size = contacts.units
     lacking = found.unsolved & np.isnan(found.protects)
     words = {
         "h_protect": ("thickness above which the body does not yield", found.protects, lacking),
@@ -72,31 +73,31 @@ def h_protect(
     }
     variables = {}
     for name, (long_name, values, unsolved) in words.items():
-        about = about_of(again, long_name, (0, 1))
+        about = about_of(contacts, long_name, (0, 1))
         if np.isnan(values).any():
             count = int(np.isnan(values).sum())
             reason = "contacts on the way have no solution" if unsolved.any() else "there is no such thickness"
             about["message"] = f"{name} of {count} of {values.size} cases: {reason}"
-        variables[name] = labelled(again, values * size, about)
-    return without_control(carried(contact, variables), "h")
+        variables[name] = labelled(contacts, values * size, about)
+    return without_control(carried(contacts.dataset, variables), "h")
 
 
-def _of_inputs(P: Any, parameters: dict, strengths: dict) -> tuple[xr.Dataset, Again]:
+def _of_inputs(P: Any, parameters: dict, strengths: dict) -> Contacts:
     if P is None:
         raise StudyError(["h_protect: give the load P, or a contact, which is a dataset of study.solve"])
     refuse("h_protect", parameters, ("h",), "it is what is looked for")
     refuse("h_protect", parameters, ("a", "D", "cases"), "the load P is given")
     if np.any(is_bare(np.asarray(parameters.get("base", "layered")))):
         raise StudyError(['h_protect: base = "half_space" has no layer that could protect it'])
-    return contacts("h_protect", parameters | {"P": P} | strengths, "h", 0.01)
+    return of_inputs("h_protect", parameters | {"P": P} | strengths, "h", 0.01)
 
 
-def _under_its_load(contact: xr.Dataset, again: Again) -> Again:
+def _under_its_load(contacts: Contacts) -> Contacts:
     """The contacts with P given, whatever controlled them."""
-    if again.problem.control == "P":
-        return again
-    if "P" not in contact:
+    if contacts.problem.control == "P":
+        return contacts
+    if "P" not in contacts.dataset:
         raise StudyError(["h_protect: the dataset has no load P"])
-    stress, size = units_of(again)
-    load = np.broadcast_to(contact["P"].transpose(*again.dims).values, again.shape).ravel() / (stress * size**2)
-    return again._replace(problem=replace(again.problem, control="P", value=load))
+    stress, size = contacts.units
+    load = contacts.column(contacts.dataset["P"].variable) / (stress * size**2)
+    return contacts._replace(problem=replace(contacts.problem, control="P", value=load))

@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from study.work.second import Second
+from study.work.second_process import SecondProcess
 
 
 @pytest.fixture
@@ -13,7 +13,7 @@ def second(request):
     made = []
 
     def start(function, tasks):
-        made.append(Second(function, tasks))
+        made.append(SecondProcess(function, tasks))
         return made[-1]
 
     yield start

@@ -29,7 +29,7 @@ NO_PART = "is no part of the study as it is; move it away"
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class WindowFiles:
     """The files of the windows of a study.
 
     conditions : of the file of each window
@@ -172,17 +172,17 @@ def add_counts(total: dict[int, int], counts: dict[int, int]) -> None:
         total[status] = total.get(status, 0) + number
 
 
-def glance(store: Store) -> State:
+def glance(store: Store) -> WindowFiles:
     """The state by what the files say of themselves; of a file of up to LAZY bytes in memory all is read."""
     return _state(store, LAZY, lambda window, identity: examine(window.path, identity, 0))
 
 
-def verified(store: Store) -> State:
+def verified(store: Store) -> WindowFiles:
     """The state with all numbers compared with their digests."""
     return _state(store, inf, lambda window, identity: examine(window.path, identity))
 
 
-def checked(store: Store, before: State | None = None) -> State:
+def checked(store: Store, before: WindowFiles | None = None) -> WindowFiles:
     """The state with all bytes read: of many files by the seal, or by the digest where another program has removed it.
 
     before : the state of a moment ago; it is returned if no file has changed since
@@ -201,7 +201,9 @@ def checked(store: Store, before: State | None = None) -> State:
     return before if same else state
 
 
-def _state(store: Store, most: float, look: Callable, unless_changed: Callable = lambda path, look: look()) -> State:
+def _state(
+    store: Store, most: float, look: Callable, unless_changed: Callable = lambda path, look: look()
+) -> WindowFiles:
     """The state.
 
     most : bytes in memory of a single file up to which all of it is read
@@ -211,11 +213,13 @@ def _state(store: Store, most: float, look: Callable, unless_changed: Callable =
     definition = store.definition
     # a single file may be there of a large study too, if a former version has made it
     if not is_large(definition) or belongs(definition, _of_one_file(store, 0)):
-        return State(store, [whole_window(store)], [unless_changed(store.path, partial(_of_one_file, store, most))])
+        return WindowFiles(
+            store, [whole_window(store)], [unless_changed(store.path, partial(_of_one_file, store, most))]
+        )
     windows = windows_of(store)
     conditions = list(map(look, windows, identities(store, windows)))
     others = sorted({*store.parts.glob("*.nc")} - {window.path for window in windows})
-    return State(store, windows, conditions, others, divisions(definition, windows))
+    return WindowFiles(store, windows, conditions, others, divisions(definition, windows))
 
 
 def _of_one_file(store: Store, most: float) -> Condition:

@@ -9,7 +9,7 @@ from .cases import Failure
 from .processes import Processes
 
 
-class Second:
+class SecondProcess:
     """Tasks `function(*arguments)`, by their names in order. The process is started for the last one, and ends with the
     caller, or when `end` is called.
 

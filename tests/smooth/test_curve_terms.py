@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from solver import Problem, solve
 from solver.shapes import shape_of
-from solver.smooth.adhesion.apart import apart
+from solver.smooth.adhesion.curve_terms import curve_terms
 from solver.smooth.radius import Radii
 
 LAYER = {"h": 0.3, "nu1": 0.45, "bonding": "bonded"}
@@ -28,12 +28,12 @@ def test_differences_are_the_contact(name):
     inputs, rtol = CASES[name]
     asked = Problem.of(a=np.full(3, 0.2), w_adhesion=np.array([1e-6, 1e-5, 1e-4]), micro="smooth", **inputs)
     x = Radii(shape_of(asked)).of(asked.value)[:, None]
-    parts = apart(asked, x)
+    parts = curve_terms(asked, x)
     solved = solve(asked, np.array([0.0]))
     assert np.isfinite(solved.P).all()
     P, D = (parts.values[i] - parts.values[i + 2] for i in (0, 1))
     assert_allclose(P[:, 0], solved.P, rtol=rtol, atol=0)
     assert_allclose(D[:, 0], solved.D, rtol=rtol, atol=0)
-    more, less = apart(asked, x + 1e-4), apart(asked, x - 1e-4)
+    more, less = curve_terms(asked, x + 1e-4), curve_terms(asked, x - 1e-4)
     slopes = (more.values - less.values) / 2e-4
     assert_allclose(parts.slopes, slopes, rtol=1e-5, atol=1e-6 * np.abs(parts.values).max())

@@ -13,7 +13,7 @@ from ..bases import is_exact, named
 from ..body.graded import contrast
 from ..kernels.two_layers import layer_modulus
 from ..laws import LAWS
-from ..laws.cell.law import end
+from ..laws.cell.cell_law import end
 from ..problem import far_apart
 from ..scaling import dimensionless, law_of, of_one_law
 

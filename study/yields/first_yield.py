@@ -11,12 +11,13 @@ from solver.yields.crossing import NUMBERS, Crossing
 from solver.yields.first import first_yield as crossing_of
 from solver.yields.reach import STEEPEST
 
-from ..again import Again, of_all_cases, strengths
-from ..fields import carried, friction, refuse_both, residual_stress, units_of
+from ..data.body_strengths import strengths
+from ..data.contacts import Contacts
+from ..fields import carried, friction, refuse_both, residual_stress
 from ..inputs.vocabulary import CONTROLS
 from ..rules.rule import validity_attributes
-from .asked import contacts, control_of, of_dataset, own_materials, refuse, without_control
-from .beyond import said_of, validity_at
+from .model_validity import said_of, validity_at
+from .yielding_contacts import control_of, of_dataset, of_inputs, own_materials, refuse, without_control
 
 BODIES = {"layer": "_Y1", "body": "_Y2", "asperities": "_Ya", "punch": "_Y_punch"}
 """What may yield, in the order of the codes of `first_yield` -> the end of the names of its numbers."""
@@ -85,17 +86,17 @@ def first_yield(
     given = {name: value for name, value in given.items() if value is not None}
     if contact is not None:
         refuse_both("first_yield", contact, parameters)
-        contact, again = of_dataset("first_yield", contact, given, CONTROLS)
-        name = control_of(contact)
+        contacts = of_dataset("first_yield", contact, given, CONTROLS)
+        name = control_of(contacts.dataset)
     else:
         refuse("first_yield", parameters, (*CONTROLS, "cases"), "it is what is looked for")
         name = "P" if "flat_radius" in parameters else "a"  # any value that a flat end allows
-        contact, again = contacts("first_yield", parameters | given, name, 1e-3)
-    stress, _ = units = units_of(again)
-    own, problem = own_materials(parameters), again.problem
-    known, spreads = (strengths(contact, again, own, spread) for spread in (False, True))
-    residual = residual_stress(sigma_res, again) / stress
-    nu_punch = _of_cases(contact, again, "nu_punch", 0.3)
+        contacts = of_inputs("first_yield", parameters | given, name, 1e-3)
+    stress, _ = contacts.units
+    own, problem = own_materials(parameters), contacts.problem
+    known, spreads = (strengths(contacts, own, spread) for spread in (False, True))
+    residual = residual_stress(sigma_res, contacts) / stress
+    nu_punch = contacts.coordinate("nu_punch", 0.3)
     variables, loads = {}, []
     for body, end in BODIES.items():
         strength = np.where(_there(problem, body), known[body], np.nan)
@@ -106,14 +107,14 @@ def first_yield(
         found = np.where(crossing.crossed, 0, np.where(np.isnan(known[body]), 2, 1))
         found = np.where((body == "asperities") & ~_there(problem, "asperities"), 3, found).astype(np.int8)
         loads.append(np.where(crossing.crossed, crossing.numbers["P"], np.inf))
-        variables |= _variables(again, units, body, end, crossing, found)
+        variables |= _variables(contacts, body, end, crossing, found)
         if np.any(spreads[body] > 0):
-            variables |= _spreads(again, units, body, end, crossing, spreads[body] / known[body])
+            variables |= _spreads(contacts, body, end, crossing, spreads[body] / known[body])
     loads = np.array(loads)
     first = np.where(np.isfinite(loads).any(axis=0), 1 + loads.argmin(axis=0), 0).astype(np.int8)
     about = _flags("what yields first", ("not_known", *BODIES))
-    variables["first_yield"] = labelled(again, first, about)
-    return without_control(carried(contact, variables), name)
+    variables["first_yield"] = labelled(contacts, first, about)
+    return without_control(carried(contacts.dataset, variables), name)
 
 
 def _there(problem: Any, body: str) -> np.ndarray:
@@ -123,43 +124,36 @@ def _there(problem: Any, body: str) -> np.ndarray:
     return {"layer": ~bare, "body": bare | (problem.n > 0), "asperities": rough, "punch": problem.m > 0}[body]
 
 
-def _of_cases(contact: xr.Dataset, again: Again, name: str, default: float) -> np.ndarray:
-    if name not in contact.coords:
-        return np.full(len(again.problem), default)
-    array = contact[name]
-    return of_all_cases(xr.DataArray(array.values, dims=array.dims), again.dims, again.shape).astype(float)
-
-
-def _variables(again: Again, units: tuple, body: str, end: str, crossing: Crossing, found: np.ndarray) -> dict:
+def _variables(contacts: Contacts, body: str, end: str, crossing: Crossing, found: np.ndarray) -> dict:
     where, made = f"at which the {body} first yield{'' if body == 'asperities' else 's'}", {}
-    stress, size = units
+    stress, size = contacts.units
     for name in NUMBERS:
         i, j = _POWERS[name]
-        about = about_of(again, f"{_LONG_NAMES[name]} {where}", (i, j))
-        made[f"{name}{end}"] = labelled(again, crossing.numbers[name] * stress**i * size**j, about)
-    made[f"r{end}"] = labelled(again, crossing.r, {"long_name": f"radius of the place {where}, over a"})
-    made[f"z{end}"] = labelled(again, crossing.z, {"long_name": f"depth of the place {where}, over a"})
-    round_ = np.isin(again.problem.shape, ROUND)
+        about = about_of(contacts, f"{_LONG_NAMES[name]} {where}", (i, j))
+        made[f"{name}{end}"] = labelled(contacts, crossing.numbers[name] * stress**i * size**j, about)
+    made[f"r{end}"] = labelled(contacts, crossing.r, {"long_name": f"radius of the place {where}, over a"})
+    made[f"z{end}"] = labelled(contacts, crossing.z, {"long_name": f"depth of the place {where}, over a"})
+    round_ = np.isin(contacts.problem.shape, ROUND)
     words = (FOUND if round_.all() else _FOUND_OF_SHAPES) + (_NO_ASPERITIES,) * (body == "asperities")
-    made[f"found{end}"] = labelled(again, found, _flags(f"whether the load {where} was found", words))
+    made[f"found{end}"] = labelled(contacts, found, _flags(f"whether the load {where} was found", words))
     if found.any():
         made[f"P{end}"].attrs["message"] = _message(body, found, crossing.unsolved, round_.all())
-    flags = validity_at(again, crossing)
-    made[f"validity{end}"] = labelled(again, flags, _about_validity(body))
+    flags = validity_at(contacts, crossing)
+    made[f"validity{end}"] = labelled(contacts, flags, _about_validity(body))
     sharp = bool(((found == 0) & (crossing.numbers["P"] == 0) & ~round_).any())
     if comment := ". ".join(text for text in (_SHARP * sharp, said_of(flags)) if text):
         made[f"P{end}"].attrs["comment"] = comment
     return made
 
 
-def _spreads(again: Again, units: tuple, body: str, end: str, crossing: Crossing, relative: np.ndarray) -> dict:
+def _spreads(contacts: Contacts, body: str, end: str, crossing: Crossing, relative: np.ndarray) -> dict:
     """P_Y1_spread and so on: what the spread of the strength alone makes."""
-    made, (stress, size) = {}, units
+    made, (stress, size) = {}, contacts.units
     for name in NUMBERS:
         i, j = _POWERS[name]
         spread = np.abs(crossing.by_strength[name]) * crossing.numbers[name] * relative * stress**i * size**j
         words = f"standard deviation of {name}{end}, from the spread of the strength of the {body} alone"
-        made[f"{name}{end}_spread"] = labelled(again, spread, about_of(again, words, (i, j)))
+        made[f"{name}{end}_spread"] = labelled(contacts, spread, about_of(contacts, words, (i, j)))
     return made
 
 
@@ -191,10 +185,10 @@ def _flags(long_name: str, words: tuple) -> dict[str, Any]:
     }
 
 
-def about_of(again: Again, long_name: str, powers: tuple[int, int]) -> dict[str, str]:
+def about_of(contacts: Contacts, long_name: str, powers: tuple[int, int]) -> dict[str, str]:
     unit, scale = _UNITS[powers]
-    return {"long_name": long_name} | ({"units": unit} if again.scene else {"scale": scale})
+    return {"long_name": long_name} | ({"units": unit} if contacts.scene else {"scale": scale})
 
 
-def labelled(again: Again, values: np.ndarray, about: dict) -> xr.Variable:
-    return xr.Variable(again.dims, values.reshape(again.shape), about)
+def labelled(contacts: Contacts, values: np.ndarray, about: dict) -> xr.Variable:
+    return xr.Variable(contacts.dims, values.reshape(contacts.shape), about)

@@ -23,7 +23,7 @@ from ..shapes.shape import Shape
 from ..solution import Solution
 from ..status import Status
 from . import newton
-from .equation import Evaluation, State, control_gradient, evaluate, groups
+from .equation import Evaluation, Unknowns, control_gradient, evaluate, groups
 from .error import completed
 from .panels import GOALS, ORDER, resolve
 from .results import interpolate, judged_difference, profiles, quantities
@@ -94,7 +94,7 @@ def first_guess(case, a, mesh):
         q = 1 / (1 / smooth + 1 / case.law.sparse(2 * value / a**2 / Z))
     y = case.law.guess(q)
     tau = (Z * case.law.evaluate(y).g)[:, 0]
-    return evaluate(case._replace(shape=AsFlat(tau, case.shape)), State(y, eta), mesh)
+    return evaluate(case._replace(shape=AsFlat(tau, case.shape)), Unknowns(y, eta), mesh)
 
 
 def tangent(ev):
@@ -158,7 +158,7 @@ def step(now):
     d_tau = np.clip(-(ev.G + (by_q * dq).sum(axis=1)) / growth, -1.0, 1.0)
     y = ev.state.y + (dq + along * d_tau[:, None]) / ev.curve.dq
     cases = ev.cases._replace(shape=AsFlat(ev.cases.shape.tau * np.exp(d_tau), ev.cases.shape.shape))
-    state = State(cases.law.limit(y, ev.state.y), ev.state.eta)
+    state = Unknowns(cases.law.limit(y, ev.state.y), ev.state.eta)
     return Now(evaluate(cases, state, ev.mesh, ev.operator), now.missed)
 
 
@@ -170,7 +170,7 @@ def iterate(ev, limit):
 
 def on_mesh(ev, mesh, y):
     """The equation of `ev` on another mesh, with y (1, n) at its nodes."""
-    return evaluate(ev.cases, State(y, ev.state.eta), mesh)
+    return evaluate(ev.cases, Unknowns(y, ev.state.eta), mesh)
 
 
 def solve_flat(cases, rtol, nodes, limit, x):

@@ -34,13 +34,13 @@ def panel_ends(shape, a):
         yield index, np.hstack([np.zeros((len(index), 1)), inner, np.ones((len(index), 1))])
 
 
-def rises(shape, a, size):
+def lifted_drop(shape, a, size):
     """F(a) - F(t) in the basis of `size` functions, (B, N)."""
     out = np.empty((len(a), size))
     even = shape.even
     for index in (np.flatnonzero(even), np.flatnonzero(~even)):
         if len(index):
-            part = _even_rises if even[index[0]] else _kinked_rises
+            part = _even_drop if even[index[0]] else _kinked_drop
             step = max(1, _TOGETHER // (max(8, shape.kinks().shape[1]) * (size + _MORE)))
             for low in range(0, len(index), step):
                 rows = index[low : low + step]
@@ -48,7 +48,7 @@ def rises(shape, a, size):
     return out
 
 
-def _even_rises(shape, a, size):
+def _even_drop(shape, a, size):
     tau, weighted = _even_rule(size)
     return in_blocks(shape.lifted(column(a)) - shape.lifted(column(a) * tau), weighted)
 
@@ -61,7 +61,7 @@ def _even_rule(size):
     return tau, (legendre(tau, size) * w).T
 
 
-def _kinked_rises(shape, a, size):
+def _kinked_drop(shape, a, size):
     out = np.empty((len(a), size))
     for index, ends in panel_ends(shape, a):
         counts = _MORE + np.ceil(2 * size * longest(np.arccos(ends))).astype(int)

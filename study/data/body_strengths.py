@@ -1,0 +1,66 @@
+"""The yield strengths of the bodies and asperities of contacts, in the unit of the solver."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+
+import numpy as np
+
+from solver.bases import is_bare
+from solver.laws.elastic_plastic import TABOR
+
+from ..rules.strength import first, softer
+from ..specimen.materials import Material, Strength, known_strength
+from .contacts import Contacts, without_coordinates
+from .dataset import STRENGTHS
+from .si import OF_USERS
+
+
+def strengths(contacts: Contacts, materials: Mapping[str, Material], spread: bool = False) -> dict:
+    """Yield strength of the layer, body, punch and asperities, (B,) each in the unit of E2; NaN where it is not known.
+
+    Asperities have that of the softer of the two surfaces. A hardness is 2.84 yield strengths.
+
+    materials : those of the call by name; the table of materials need not have them
+    spread : give standard deviations instead, 0 for an input without one
+    """
+    known = known_strengths(contacts, materials)
+    return {who: np.where(np.isnan(value), np.nan, (value, sd)[spread]) for who, (value, sd, _) in known.items()}
+
+
+def known_strengths(contacts: Contacts, materials: Mapping[str, Material]) -> dict[str, list]:
+    """The same as a list of the strength, its standard deviation and whether it is from hardness, (B,) each."""
+    named = {body: _of_materials(contacts, body, materials) for body in STRENGTHS}
+    no = np.zeros(len(contacts.problem), dtype=bool)
+    inputs = {name: [contacts.problem.parameters[name], _spread(contacts, name), no] for name in _INPUTS}
+    yields = {body: first(inputs[name], named[body]) for body, name in STRENGTHS.items()}
+    bare, elastic = is_bare(contacts.problem.base), contacts.problem.m > 0
+    hard = [inputs["hardness"][0] / TABOR, inputs["hardness"][1] / TABOR, ~no]
+    of_spots = softer(named["layer"], named["body"], named["punch"], bare, elastic)
+    return yields | {"asperities": first(first(inputs["yield_strength"], hard), of_spots)}
+
+
+_INPUTS = (*STRENGTHS.values(), "hardness", "yield_strength")
+
+
+def _spread(contacts: Contacts, name: str) -> np.ndarray:
+    """In the unit of E2, (B,)."""
+    stress, _ = contacts.units
+    return np.nan_to_num(contacts.coordinate(f"{name}_spread", 0.0)) / stress
+
+
+def _of_materials(contacts: Contacts, body: str, materials: Mapping[str, Material]) -> list:
+    """Strength, standard deviation and whether it is from hardness, (B,) each, the first two in the unit of E2."""
+    cases, dataset = len(contacts.problem), contacts.dataset
+    if body not in dataset.coords or contacts.scene is None:
+        return [np.full(cases, np.nan), np.zeros(cases), np.zeros(cases, bool)]
+    names = contacts.column(without_coordinates(dataset[body])).astype(str)
+    of_users = {name: Strength(*row) for name, row in json.loads(dataset[body].attrs.get(OF_USERS, "{}")).items()}
+    by_name = {
+        name: known_strength(materials[name]) if name in materials else of_users.get(name) or known_strength(name)
+        for name in np.unique(names).tolist()
+    }
+    values, spreads, hard = (np.array(column) for column in zip(*(by_name[name] for name in names), strict=True))
+    stress, _ = contacts.units
+    return [values / stress, spreads / stress, hard.astype(bool)]

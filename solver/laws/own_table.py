@@ -39,6 +39,8 @@ HEIGHTS, _MOST = ("z", "share"), 32
 #: A table of a law: its fewest rows, and the highest degree of a polynomial. A polynomial within _NEAR of the rows is
 #: near enough, and needs no higher degree; one farther than _FAR from a row is refused. Both are relative distances.
 _FEWEST, _DEGREE, _NEAR, _FAR = 5, 14, 1e-4, 0.05
+#: So far the curves may be from the rows of a scan: these have steps where few points touch, and `error` says it.
+_OF_SCAN = 0.3
 #: The lowest degree is taken that is at most this times as far from the rows as the best: higher ones follow the noise.
 _HARDLY = 1.5
 #: The error of a curve between the rows is taken to be this times its distance from the curve one degree lower, at
@@ -202,15 +204,16 @@ def in_metres(law):
 def fitted_law(name, p, A, lam, p_max, metres=False, error=0.0, body=None):
     """:class:`~solver.laws.law.Law` near the rows (n,) of a table that has been checked.
 
-    metres : whether A is in m, else in R; error : of the rows themselves, so far from which the curves may be; body :
+    metres : whether A is in m, else in R; error : of the rows themselves, the curves may be so far from them; body :
         on which they hold, parameter -> number or word, lengths in m
     """
     beta = np.clip(np.log(A[1] / A[0]) / np.log(p[1] / p[0]), *_BETA)
     s, q = 2 / beta - 1, p / p[-1]
     t = t_of(q, s)
     quantities = (("A", A / A[-1], 2), ("lam", lam, 2), ("p_max", (p_max - p) / p[-1], 1))
-    curves = [_curve(column, t, q, X, power, max(_FAR, error)) for column, X, power in quantities]
     stated = json.dumps([error, body], sort_keys=True) * bool(error or body)
+    allowed = max(_OF_SCAN, error) if stated else _FAR
+    curves = [_curve(column, t, q, X, power, allowed) for column, X, power in quantities]
     return law_of(
         LawTable(*(curve for curve, _ in curves), s),
         name=name,

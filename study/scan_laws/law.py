@@ -21,11 +21,12 @@ from .patch import Patch, Pressing, patch_of
 __all__ = ["ScanLaw", "law"]
 
 #: Without pressures the law goes from the first contact fraction to the second, from row to row by this factor of p.
-_LEAST, _MOST, _FACTOR = 1e-3, 0.6, 1.38
+#: It begins where at least so many points touch: with fewer of them λ goes in steps that no smooth curve follows.
+_LEAST, _MOST, _FACTOR, _POINTS = 1e-3, 0.6, 1.38, 16
 #: λ over p/(E* h') where few points touch; the first row is sought in at most so many steps, to this factor.
 _STIFF, _SEARCH, _NEAR = 2.0, 6, 1.3
-#: Most rows, and fewest that a law has.
-_ROWS, _FEWEST = 40, 5
+#: Most rows.
+_ROWS = 40
 #: Rows at which the patch is compared with its quarters and with half of its points, and the λ from which they count:
 #: below, a few spots carry all, and no other patch has the same ones.
 _COMPARED, _COUNTS = 4, 0.01
@@ -139,7 +140,7 @@ def law(
     Parameters
     ----------
     scan : a map of heights without gaps, of `read`, `height_map` or `self_affine`
-    pressures : (n,), n >= 5, nominal pressures over E1*, > 0; None: those with λ from 0.001 to 0.6
+    pressures : (n,), n >= 5, nominal pressures over E1*, > 0; None: those with λ from 0.001, or 16 points, to 0.6
     on : inputs of `study.solve` of what is pressed: h, n or E1 and E2, nu1, nu2, bonding, or `layers`; E_punch or m.
         Lengths have units. Then contacts on another body are refused. None: a half-space of E1*
     periodic : "mirror", the scan beside its mirror images; "taper", the scan with borders of an eighth that go to the
@@ -163,7 +164,7 @@ def law(
     >>> surface = roughness.self_affine((64, 64), "0.5 um", hurst=0.8, rms="20 nm", seed=3)
     >>> of_scan = roughness.law(surface, periodic="given", progress=False)
     >>> print(len(of_scan.p), f"{of_scan.lam[0]:.4f} {of_scan.lam[-1]:.2f}")
-    19 0.0007 0.61
+    18 0.0039 0.66
     """
     body = body_of(on, "law")
     patch = patch_of(scan, form, cutoff, periodic, refine, "law")
@@ -200,7 +201,7 @@ def _wanted(pressures: Any) -> np.ndarray:
 def _first(patch: Patch, body: Body, name: str) -> float:
     """The pressure at which about _LEAST of the points touch, over the modulus that is felt."""
     pressing = Pressing(patch, body.kernel)
-    p, fewest = _LEAST * patch.slope / _STIFF, max(_LEAST, 4 / patch.z.size)
+    p, fewest = _LEAST * patch.slope / _STIFF, max(_LEAST, _POINTS / patch.z.size)
     for _ in range(_SEARCH):
         _, lam, _ = pressing.at(p, name)
         if fewest / _NEAR <= lam <= fewest * _NEAR:

@@ -13,11 +13,11 @@ PRESSURE = 0.004
 _BLUE, _RED = "#2878b8", "#dd5f21"
 
 
-@figure("scan_law", size=(TWO_COLUMNS, 2.9), panels=(1, 3))
+@figure("scan_law", size=(TWO_COLUMNS, 3.2), panels=(1, 3))
 def scan_law(panels) -> Columns:
     """A scan and its law: (a) heights of a random self-affine surface; (b) where it touches a flat body at the nominal
     pressure 0.004 E1*, pressures from light to dark; (c) contact fraction and largest pressure of the scan itself
-    (lines) and of spheres with the heights that are measured on it (dashes, `normal_heights`). Spheres touch less."""
+    (lines) and of spheres with the heights that are measured on it (dashes, `normal_heights`), which touch less from some ten spots on."""
     scan = roughness.self_affine(**SURFACE)
     of_scan = roughness.law(scan, periodic="given", form="mean", progress=False)
     of_spheres = spheres(scan, of_scan.p)

@@ -17,7 +17,8 @@ _BLUE, _RED = "#2878b8", "#dd5f21"
 def scan_law(panels) -> Columns:
     """A scan and its law: (a) heights of a random self-affine surface; (b) where it touches a flat body at the nominal
     pressure 0.004 E1*, pressures from light to dark; (c) contact fraction and largest pressure of the scan itself
-    (lines) and of spheres with the heights that are measured on it (dashes, `normal_heights`), which touch less from some ten spots on."""
+    (lines) and of spheres with the heights that are measured on it (dashes, `normal_heights`), which touch less
+    from some ten spots on."""
     scan = roughness.self_affine(**SURFACE)
     of_scan = roughness.law(scan, periodic="given", form="mean", progress=False)
     of_spheres = spheres(scan, of_scan.p)

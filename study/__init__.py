@@ -35,8 +35,9 @@ if TYPE_CHECKING:
     from .inverse.design import design
     from .inverse.design_choice import feasible, front
     from .inverse.fit import fit
+    from .scan_laws import roughness
     from .solving import solve
-    from .specimen import materials, roughness
+    from .specimen import materials
     from .yields.first_yield import first_yield
     from .yields.protecting_layer import h_protect
 
@@ -110,7 +111,7 @@ _MODULES = {
     "catalogue": "catalogue",
     "derived": "data.derived",
     "materials": "specimen.materials",
-    "roughness": "specimen.roughness",
+    "roughness": "scan_laws.roughness",
     "units": "data.units",
     "vocabulary": "inputs.vocabulary",
 }

@@ -73,6 +73,7 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("--out", type=folder, default="contact.html", metavar="FILE", help="default: contact.html")
     sub = command("lookup", "scan", "measure the asperities of a scan of a rough surface", "FILE")
     sub.usage = "%(prog)s FILE [NAME=VALUE ...]"
+    sub.add_argument("--law", type=folder, metavar="OUT.csv", help="write the micro law of the scan itself, no spheres")
     sub.epilog = "such as wafer.csv unit=um height_unit=nm cutoff='2.5 um'; all names: " + f"{program()} docs roughness"
     command("lookup", "materials_", "list the materials that are known by name; say all of one", "NAME", least="*")
     command("lookup", "docs", "list the pages of the documentation; show one: docs/model.md", "PAGE", least="*")

@@ -9,6 +9,7 @@ import numpy as np
 
 from solver import Problem, solve
 from solver import sensitivities as derivatives
+from solver.laws.own_table import LAW_UNIT
 from solver.layers import numbers_of
 
 from .arrays import xarray_later as xr
@@ -147,7 +148,7 @@ def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[
     values = scene.values
     unit = {"R"} if "R1" in values or scene.scale else set()
     names = [name for name in values if np.any(np.isfinite(values[name])) and name not in unit]
-    follow = {"n", "m", "table_unit", *(ratio for _, _, ratio in moduli_of(values))}
+    follow = {"n", "m", "table_unit", LAW_UNIT, *(ratio for _, _, ratio in moduli_of(values))}
     given = [name for name in scene.lexicon.parameters_of(scene.parameters) if name in scene.parameters]
     pure_numbers = [name for name in given if name not in {*values, *follow}]
     pure_numbers += ["n"] * ("E1" not in values) + ["m"] * ("E_punch" not in values)

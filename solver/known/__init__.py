@@ -134,14 +134,14 @@ class Known:
 
         Parameters
         ----------
-        micro : a name or a law, or several
+        micro : a name or a law, or several; or what has a law as its attribute `law`
         names : of parameters
 
         Raises
         ------
         ValueError : a table cannot be used; or something is not known, and a law of an entry point cannot be had
         """
-        known, words = self, _flat(micro)
+        known, words = self, [law_in(word) for word in _flat(micro)]
         for word in words:
             if isinstance(word, str) and word.startswith(own_table.PREFIX) and word not in self.laws:
                 known = known.with_law(own_table.read(word))
@@ -199,7 +199,14 @@ def names_of(micro: Any) -> Any:
     """The values of `micro`, or of a list of them, with names in place of laws."""
     if isinstance(micro, (list, tuple)):
         return [names_of(each) for each in micro]
+    micro = law_in(micro)
     return micro.name if isinstance(micro, Law) else micro
+
+
+def law_in(micro: Any) -> Any:
+    """The law of what has one, such as the law of a scan; everything else as it is."""
+    law = getattr(micro, "law", None)
+    return law if isinstance(law, Law) else micro
 
 
 def default() -> Known:

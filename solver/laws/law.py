@@ -10,7 +10,7 @@ its nodes. A :class:`Law` holds these functions and the parameters they depend o
 the law with the numbers of a batch of cases.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -90,6 +90,8 @@ class Law:
         loads; None where `on_body` is
     spot : (y, q, *own) -> b/Bbar of the largest spot; None: sqrt(λ)
     end : (*own) -> largest p/p* that the law knows, which depends on the case; None: there is none
+    body : parameter -> number or word, lengths in m, of the coated body on which a table holds that was computed on
+        one: a study refuses contacts on another; None: a half-space, whatever lies under it
     """
 
     name: str
@@ -118,6 +120,7 @@ class Law:
     cell: str | None = None
     spot: Callable | None = None
     end: Callable | None = None
+    body: Mapping | None = None
 
     @property
     def arguments(self) -> tuple[str, ...]:

@@ -3,21 +3,35 @@
 Smooth curves are laid near the rows. The law's `error` is the largest of two distances: of a row from the curve fitted
 to the others, and, between the rows, of the curve from one of a lower degree. Below the first row A is the power of p
 that goes through the first two rows. A table with the columns z and share is a histogram (``heights.py``).
+
+A column "A [um]", with a unit, has lengths in place of multiples of R. A line "# scan: {...}" above the heading, which
+the law of a scan writes, has the error of the rows and the body on which they hold, in JSON.
 """
 
 import csv
 import hashlib
+import json
+import re
 from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
 
 from ..numerics.userfile import NoFile, TooLarge, content
+from ..parameters import Parameter
 from . import heights
 from .tabulated import LawTable, fitted, law_of, t_of
 
 PREFIX = "table:"
 COLUMNS = ("p", "A", "lam", "p_max")
+#: What a law whose A is a length has as a parameter: the length, in the unit of R, that 1 in its column stands for.
+LAW_UNIT = "law_unit"
+_LAW_UNIT = Parameter(
+    interval="(0, inf)", powers=(0, 1), instead="", long_name="length that 1 in the table of the law stands for"
+)
+#: Units of length of the column A, in m; the beginning of the line that says what a law of a scan is.
+_UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9}
+_WITH_UNIT, STATED = re.compile(r"A \[(\w+)\]"), "# scan: "
 #: Most bytes of the file. 10,000 rows of 17 digits are 0.9 MB; the time and memory of the fit grow with their number.
 LARGEST = 10_000_000
 #: Columns of a histogram, and most of its rows: the time of its first use grows with their number.
@@ -25,6 +39,8 @@ HEIGHTS, _MOST = ("z", "share"), 32
 #: A table of a law: its fewest rows, and the highest degree of a polynomial. A polynomial within _NEAR of the rows is
 #: near enough, and needs no higher degree; one farther than _FAR from a row is refused. Both are relative distances.
 _FEWEST, _DEGREE, _NEAR, _FAR = 5, 14, 1e-4, 0.05
+#: So far the curves may be from the rows of a scan: these have steps where few points touch, and `error` says it.
+_OF_SCAN = 0.3
 #: The lowest degree is taken that is at most this times as far from the rows as the best: higher ones follow the noise.
 _HARDLY = 1.5
 #: The error of a curve between the rows is taken to be this times its distance from the curve one degree lower, at
@@ -79,11 +95,31 @@ def _text_of(path):
 def _of_text(name, text):
     """The law of a table. It is kept, because a study asks for it several times."""
     heading = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
-    if "share" in map(str.strip, heading.split(",")):
+    words = [word.strip() for word in heading.split(",")]
+    if "share" in words:
         return _histogram(name, **_columns(text, HEIGHTS, 2))
+    unit = next((match[1] for word in words if (match := _WITH_UNIT.fullmatch(word))), "")
+    if unit and unit not in _UNITS:
+        raise ValueError(f"column A: [{unit}] is no unit of length: one of {', '.join(_UNITS)}")
     columns = _columns(text, COLUMNS, _FEWEST)
     _check(**columns)
-    return fitted_law(name, **columns)
+    columns["A"] = columns["A"] * _UNITS.get(unit, 1.0)
+    return fitted_law(name, **columns, metres=bool(unit), **_stated(text))
+
+
+def _stated(text):
+    """Error and body of the rows of a law of a scan, by its line of JSON; nothing of another table."""
+    line = next((line for line in text.splitlines() if line.startswith(STATED)), None)
+    if line is None:
+        return {}
+    try:
+        stated = json.loads(line.removeprefix(STATED))
+        error, body = float(stated["error"]), dict(stated["body"] or {})
+        if not 0 <= error < np.inf or not all(isinstance(value, (str, float, int)) for value in body.values()):
+            raise ValueError
+    except (ValueError, KeyError, TypeError):
+        raise ValueError(f'the line "{STATED.strip()}" has been changed: write the table of the scan anew') from None
+    return {"error": error, "body": body}
 
 
 def _histogram(name, z, share):
@@ -106,7 +142,7 @@ def _digest(*columns):
 def _columns(text, names, fewest):
     """Name -> numbers (n,) of the columns of a table."""
     rows = [row for row in csv.reader(text.splitlines()) if row and not row[0].startswith("#")]
-    heading = [word.strip() for word in rows[0]] if rows else []
+    heading = [_WITH_UNIT.sub("A", word.strip()) for word in rows[0]] if rows else []
     missing = [name for name in names if heading.count(name) != 1]
     if missing:
         words = f"the heading must have it once, with {', '.join(names)}, separated by commas"
@@ -155,19 +191,37 @@ def _check(p, A, lam, p_max):
         raise ValueError(f"columns lam and p_max, rows 1 to {last + 1}: {words}")
 
 
-def fitted_law(name, p, A, lam, p_max):
-    """:class:`~solver.laws.law.Law` near the rows (n,) of a table that has been checked."""
+def of_rows(name, text):
+    """:class:`~solver.laws.law.Law` of a table that a program has written; ValueError as of :func:`read`."""
+    return _of_text(name, text)
+
+
+def in_metres(law):
+    """Whether a law is a table whose A is a length."""
+    return LAW_UNIT in law.parameters
+
+
+def fitted_law(name, p, A, lam, p_max, metres=False, error=0.0, body=None):
+    """:class:`~solver.laws.law.Law` near the rows (n,) of a table that has been checked.
+
+    metres : whether A is in m, else in R; error : of the rows themselves, the curves may be so far from them; body :
+        on which they hold, parameter -> number or word, lengths in m
+    """
     beta = np.clip(np.log(A[1] / A[0]) / np.log(p[1] / p[0]), *_BETA)
     s, q = 2 / beta - 1, p / p[-1]
     t = t_of(q, s)
     quantities = (("A", A / A[-1], 2), ("lam", lam, 2), ("p_max", (p_max - p) / p[-1], 1))
-    curves = [_curve(column, t, q, X, power) for column, X, power in quantities]
+    stated = json.dumps([error, body], sort_keys=True) * bool(error or body)
+    allowed = max(_OF_SCAN, error) if stated else _FAR
+    curves = [_curve(column, t, q, X, power, allowed) for column, X, power in quantities]
     return law_of(
         LawTable(*(curve for curve, _ in curves), s),
         name=name,
-        version=_digest(p, A, lam, p_max),
-        scales=partial(_scales, p[-1], A[-1]),
-        error=max(error for _, error in curves),
+        version=_digest(p, A, lam, p_max) + hashlib.sha256(stated.encode()).hexdigest()[:8] * bool(stated),
+        scales=partial(_scales_in_metres if metres else _scales, p[-1], A[-1]),
+        parameters={LAW_UNIT: _LAW_UNIT} if metres else {},
+        body=body or None,
+        error=max(error, *(error for _, error in curves)),
         least=p[0],
         most=p[-1],
         smears=False,
@@ -179,28 +233,32 @@ def _scales(p_star, A_star, E):
     return p_star * E, A_star
 
 
-def _curve(column, t, q, X, power):
+def _scales_in_metres(p_star, A_star, E, law_unit):
+    return p_star * E, A_star * law_unit
+
+
+def _curve(column, t, q, X, power, allowed):
     """:class:`~solver.laws.tabulated.TableCurve` near the rows X (n,), of the lowest degree that is near enough, and
-    its largest error at and between them. Raises ValueError where every degree is too far away, or falls."""
+    its largest error at and between them. ValueError where every degree is more than `allowed` away, or falls."""
     degrees = range(min(_DEGREE, len(t) - 2) + 1)
     tried = [fitted(t, q, X, degree, power=power, span=(t[0], t[-1])) for degree in degrees]
     differences, tried = _apart([curve for curve, _ in tried], t), tried[1:]  # degree 1 is compared with degree 0
     far = np.array([error[1:-1].max() for _, error in tried])  # no curve through the others tells the ends
-    if far.min() > _FAR:
+    if far.min() > allowed:
         row = int(np.argmax(tried[far.argmin()][1][1:-1])) + 2
         raise ValueError(
             f"column {column}, row {row}: is {100 * far.min():.0f} % off a smooth curve through the other rows: "
-            f"at most {100 * _FAR:.0f} % are allowed"
+            f"at most {100 * allowed:.0f} % are allowed"
         )
     at_rows, far = far, np.maximum(far, differences.max(axis=1))
-    if far.min() > _FAR:
+    if far.min() > allowed:
         row = int(np.argmax(differences[far.argmin()])) // _STEPS + 1
         raise ValueError(
             f"column {column}, rows {row} and {row + 1}: smooth curves through the rows differ by "
-            f"{100 * far.min():.0f} % between them: at most {100 * _FAR:.0f} % are allowed: add rows there"
+            f"{100 * far.min():.0f} % between them: at most {100 * allowed:.0f} % are allowed: add rows there"
         )
     falls = np.array([column == "A" and _falls(curve, t) for curve, _ in tried])
-    good = ~falls & (far <= max(_NEAR, _HARDLY * far[~falls].min(initial=np.inf))) & (far <= _FAR)
+    good = ~falls & (far <= max(_NEAR, _HARDLY * far[~falls].min(initial=np.inf))) & (far <= allowed)
     if not good.any():
         raise ValueError(f"column {column}: no smooth curve through the rows rises: add rows, or smooth them")
     best = int(np.argmax(good))

@@ -10,7 +10,7 @@ from study import derived
 from study.figures.labels import stated, written
 from study.figures.registry import TWO_COLUMNS, Columns, figure, joined
 
-from . import adhesion, strength, substrate  # noqa: F401
+from . import adhesion, scan_law, strength, substrate  # noqa: F401
 
 COLOURS = {
     1e-3: "#08306b", 1e-2: "#2878b8", 0.1: "#7fb5d8", 1.0: "0.2", 10.0: "#f4a36c", 100.0: "#dd5f21", 1e3: "#8c2d04"

@@ -8,7 +8,8 @@ from typing import Any
 
 from .. import pages
 from ..inputs.definition import StudyError
-from ..specimen import materials, roughness
+from ..scan_laws import roughness
+from ..specimen import materials
 from ..specimen.quantities import quantity
 from ..terminal import answer, program, shown
 from . import signals
@@ -46,29 +47,47 @@ def materials_(_, name: str) -> int:
         raise StudyError([f"materials: {error.args[0]}"]) from None
 
 
-def scan(_, texts: list[str]) -> int:
-    """Measure the asperities of a scan: its numbers in sentences, and as `point` takes them."""
+def scan(options, texts: list[str]) -> int:
+    """Measure the asperities of a scan: its numbers in sentences, and as `point` takes them; or write its own law."""
     path, *words = texts
-    arguments = _arguments(words)
+    try:
+        return _law(path, words, options.law) if options.law else _asperities(path, words)
+    except OSError as error:
+        raise StudyError([f"scan: {error.filename or path}: {error.strerror or error}"]) from None
+    except StudyError:
+        raise
+    except (ValueError, ImportError) as error:
+        raise StudyError([f"scan: {error}"]) from None
+
+
+def _law(path: str, words: list[str], out: str) -> int:
+    """Write the micro law of a scan, and say what it is."""
+    arguments = _arguments(words, READING | PRESSING | BODY)
+    reading, pressing, body = (
+        {name: arguments[name] for name in kinds if name in arguments} for kinds in (READING, PRESSING, BODY)
+    )
+    of_scan = roughness.law(roughness.read(path, **reading), on=body or None, **pressing)
+    of_scan.to_csv(out)
+    inputs = " ".join(f'{name}="{value}"' for name, value in body.items())
+    return answer(of_scan, f'\n{program()} point ... {inputs}{" " * bool(inputs)}micro="table:{out}"')
+
+
+def _asperities(path: str, words: list[str]) -> int:
+    arguments = _arguments(words, READING | MEASURING | {"heights": _text})
     heights = arguments.pop("heights", "normal")
     reading = {name: value for name, value in arguments.items() if name in READING}
     measuring = {name: value for name, value in arguments.items() if name in MEASURING}
-    try:
-        asperities = roughness.measure(roughness.read(path, **reading), **measuring)
-        numbers = asperities.parameters(heights)
-    except OSError as error:
-        raise StudyError([f"scan: {path}: {error.strerror or error}"]) from None
-    except (ValueError, ImportError) as error:
-        raise StudyError([f"scan: {error}"]) from None
+    asperities = roughness.measure(roughness.read(path, **reading), **measuring)
+    numbers = asperities.parameters(heights)
     if asperities.cutoff is not None:
         return answer(asperities)
     words = [f'{name}="{value}"' for name, value in numbers.items()]
     return answer(asperities, f"\n{program()} point ... {' '.join(words)}")
 
 
-def _arguments(texts: list[str]) -> dict[str, Any]:
-    """Arguments of `read` and `measure` from texts NAME=VALUE. StudyError has a message for each that is none."""
-    kinds, arguments, errors = READING | MEASURING | {"heights": _text}, {}, []
+def _arguments(texts: list[str], kinds: "Kinds") -> dict[str, Any]:
+    """The arguments of these `kinds` from texts NAME=VALUE. StudyError has a message for each that is none."""
+    arguments, errors = {}, []
     for text in texts:
         try:
             name, _ = assignment(text)
@@ -93,6 +112,12 @@ def _number(name: str, text: str) -> float:
         return float(text)
     except ValueError:
         raise ValueError(f"{name} = {shown(text)}: must be a number, in `unit`") from None
+
+
+def _whole(name: str, text: str) -> int:
+    if not text.isdecimal():
+        raise ValueError(f"{name} = {shown(text)}: must be a whole number")
+    return int(text)
 
 
 def _columns(name: str, text: str) -> list[int]:
@@ -142,3 +167,15 @@ READING: Kinds = {
 """The arguments of `read`, and what makes their values of texts."""
 MEASURING: Kinds = {"method": _text, "form": lambda _, text: _number_or_text(text), "rows": _text, "cutoff": _cutoffs}
 """Those of `measure`."""
+PRESSING: Kinds = {
+    "periodic": _text,
+    "refine": _whole,
+    "form": MEASURING["form"],
+    "cutoff": lambda name, text: quantity(name, text, "m").value,
+}
+"""Those of `law`, with --law."""
+BODY: Kinds = dict.fromkeys(
+    ("h", "n", "E1", "nu1", "layer", "E2", "nu2", "body", "bonding", "m", "E_punch", "nu_punch", "punch"),
+    lambda _, text: _number_or_text(text),
+)
+"""The body on which the law is computed, with --law: a half-space without any of them."""

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver import Problem
+from solver.laws.own_table import LAW_UNIT
 from solver.shapes import PARABOLOID
 
 from ..arrays import xarray_later as xr
@@ -134,7 +135,8 @@ def _scene(inputs: dict[str, Any], scale: Any, lexicon: Lexicon) -> Scene:
     in_si = [name for name in inputs if name in SCENE or is_ratio(name) or lexicon.rows[name].powers != (0, 0)]
     others = {name: value for name, value in inputs.items() if name not in {*in_si, *follows}}
     metres = in_metres(others.get("shape", ""), lexicon)
-    values = {name: inputs[name] for name in in_si if not (name == "table_unit" and np.any(metres))}
+    in_metre = {LAW_UNIT, *["table_unit"] * bool(np.any(metres))}
+    values = {name: inputs[name] for name in in_si if name not in in_metre}
     scale = scale if scale in values and scale != "R" or scale == MICROMETRE else ""
     scene = Scene(values=values, parameters=others, scale=scale, metres=metres, lexicon=lexicon)
     make_dimensionless(scene)

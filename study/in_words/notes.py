@@ -8,6 +8,7 @@ import numpy as np
 
 from solver import Status, solve
 from solver.bases import is_bare
+from solver.laws import heights
 from solver.laws.cell.family import MOST, REACH
 from solver.models.law_error import last_fraction, without_family
 from solver.parameters import one_of
@@ -40,6 +41,12 @@ _MERGED = (
 law of asperities on the coated body ends there"
 )
 _HALF_SPACE = 'asperities_on = "half_space" has numbers, of a half-space of the layer\'s material.'
+#: Of spheres with random heights, which a scan gives: measured on six surfaces (docs/roughness.md, Which law when).
+_SPHERES = (
+    "If they come from a scan: spheres touch about two thirds of the area that the scan itself touches, and their pmax "
+    "is up to 1.4 times too small, up to 9 times where single points stand out. rc.roughness.law(scan), or "
+    "`roughcoat scan FILE --law OUT.csv`, is the law of the scan itself (docs/roughness.md)."
+)
 #: The load is lowered to this part; pressures that are larger there by less than _SAME of the largest are the same.
 _LESS, _SAME = 0.9, 1e-6
 #: Radii in a that are looked at.
@@ -92,6 +99,11 @@ def _inwards(case: xr.Dataset, shape: str) -> list[str]:
         f"Note: a rigid cone pulls the surface inwards, which is left out here. At one depth the load is then about "
         f"{gamma:.3g} times as large{where} (Hay, Bolshakov and Pharr 1999; docs/shapes.md)."
     ]
+
+
+def of_scan(case: xr.Dataset) -> list[str]:
+    """A sentence on spheres of random heights in the place of a scan; none with another law."""
+    return [f"Spheres: {_SPHERES}"] if case["micro"].values == heights.LAW.name else []
 
 
 def of_adhesion(case: xr.Dataset) -> list[str]:

@@ -22,7 +22,7 @@ from ..rules.rule import RULES, broken, have
 from ..terminal import rounded
 from .influence import influence
 from .margins import RUBBER, holds, which_yields
-from .notes import ended, falling, of_adhesion, of_shape, presses_on, sticks, unit_of_length
+from .notes import ended, falling, of_adhesion, of_scan, of_shape, presses_on, sticks, unit_of_length
 from .pressures import largest_of_all
 
 #: A contact is far outside if it exceeds the limit of an assumption this many times. The estimate is right to about
@@ -127,7 +127,7 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
         against = "the micro law itself errs" if exact else "against the exact layered contact it errs"
         errs = f"; {against} by about {rounded(100 * error)} %" if error > 0 else ""
         found.append(f"Model: {model}{presses_on(case)}{errs}.{WHOSE * (not used.startswith('smooth'))}")
-    found += of_shape(case) + of_adhesion(case)
+    found += of_scan(case) + of_shape(case) + of_adhesion(case)
     beyond = doubts(case)
     found += [f"Beware: {sentence}" for sentence in beyond]
     strength, exceeded = holds(case) if word == "converged" else ([], False)

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from solver.bases import is_bare
+from solver.laws.own_table import LAW_UNIT
 
 from ..arrays import xarray_later as xr
 from ..data.si import SAME_PIECE
@@ -99,6 +100,7 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
 def _of_punch_hidden(contacts: xr.Dataset, lexicon: Lexicon) -> set[str]:
     """Inputs of the shape and of adhesion that say nothing: defaults, and what is there for the solver alone."""
     hidden = {"table_unit"} if "shape" in contacts and np.any(in_metres(contacts["shape"].values, lexicon)) else set()
+    hidden |= {LAW_UNIT}
     if "w_adhesion" in contacts:
         hidden |= (
             {name for name in names("adhesion") if name != "w_adhesion"}

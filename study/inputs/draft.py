@@ -18,7 +18,7 @@ from .checks import (
 )
 from .grid import Grid, as_array, equal_values
 from .lexicon import Lexicon
-from .punch import asperities, shapes, sticking
+from .punch import asperities, shapes, sticking, tables
 from .punch.laws import fitted, wants_a_fit
 from .request import Input, Request
 from .sample import sampled, values_of_axis
@@ -163,6 +163,7 @@ class Draft:
         if not self.errors:
             self.errors += missing_in_cases(grid) + picard_for_nothing(grid) + heights_that_yield(grid)
             self.errors += asperities.mistakes(grid, self.request.sections)
+            self.errors += tables.mistakes(grid, self.request.physical)
             self.errors += [] if self.request.physical else mixed_units(grid)
             self.errors += shapes.mistakes(grid, self.request.sections, self.request.physical)
             self.errors += sticking.mistakes(grid, self.request.sections)

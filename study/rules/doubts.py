@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from solver.bases import is_bare
+from solver.laws.own_table import LAW_UNIT
 from solver.parameters import one_of
 
 from ..arrays import xarray_later as xr
@@ -43,6 +44,7 @@ def ra_as_of_iso(v):
 @rule()
 def table_of_several_radii(v):
     tables = {"R", "micro"} <= {*v} and np.char.startswith(v["micro"].values.astype(str), "table:").any()
+    tables = tables and LAW_UNIT not in v  # that is of tables with lengths
     if tables and np.ptp(v["R"].values) > 0 and not (v["R"].dims and {*v["R"].dims} <= {*v["micro"].dims}):
         yield (
             "A table has A, or the heights z, in R: with several R its asperities grow with the punch. Give each R a "

@@ -218,7 +218,7 @@ def test_all_means_what_no_long_study_is_needed_for(monkeypatch):
     paper = [f"fig{number:02}" for number in range(1, 11)]
     layered = [f"{name}_layered" for name in paper if name not in ("fig01", "fig02", "fig09")]
     ours = ["bead_on_gel", "fig09_lattice", "fig10_lattice", "coatings", "literature", "validity", "validity_load"]
-    assert drawn == [*sorted([*paper, *layered, *ours, "substrate", "yielding"]), "captions"]
+    assert drawn == [*sorted([*paper, *layered, *ours, "scan_law", "substrate", "yielding"]), "captions"]
     drawn.clear()
     assert main(["table", "all"]) == 0
     literature = ["literature", "literature_coatings", "literature_decided", "literature_pull_off"]

@@ -212,7 +212,7 @@ def test_captions_of_all_figures_that_have_results(results, tmp_path, monkeypatc
     assert (float(found["P"].min()), float(found["P"].max())) == pytest.approx((1e-14, 1e-3))
     (path,) = draw("captions", tmp_path, tmp_path)
     said = re.findall(r"^[*]{2}(\w+)\.", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
-    assert said == ["fig01", "fig02", "fig09", "fig09_lattice", "substrate", "yielding"], "of what is there"
+    assert said == ["fig01", "fig02", "fig09", "fig09_lattice", "scan_law", "substrate", "yielding"], "of what is there"
 
 
 @pytest.mark.parametrize(

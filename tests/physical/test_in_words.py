@@ -203,6 +203,7 @@ def test_the_micro_law_and_its_own_error():
     assert "the micro law itself errs by about 0.02 %" in lattice and "exact layered contact" not in lattice
     assert "sigma = 1e-06 R, cut = 4" in heights and "the micro law itself errs by about 0.02 %" in heights
     assert "itself errs" not in disc
+    assert "rc.roughness.law(scan)" in heights and "roughness.law" not in lattice + disc
 
 
 def test_a_parameter_that_no_case_has_is_no_coordinate():

@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from solver.laws.own_table import LAW_UNIT
+
 from ..grid import Grid
 from ..identity import acts
 from ..punch.laws import slopes_of_fit
@@ -36,7 +38,7 @@ def changes(scene: Scene, name: str, fitted: bool = False) -> dict[str, Any]:
         new = value + sign * step * (1.0 if is_ratio(name) else value)
         moved = replace(scene, values=scene.values | {name: new}, parameters=dict(scene.parameters))
         make_dimensionless(moved)
-        follow = "n", "m", "table_unit", *(ratio for _, _, ratio in moduli_of(moved.values))
+        follow = "n", "m", "table_unit", LAW_UNIT, *(ratio for _, _, ratio in moduli_of(moved.values))
         numbers = {key: moved.parameters[key] for key in follow if key in moved.parameters}
         numbers |= {key: moved.parameters[key] for key in moved.values if key not in SCENE}
         ends.append(numbers | dict(zip(SCALES, (moved.R, moved.unit), strict=True)))

@@ -16,6 +16,7 @@ from ...arrays import xarray_later as xr
 from ...specimen.quantities import multiple, quantity, readable, unit_in
 from ...terminal import on_one_line
 from ..checks import equal_cases
+from ..punch import tables as tables_of_laws
 from ..punch.shapes import in_metres, radius_needed
 from ..punch.sticking import hint, row_of
 from ..request import Input, Request
@@ -92,7 +93,8 @@ def moving_tables(scene: Scene) -> list[str]:
     """A message if a table of the user's, whose lengths are in R, would change with the spread of a radius."""
     words = [np.ravel(np.array(scene.parameters.get(name, ""), dtype=object)).tolist() for name in ("micro", "shape")]
     tables = [str(word) for word in sum(words, []) if str(word).startswith(PREFIX)]
-    table = next((word for word in tables if not in_metres(word, scene.lexicon)), "")
+    lengths = (in_metres, tables_of_laws.in_metres)
+    table = next((word for word in tables if not any(given(word, scene.lexicon) for given in lengths)), "")
     moved = sorted({"R", "R1", "R2"} & {*scene.spreads})
     if not (table and moved):
         return []

@@ -11,9 +11,11 @@ from typing import Any
 import numpy as np
 
 from solver.bases import is_bare
+from solver.laws.own_table import LAW_UNIT
 
 from ...arrays import xarray_later as xr
 from ..lexicon import PACKAGE
+from ..punch.tables import in_metres
 from ..vocabulary import SCENE
 from .scene import Scene
 from .stacks import moduli_of
@@ -46,6 +48,8 @@ def make_dimensionless(scene: Scene) -> None:
             scene.parameters[name] = without_unit(value, scene.lexicon.rows[name].powers, scene.unit, scene.R)
     if np.any(scene.metres):
         scene.parameters["table_unit"] = _where(scene.metres, 1 / scene.R, 1.0)
+    if in_metres(scene.parameters.get("micro", ""), scene.lexicon):
+        scene.parameters[LAW_UNIT] = 1 / scene.R
 
 
 def moduli(values: dict, parameters: dict) -> tuple:

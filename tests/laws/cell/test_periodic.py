@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from solver.kernels.two_layers import TwoLayers
 from solver.laws import cell_rows, lattice, periodic_rows
-from solver.laws.cell.periodic import pressed, response_of
+from solver.laws.cell.periodic import pressed, response_of, waves_times
 
 #: Points along a period of the square cell. The spots are 10 to 45 of them wide: A and the pressure in the middle have
 #: an error below 1e-3, the number of points in contact one of a few hundredths.
@@ -72,6 +72,45 @@ def test_two_steps_and_two_sides():
     twice = periodic_rows(fine, 1 / N, [0.05, 0.01], dy=2 / N)
     once = periodic_rows(HEIGHTS, 1 / N, [0.01, 0.05])
     assert_allclose(np.array(twice)[:, ::-1], once, rtol=0.02)
+
+
+@pytest.mark.parametrize("share", [0.04, 0.3, 0.8])
+def test_a_wave_pressed_flat_in_part(share):
+    """Westergaard (1939): under p = sin²(πa/λ) p*, p* = π Δ/λ, the pressure in the middle is 2 √(p p*)."""
+    points, most = 512, np.pi * 0.01
+    wave = np.tile(0.01 * np.cos(2 * np.pi * np.arange(points) / points), (4, 1))
+    _, lam, p_max = periodic_rows(wave, 1 / points, [share * most])
+    assert_allclose(lam, 2 / np.pi * np.arcsin(np.sqrt(share)), atol=3 / points)
+    assert_allclose(p_max, 2 * most * np.sqrt(share), rtol=2e-3)
+
+
+def test_a_wave_along_both_axes_is_flat_where_the_amplitudes_of_its_pressure_are_below_the_mean():
+    """Johnson, Greenwood and Higginson (1985): Δ cos cos is flat from p* = √2 π Δ/λ on, where it is half as high."""
+    angle = 2 * np.pi * np.arange(32) / 32
+    heights = 0.01 * np.cos(angle) * np.cos(angle[:, None])
+    most = np.sqrt(2) * np.pi * 0.01
+    A, lam, p_max = periodic_rows(heights, 1 / 32, [0.97 * most, 1.01 * most])
+    assert lam[0] < 1 == lam[1]
+    assert_allclose([A[1], p_max[1]], [0.01, 2.01 * most], rtol=1e-9)
+
+
+@pytest.mark.parametrize("n", [None, 6.0])
+def test_a_patch_beside_its_mirror_images(n):
+    patch = np.random.default_rng(2).normal(size=(12, 10)).cumsum(axis=0).cumsum(axis=1) * 1e-3
+    period = np.concatenate([patch, patch[:, ::-1]], axis=1)
+    period = np.concatenate([period, period[::-1]])
+    there = None if n is None else kernel(0.7, n, 0.3, "bonded")
+    of_period = periodic_rows(period, 0.1, [0.004], there, dy=0.2)
+    response = response_of(patch.shape, 0.1, 0.2, there, mirrored=True)
+    pressures, A, ended = pressed(patch.max() - patch, response, 0.004, np.full(patch.shape, 0.004), mirrored=True)
+    assert ended and 0.1 < np.mean(pressures > 0) < 0.9
+    assert_allclose([A, np.mean(pressures > 0), pressures.max()], np.ravel(of_period), rtol=1e-6)
+    gap = waves_times(pressures, response, True) + patch.max() - patch - A
+    assert_allclose(gap[pressures > 0], 0, atol=1e-9)
+
+
+def test_a_flat_surface_is_in_full_contact():
+    assert_allclose(np.ravel(periodic_rows(np.zeros((4, 4)), 1.0, [0.1])), [0, 1, 0.1])
 
 
 @pytest.mark.parametrize(

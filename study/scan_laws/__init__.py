@@ -1,0 +1,1 @@
+"""The micro law of a scan itself, without asperities between: docs/roughness.md."""

@@ -1,0 +1,76 @@
+"""Where a scan touches: pressure and gap of one period of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..specimen.quantities import has_unit, quantity
+from .bodies import body_of
+from .patch import Pressing, patch_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def contact_map(
+    scan: Any,
+    p: Any,
+    *,
+    E1: Any = None,
+    on: Mapping[str, Any] | None = None,
+    periodic: str = "mirror",
+    refine: int = 1,
+    form: Any = "plane",
+    cutoff: float | None = None,
+) -> xr.Dataset:
+    """Pressure and gap of a scan that is pressed flat, at each of its points.
+
+    Parameters
+    ----------
+    scan : a map of heights without gaps
+    p : nominal pressure, > 0: a number over E1*, or a text with a unit, "2 MPa", which needs `E1`
+    E1 : reduced modulus E1* = E/(1 - ν²) of what lies at the surface, a text with its unit: the pressures are then in
+        Pa; None: they are over E1*
+    on, periodic, refine, form, cutoff : as of `law`
+
+    Returns
+    -------
+    xarray.Dataset : `pressure` and `gap` (m) over y, x (m); attributes A (m), lam, and p_max in the unit of the
+        pressures. Where the period is a mirrored one it has the scan itself, without its images
+
+    Raises
+    ------
+    ValueError : what `law` refuses, or a pressure that is none; StudyError, a ValueError too, of `on`
+
+    Examples
+    --------
+    >>> from study import roughness
+    >>> surface = roughness.self_affine((32, 32), "1 um", hurst=0.8, rms="20 nm", seed=3)
+    >>> spots = roughness.contact_map(surface, 0.001, periodic="given")
+    >>> print(spots.sizes["y"], f"{float(spots.pressure.mean()):.4f} {float(spots.gap.min()):.1g}")
+    32 0.0010 0
+    """
+    import xarray as xr
+
+    unit = 1.0 if E1 is None else quantity("contact_map: E1", E1, "Pa").value
+    if has_unit(p) and E1 is None:
+        raise ValueError(f"contact_map: p = {p!r} has a unit: give E1, the modulus E1*, with its unit too")
+    load = quantity("contact_map: p", p, "Pa").value / unit if has_unit(p) else p
+    if not (isinstance(load, (int, float, np.number)) and 0 < load < np.inf):
+        raise ValueError(f"contact_map: p = {p!r}: must be a number > 0")
+    body = body_of(on, "contact_map")
+    patch = patch_of(scan, form, cutoff, periodic, refine, "contact_map")
+    pressing = Pressing(patch, body.kernel)
+    A, lam, p_max = pressing.at(float(load) * (1 + body.m), scan.name)
+    felt = unit / (1 + body.m)
+    y, x = (np.arange(count) * step for count, step in zip(patch.z.shape, patch.steps, strict=True))
+    pressure, of_gap = {"long_name": "pressure"}, {"long_name": "gap", "units": "m"}
+    pressure |= {"units": "Pa"} if E1 is not None else {"long_name": "pressure, p/E1*"}
+    return xr.Dataset(
+        {"pressure": (("y", "x"), pressing.pressures * felt, pressure), "gap": (("y", "x"), pressing.gap(A), of_gap)},
+        {"y": ("y", y, {"units": "m"}), "x": ("x", x, {"units": "m"})},
+        {"A": A, "lam": lam, "p_max": p_max * felt, "scan": scan.name, "treatment": patch.treatment},
+    )

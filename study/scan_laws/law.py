@@ -1,0 +1,271 @@
+"""The micro law of a scan: A, λ and p_max of one period of it, and how far two such periods differ."""
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.ndimage import label
+
+from solver.laws import Law, own_table
+
+from ..specimen.foreign import plain
+from ..terminal import rounded
+from ..work.progress import Progress, screen_of
+from .bodies import Body, body_of
+from .patch import Patch, Pressing, patch_of
+
+__all__ = ["ScanLaw", "law"]
+
+#: Without pressures the law goes from the first contact fraction to the second, from row to row by this factor of p.
+#: It begins where at least so many points touch: with fewer of them λ goes in steps that no smooth curve follows.
+_LEAST, _MOST, _FACTOR, _POINTS = 1e-3, 0.6, 1.38, 16
+#: λ over p/(E* h') where few points touch; the first row is sought in at most so many steps, to this factor.
+_STIFF, _SEARCH, _NEAR = 2.0, 6, 1.3
+#: Most rows.
+_ROWS = 40
+#: Rows at which the patch is compared with its quarters and with half of its points, and the λ from which they count:
+#: below, a few spots carry all, and no other patch has the same ones.
+_COMPARED, _COUNTS = 4, 0.01
+#: Fewest points, along a side, of a quarter that is compared; and the diameter in points below which a spot is coarse.
+_SMALLEST, _COARSE = 16, 4.0
+#: Most points along a side of the part of a quarter whose points are halved: spots are much smaller.
+_HALVED = 96
+
+
+@dataclass(frozen=True, eq=False)
+class ScanLaw:
+    """The micro law of a scan, rows of a table. `study.solve` takes it as `micro`, and its file as "table:FILE".
+
+    Attributes
+    ----------
+    p, A, lam, p_max : (n,) nominal pressure over E1*; approach over `scale`, from the highest summit; contact fraction;
+        largest pressure over E1*
+    scale : m, the length that 1 in A stands for
+    error : the largest relative error of λ, p_max and A that `errors` has
+    errors : "pixel": by how much points of half the distance change the answer; "patch": by how much the answer of
+        another patch of this size may differ, half of the scatter of its four quarters
+    body : parameter -> number or word (lengths in m) of what the scan was pressed on; None: a half-space
+    name : of the scan
+    notes : sentences, also those of the reading
+    m : E1*/E_punch* of the body
+    """
+
+    p: np.ndarray
+    A: np.ndarray
+    lam: np.ndarray
+    p_max: np.ndarray
+    error: float
+    errors: Mapping[str, float]
+    body: Mapping[str, Any] | None
+    name: str
+    notes: tuple[str, ...] = ()
+    scale: float = 1.0
+    m: float = 0.0
+
+    @property
+    def text(self) -> str:
+        """The file: how the rows were computed, and the table. Its pressures are over the modulus that is felt."""
+        stated = json.dumps({"error": self.error, "body": None if self.body is None else dict(self.body)})
+        lines = [f"# Micro law of {_on_one_line(self.name)}", *(f"# {_on_one_line(note)}" for note in self.notes)]
+        lines += [f"{own_table.STATED}{stated}", "p,A [m],lam,p_max"]
+        factors = (1 + self.m, self.scale, 1.0, 1 + self.m)
+        columns = (self.p, self.A, self.lam, self.p_max)
+        rows = zip(*(column * factor for column, factor in zip(columns, factors, strict=True)), strict=True)
+        return "\n".join([*lines, *(",".join(repr(float(number)) for number in row) for row in rows), ""])
+
+    @property
+    def law(self) -> Law:
+        """The law as the solver takes it.
+
+        Returns
+        -------
+        solver.Law : smooth curves near the rows
+
+        Raises
+        ------
+        ValueError : no smooth curves are near the rows
+        """
+        return own_table.of_rows(f"{own_table.PREFIX}law of {_on_one_line(self.name)}", self.text)
+
+    def to_csv(self, path: Any) -> None:
+        """Write the table, which `micro="table:FILE"` reads.
+
+        Parameters
+        ----------
+        path : of the file, which is replaced
+
+        Returns
+        -------
+        None
+
+        Raises
+        ------
+        OSError : it cannot be written
+        """
+        Path(path).write_text(self.text, encoding="utf-8")
+
+    def __repr__(self) -> str:
+        return f"ScanLaw({self.name!r}, {len(self.p)} rows, error={self.error:.2g}, body={self.body!r})"
+
+    def __str__(self) -> str:
+        on = "a half-space" if self.body is None else ", ".join(f"{k} = {_shown(v)}" for k, v in self.body.items())
+        lines = [
+            f"Micro law of {self.name} on {on}: {len(self.p)} pressures, λ from {self.lam[0]:.2g} to "
+            f"{self.lam[-1]:.2g} at p from {self.p[0]:.2g} to {self.p[-1]:.2g} E1*.",
+            f"p_max is {self.p_max[0]:.2g} E1* at the first and {self.p_max[-1]:.2g} E1* at the last.",
+        ]
+        return "\n".join(lines + [f"Note: {note}." for note in self.notes])
+
+
+def law(
+    scan: Any,
+    *,
+    pressures: Any = None,
+    on: Mapping[str, Any] | None = None,
+    periodic: str = "mirror",
+    refine: int = 1,
+    form: Any = "plane",
+    cutoff: float | None = None,
+    progress: bool | None = None,
+) -> ScanLaw:
+    """The micro law of a scan itself: A, λ and p_max of one period of its heights, each point of them an asperity.
+
+    The heights, less their form, make a period, which is pressed flat by conjugate gradients (Polonsky and Keer 1999)
+    on a body whose surface gives way by 2 L(kh)/k p(k) to a wave, without k = 0: `solver.laws.periodic_rows`.
+
+    Parameters
+    ----------
+    scan : a map of heights without gaps, of `read`, `height_map` or `self_affine`
+    pressures : (n,), n >= 5, nominal pressures over E1*, > 0; None: those with λ from 0.001, or 16 points, to 0.6
+    on : inputs of `study.solve` of what is pressed: h, n or E1 and E2, nu1, nu2, bonding, or `layers`; E_punch or m.
+        Lengths have units. Then contacts on another body are refused. None: a half-space of E1*
+    periodic : "mirror", the scan beside its mirror images; "taper", the scan with borders of an eighth that go to the
+        mean; "given", it is a period
+    refine : points per pixel along each side, 1 to 8, by the Fourier series of the period
+    form : what is taken off first, as of `measure`
+    cutoff : wavelength, m, of a Gaussian low-pass, as of `measure`
+    progress : whether to show how far it is; None: where the terminal or a notebook can
+
+    Returns
+    -------
+    ScanLaw : its `error` becomes part of the `model_error` of contacts
+
+    Raises
+    ------
+    ValueError : a profile, a map with gaps, or an argument that is not allowed; also StudyError, of `on`
+
+    Examples
+    --------
+    >>> from study import roughness
+    >>> surface = roughness.self_affine((64, 64), "0.5 um", hurst=0.8, rms="20 nm", seed=3)
+    >>> of_scan = roughness.law(surface, periodic="given", progress=False)
+    >>> print(len(of_scan.p), f"{of_scan.lam[0]:.4f} {of_scan.lam[-1]:.2f}")
+    18 0.0039 0.66
+    """
+    body = body_of(on, "law")
+    patch = patch_of(scan, form, cutoff, periodic, refine, "law")
+    wanted = None if pressures is None else _wanted(pressures) * (1 + body.m)
+    pressing, rows, spots = Pressing(patch, body.kernel), [], []
+    with Progress("law", _ROWS if wanted is None else len(wanted), screen_of(plain(progress))) as bar:
+        p = _first(patch, body, scan.name) if wanted is None else 0.0
+        for i in range(_ROWS if wanted is None else len(wanted)):
+            p = p * (_FACTOR if i else 1.0) if wanted is None else float(wanted[i])
+            rows.append((p, *pressing.at(p, scan.name)))
+            spots.append(_diameter(pressing.pressures))
+            bar.update(1, 0)
+            if wanted is None and rows[-1][2] >= _MOST:
+                break
+        table = np.array(rows).T
+        errors = _errors(patch, body, table, scan.name)
+    p, A, lam, p_max = table
+    notes = (*scan.notes, _provenance(scan, patch), *_about(errors), *_coarse(lam, np.array(spots)))
+    numbers = {"error": max(errors.values(), default=0.0), "errors": errors, "body": body.inputs, "name": scan.name}
+    return ScanLaw(p / (1 + body.m), A, lam, p_max / (1 + body.m), **numbers, notes=notes, m=body.m)
+
+
+def _wanted(pressures: Any) -> np.ndarray:
+    """The pressures in ascending order. Raises ValueError for what are none."""
+    try:
+        values = np.unique(np.asarray(pressures, dtype=float))
+    except (TypeError, ValueError):
+        values = np.array([])
+    if not (values.size and np.ndim(pressures) == 1 and np.all((values > 0) & np.isfinite(values))):
+        raise ValueError(f"law: pressures = {pressures!r}: must be numbers > 0, over E1*")
+    return values
+
+
+def _first(patch: Patch, body: Body, name: str) -> float:
+    """The pressure at which about _LEAST of the points touch, over the modulus that is felt."""
+    pressing = Pressing(patch, body.kernel)
+    p, fewest = _LEAST * patch.slope / _STIFF, max(_LEAST, _POINTS / patch.z.size)
+    for _ in range(_SEARCH):
+        _, lam, _ = pressing.at(p, name)
+        if fewest / _NEAR <= lam <= fewest * _NEAR:
+            break
+        p *= fewest / lam
+    return p
+
+
+def _errors(patch: Patch, body: Body, table: np.ndarray, name: str) -> dict[str, float]:
+    """What half the pixel and another patch would change, the largest over some rows with λ from _COUNTS on."""
+    if min(patch.z.shape) < 2 * _SMALLEST:
+        return {}
+    counting = np.flatnonzero(table[2] >= _COUNTS)
+    counting = counting if len(counting) else np.arange(len(table[0]))[-1:]
+    chosen = counting[np.unique(np.linspace(0, len(counting) - 1, _COMPARED).round().astype(int))]
+    quarters = patch.quarters()
+    pressings = [Pressing(part, body.kernel) for part in quarters]
+    part = quarters[0].within(_HALVED)
+    coarse, fine, pixel, apart = Pressing(part, body.kernel), Pressing(part.halved(), body.kernel), 0.0, 0.0
+    for p in table[0, chosen]:
+        rows = np.array([pressing.at(p, name) for pressing in pressings])
+        pixel = max(pixel, float(np.abs(np.log(np.divide(fine.at(p, name), coarse.at(p, name)))).max()))
+        apart = max(apart, float(np.log(rows[:, 1:]).std(axis=0, ddof=1).max()) / 2)
+    return {"pixel": math.expm1(pixel), "patch": math.expm1(apart)}
+
+
+def _diameter(pressures: np.ndarray | None) -> float:
+    """Mean diameter of the spots in points: 2 √(points/(π spots))."""
+    assert pressures is not None
+    touching = pressures > 0
+    return 2 * math.sqrt(np.count_nonzero(touching) / (math.pi * max(1, label(touching)[1])))
+
+
+def _provenance(scan: Any, patch: Patch) -> str:
+    size, step = (" × ".join(f"{1e6 * v:.4g}" for v in pair[::-1]) for pair in (scan.sizes, scan.steps))
+    points = " × ".join(map(str, scan.z.shape))
+    return f"{points} points, {step} µm apart, {size} µm; {patch.treatment}; rms slope {patch.slope:.3g}"
+
+
+def _about(errors: Mapping[str, float]) -> list[str]:
+    if not errors:
+        return ["the scan is too small to be compared with its quarters: the law has no error of its own"]
+    pixel, patch = (rounded(100 * errors[name]) for name in ("pixel", "patch"))
+    return [
+        f"points of half the distance change A, λ or p_max by up to {pixel} %",
+        f"another patch of this size may differ by {patch} % in λ or p_max, half of the scatter of its four quarters",
+    ]
+
+
+def _coarse(lam: np.ndarray, spots: np.ndarray) -> list[str]:
+    """A sentence where spots are less than _COARSE points wide."""
+    coarse = spots < _COARSE
+    if not coarse.any():
+        return []
+    last = lam[np.flatnonzero(coarse)[-1]]
+    return [
+        f"up to λ = {last:.2g} spots span fewer than {_COARSE:g} points, {spots.min():.1f} at the least: the law has "
+        "not converged there; filter the scan with a cutoff, or take refine"
+    ]
+
+
+def _on_one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _shown(value: Any) -> str:
+    return value if isinstance(value, str) else f"{value:.4g}"

@@ -26,13 +26,13 @@ from .vocabulary import CONTROLS
 #: Strengths, with which answers are compared: no case depends on them, but the flags in a results file do.
 STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
 #: In the digests of studies with strengths, also of named materials: raised when the masks that compare with them do.
-_OF_STRENGTHS = "2"
+_OF_STRENGTHS = "3"
 #: In the keys of rough cases on layers thinner than the pitch: raised when numbers of these alone change.
 _OF_CELLS = "asperities far apart on a layer, 2"
 #: Stresses depend on these even where the contact does not, as on nu2 of a body on which the layer slides.
 RATIOS = ("nu1", "nu2")
 #: In the keys and digests of stored stresses: raised when the search for the largest ones finds others.
-_OF_STRESSES = "2"
+_OF_STRESSES = "3"
 #: In the keys of cases that have another shape than the paraboloid, or that stick, beside NUMERICS_VERSION: raised when
 #: numbers of these alone change.
 _OF_SHAPES = "4"

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from solver import Problem
+from solver.bases import named
 from solver.body import BODIES
 from solver.scaling import dimensionless, with_rigid_punch
 
@@ -80,8 +81,8 @@ def _asked(parameters: dict[str, Any]) -> tuple[Any, Problem]:
     if definition.grid.sizes:
         several = ", ".join(definition.grid.sizes)
         raise StudyError([f"effective_work: {several} has several values: one surface at a time"])
-    base = scene.parameters.get("base", "layered")
-    problem = scene.lexicon.problem(scene.parameters, base="layered" if base == "auto" else base)
+    base = named(scene.parameters.get("base", "layered")).item()
+    problem = scene.lexicon.problem(scene.parameters, base=base)
     rigid = with_rigid_punch(problem)
     return scene, dimensionless(rigid).but(E2=rigid.E2)
 

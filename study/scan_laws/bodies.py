@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from solver import Problem
+from solver.bases import is_bare, named
 from solver.body import BODIES
 from solver.parameters import LAYER
 from solver.scaling import dimensionless
@@ -45,10 +46,9 @@ def body_of(on: Mapping[str, Any] | None, caller: str) -> Body:
     moduli = {} if any(name in on for name in ("E2", "body", "rigid_base")) else {"E2": _MODULUS}
     inputs = _USUAL | moduli | {name: value for name, value in on.items() if value is not None}
     inputs.setdefault("base", "stack" if "layers" in on else "layered")
-    if inputs["base"] == "half_space":
+    if is_bare(inputs["base"]):
         return Body()
-    if inputs["base"] == "auto":
-        inputs["base"] = "layered"
+    inputs["base"] = named(inputs["base"]).item()
     try:
         definition = from_call(inputs, [], False, {"output": {"profiles": False}})
     except StudyError as error:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from solver.bases import named
 from solver.shapes import PARABOLOID
 from solver.smooth.adhesion.curve_terms import curve_terms
 
@@ -102,7 +103,7 @@ class Terms(NamedTuple):
         changed = self.model.scene_of(values)
         names = {name: value for name, value in changed.parameters.items() if name in changed.lexicon.parameters}
         names = {name: value for name, value in names.items() if name not in ("P", "a", "D", "k_machine", "branch")}
-        names["base"] = {"auto": "layered"}.get(word := names.get("base", "layered"), word)
+        names["base"] = named(names.get("base", "layered")).item()
         return changed, names
 
     def logarithms(self, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:

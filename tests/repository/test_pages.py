@@ -46,7 +46,7 @@ def test_the_page_of_speeds_is_that_of_its_command():
 
 
 def test_the_pages_of_resolved_spheres_are_those_of_their_numbers():
-    """What `make validate` has solved, which takes minutes, is in docs/validate.nc; the pages are written of it anew."""
+    """What `make validate` has solved, which takes minutes, is in docs/validate.nc; both pages are written of it."""
     with xr.open_datatree(ROOT / "docs/validate.nc") as tree:
         written = resolved({name: tree[name].to_dataset().load() for name in tree.children})
     assert [*written] == ["validate", "validate_limits"]

@@ -29,8 +29,9 @@ PAGE = """# Two scales against one
 
 Are two scales, a base and a micro law, right? `make validate` presses rough spheres with every asperity resolved, by
 conjugate gradients on square elements that are not periodic, and compares them with the two scales. It writes this
-page, [the limits and random heights](validate_limits.md), the figures and `docs/validate.nc`. It takes {minutes} minutes of a
-processor. Each contact is kept once it is solved, so a run that was interrupted goes on where it was. R = E2* = 1 and Ra = {Ra:g}, on square lattices.
+page, [the limits and random heights](validate_limits.md), the figures and `docs/validate.nc`. It takes {minutes}
+minutes of a processor. Each contact is kept once it is solved, so a run that was interrupted goes on where it was.
+R = E2* = 1 and Ra = {Ra:g}, on square lattices.
 `tests/laws/lattice/test_lattice_sphere.py`, `tests/resolved/test_layered_sphere.py` and
 `tests/laws/heights/test_heights_sphere.py` have coarse ones.
 

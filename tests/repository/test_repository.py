@@ -161,6 +161,16 @@ def test_versions_agree():
     assert (ROOT / "LICENSE").read_text(encoding="utf-8").startswith("BSD 3-Clause License")
 
 
+def test_the_paper_has_the_sections_of_joss_and_its_references():
+    paper, bibliography = ((ROOT / name).read_text(encoding="utf-8") for name in ("paper.md", "paper.bib"))
+    assert re.findall("^# (.*)$", paper, flags=re.MULTILINE) == [
+        "Summary", "Statement of need", "State of the field", "Software design", "Research impact statement",
+        "AI usage disclosure", "Acknowledgements", "References",
+    ]  # fmt: skip
+    assert {*re.findall(r"@(\w+)\b", paper)} == {*re.findall(r"^@article\{(\w+),", bibliography, flags=re.MULTILINE)}
+    assert 750 <= len(paper.split()) <= 1750  # what JOSS asks for
+
+
 def contents(folder: Path) -> dict[str, bytes]:
     """Path in the folder -> bytes of each file, without compiled code."""
     files = (path for path in folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts)

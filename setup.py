@@ -13,8 +13,10 @@ numpy computes (solver/compiled).
 """
 
 import sys
+from pathlib import Path
 
 from setuptools import Extension, find_packages, setup
+from setuptools.command.bdist_wheel import bdist_wheel
 from setuptools.command.build_ext import build_ext
 
 DATA = {} if "editable_wheel" in sys.argv else {"study.studies": "studies", "study.docs": "docs"}
@@ -35,7 +37,16 @@ CORE = Extension(
 
 
 class build_core(build_ext):
-    """Say in one line that there is no core, which `roughcoat --version` says later."""
+    """Say in one line that there is no core, which `roughcoat --version` says later.
+
+    In a wheel the name of the file has no version of Python, since every Python loads it.
+    """
+
+    def get_ext_filename(self, fullname):
+        name = super().get_ext_filename(fullname)
+        if self.inplace or self.editable_mode:
+            return name
+        return name.partition(".")[0] + Path(name).suffix
 
     def build_extension(self, ext):
         try:
@@ -45,9 +56,16 @@ class build_core(build_ext):
             raise
 
 
+class one_wheel(bdist_wheel):
+    """A wheel for each platform, and for all versions of Python: nothing in it is linked with Python."""
+
+    def get_tag(self):
+        return "py3", "none", super().get_tag()[2]
+
+
 setup(
     packages=[*PACKAGES, *DATA],
     package_dir={"": ".", **DATA},
     ext_modules=[CORE],
-    cmdclass={"build_ext": build_core},
+    cmdclass={"build_ext": build_core, "bdist_wheel": one_wheel},
 )

@@ -1,5 +1,6 @@
 """Settings of the site that `make docs` builds: Sphinx reads docs/ as it is, and the pages of reference.py."""
 
+import json
 import re
 import sys
 from importlib.metadata import files
@@ -27,7 +28,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
 ]
 root_doc = "index"
-exclude_patterns = ["_build", "site", "gallery/*.rst", "notebooks"]
+exclude_patterns = ["_build", "gallery/*.rst", "notebooks"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 suppress_warnings = ["config.cache"]  # the order of the gallery is a function, which Sphinx cannot keep
 pygments_style = "default"
@@ -40,6 +41,7 @@ myst_heading_anchors = 4
 # Browsable from disk without a network: one file of MathJax, no fonts or scripts of other hosts.
 mathjax_path = "tex-svg.js"
 html_theme = "pydata_sphinx_theme"
+html_static_path, html_css_files = ["static"], ["site.css"]
 html_title = f"roughcoat {version}"
 html_theme_options = {
     "show_prev_next": False,
@@ -56,6 +58,22 @@ numpydoc_show_class_members = False
 autodoc_typehints = "none"  # the sections of a docstring say what a parameter may be
 default_role = "code"  # `name` in a docstring
 nitpicky = True
+
+
+#: Sphinx's search fetches a page to quote it below its title; if the site is opened from disk, TEXTS has the page.
+ASIDES = '<a class="headerlink".*?</a>|<div class="sphx-glr-download-link-note.*?</div>'
+FETCH = """if (location.protocol === "file:") {
+  const root = new URL(document.documentElement.dataset.content_root || "./", location.href).href;
+  window.fetch = async (url) => {
+    const page = new URL(url, location.href).href.replace(root, "").split("#")[0];
+    return new Response(`<div role="main">${TEXTS[page] || ""}</div>`);
+  };
+}
+"""
+
+
+#: The page that solves, in another page.
+EXPLORER = '<iframe class="explorer" src="_static/contact.html" title="roughcoat explorer" loading="lazy"></iframe>'
 
 
 def _pictures(block, block_vars, conf):
@@ -90,6 +108,23 @@ def _assets(app, error) -> None:
         (Path(app.outdir) / "_static/contact.html").write_text(explorer.page(), encoding="utf-8")
 
 
+def _texts(app, error) -> None:
+    """Write the texts of all pages for the page that searches: from disk, a browser lets it read no other page."""
+    if error is None:
+        folder = Path(app.outdir)
+        texts = {}
+        for path in sorted(folder.rglob("*.html")):
+            if article := re.search(r"<article\b.*?</article>", path.read_text(encoding="utf-8"), flags=re.DOTALL):
+                words = re.sub(f"{ASIDES}|<[^>]*>", "", article[0], flags=re.DOTALL)
+                texts[path.relative_to(folder).as_posix()] = " ".join(words.split())
+        (folder / "_static/texts.js").write_text(f"const TEXTS = {json.dumps(texts)};\n{FETCH}", encoding="utf-8")
+
+
+def _search(app, pagename, templatename, context, doctree) -> None:
+    if pagename == "search":
+        app.add_js_file("texts.js")
+
+
 def _plain(app, what, name, thing, options, lines) -> None:
     """Docstrings are plain text: E2* begins no emphasis, |x| is no substitution."""
     lines[:] = [
@@ -99,6 +134,9 @@ def _plain(app, what, name, thing, options, lines) -> None:
 
 def _links_out(app, docname, source) -> None:
     source[0] = reference.links_inside(source[0], docname)
+    if docname == "explorer":  # on the page about it, below its first sentence
+        title, command, sentence, rest = source[0].split("\n\n", 3)
+        source[0] = "\n\n".join([title, command, sentence, f"```{{raw}} html\n{EXPLORER}\n```", rest])
 
 
 def setup(app) -> None:
@@ -107,3 +145,5 @@ def setup(app) -> None:
     app.connect("autodoc-process-docstring", _plain, priority=100)  # before numpydoc
     app.connect("source-read", _links_out)
     app.connect("build-finished", _assets)
+    app.connect("build-finished", _texts)
+    app.connect("html-page-context", _search)

@@ -235,7 +235,7 @@ def register(kind: Law | Kind) -> Law | Kind:
 
     Examples
     --------
-    docs/extending.md has a law in one file.
+    docs/own_law.md has a law in one file.
     """
     _default.change(lambda known: known.with_law(kind) if isinstance(kind, Law) else known.with_shape(kind))
     return kind

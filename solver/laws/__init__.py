@@ -1,4 +1,4 @@
-"""Micro laws, one a file. docs/extending.md says how to add one."""
+"""Micro laws, one a file. docs/own_law.md says how to add one."""
 
 from types import MappingProxyType
 

@@ -1,6 +1,6 @@
 """Shapes of indenters, one a file; the protocol is in :mod:`.shape`.
 
-docs/extending.md says how to add one.
+docs/own_shape.md says how to add one.
 """
 
 from types import MappingProxyType

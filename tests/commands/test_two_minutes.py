@@ -55,6 +55,16 @@ def installed(tmp_path_factory) -> Path:
     return folder
 
 
+def test_one_wheel_serves_every_python(installed):
+    """The core is loaded by ctypes: neither the wheel nor the file in it has the version of a Python in its name."""
+    if installed == ROOT:
+        pytest.skip("setuptools built no wheel")
+    (wheel,) = installed.glob("*.whl")
+    assert re.fullmatch(r"roughcoat-[\d.]+-py3-none-(?!any\b)\w+\.whl", wheel.name)
+    of_wheel, in_place = (list((folder / "solver/compiled").glob("_core*")) for folder in (installed, ROOT))
+    assert len(of_wheel) == bool(in_place) and all(path.stem == "_core" for path in of_wheel)
+
+
 def test_three_contacts_in_two_minutes(installed, tmp_path):
     assert len(SHOWN) == 3
     given = json.dumps([shlex.split(command) for command, _ in SHOWN])

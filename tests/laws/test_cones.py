@@ -260,6 +260,6 @@ def test_a_law_given_as_an_object_travels_with_its_cases(tmp_path):
 
 
 def test_the_page_shows_this_law(tmp_path):
-    """docs/extending.md quotes the file, and what it prints is true."""
-    assert (ROOT / "tests/laws/cones.py").read_text(encoding="utf-8") in pages.examples("docs/extending.md")[0]
-    pages.check_examples("docs/extending.md", tmp_path, 2)  # the others: tests/figures/test_extending.py
+    """docs/own_law.md quotes the file, and what it prints is true."""
+    assert (ROOT / "tests/laws/cones.py").read_text(encoding="utf-8") in pages.examples("docs/own_law.md")[0]
+    pages.check_examples("docs/own_law.md", tmp_path, 2)

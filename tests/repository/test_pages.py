@@ -10,7 +10,7 @@ import xarray as xr
 from benchmark_page import PAGE
 from conftest import ROOT
 from test_repository import TARGETS
-from validate_page import page as resolved
+from validate_page import texts as resolved
 
 import roughcoat
 import solver
@@ -45,11 +45,13 @@ def test_the_page_of_speeds_is_that_of_its_command():
     assert len(pieces) > 10 and [piece for piece in pieces if piece not in TEXT["docs/speed.md"]] == []
 
 
-def test_the_page_of_resolved_spheres_is_that_of_its_numbers():
-    """What `make validate` has solved, which takes minutes, is in docs/validate.nc; the page is written of it anew."""
+def test_the_pages_of_resolved_spheres_are_those_of_their_numbers():
+    """What `make validate` has solved, which takes minutes, is in docs/validate.nc; both pages are written of it."""
     with xr.open_datatree(ROOT / "docs/validate.nc") as tree:
         written = resolved({name: tree[name].to_dataset().load() for name in tree.children})
-    assert pages.same(written.split(), TEXT["docs/validate.md"].split())
+    assert [*written] == ["validate", "validate_limits"]
+    for name, text in written.items():
+        assert pages.same(text.split(), TEXT[f"docs/{name}.md"].split()), name
 
 
 @pytest.mark.parametrize(
@@ -106,6 +108,15 @@ def test_what_a_page_names_exists(page):
             found = getattr(found, name)
 
 
+#: Pages that nobody reads from top to bottom.
+REFERENCES = {"docs/changelog.md", "CHANGELOG.md", "docs/literature.md", "docs/materials_table.md", "docs/symbols.md"}
+
+
+@pytest.mark.parametrize("page", sorted(set(pages.PAGES) - REFERENCES))
+def test_a_page_has_at_most_3500_words(page):
+    assert len(TEXT[page].split()) <= 3500
+
+
 @pytest.mark.parametrize("package", [roughcoat, solver])
 def test_the_page_of_python_has_every_public_name(package):
     shown = re.findall(
@@ -114,7 +125,7 @@ def test_the_page_of_python_has_every_public_name(package):
     assert {*shown} == {*package.__all__} | ({"__version__"} if package is roughcoat else set())
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/studies.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/studies.md", "docs/large_runs.md"])
 def test_commands_parse(page):
     found = [line for block in pages.blocks(page, "sh") for line in block.splitlines()]
     found += re.findall(r"`((?:python -m )?roughcoat [^`]+)`", TEXT[page])

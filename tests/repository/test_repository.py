@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import tomllib
 from pathlib import Path
 
@@ -18,6 +19,11 @@ TARGETS = ("help", "docs", "setup", "figures", "table1", "paper_numbers", "valid
            "picard_domain", "literature", "yield_maps", "validate", "test", "verify", "explorer-test", "check",
            "kernels", "lowest", "mutants", "sanitize", "fuzz", "bench", "speed", "start", "fit_coverage", "lint",
            "clean")  # fmt: skip
+
+#: Files at the top of the repository.
+TOP = ("CHANGELOG.md", "CITATION.cff", "CODE_OF_CONDUCT.md", "CONTRIBUTING.md", "LICENSE", "MANIFEST.in", "Makefile",
+       "README.md", "SECURITY.md", ".gitignore", "paper.bib", "paper.md", "pyproject.toml", "requirements.lock",
+       "setup.py")  # fmt: skip
 
 
 def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
@@ -155,6 +161,16 @@ def test_versions_agree():
     assert (ROOT / "LICENSE").read_text(encoding="utf-8").startswith("BSD 3-Clause License")
 
 
+def test_the_paper_has_the_sections_of_joss_and_its_references():
+    paper, bibliography = ((ROOT / name).read_text(encoding="utf-8") for name in ("paper.md", "paper.bib"))
+    assert re.findall("^# (.*)$", paper, flags=re.MULTILINE) == [
+        "Summary", "Statement of need", "State of the field", "Software design", "Research impact statement",
+        "AI usage disclosure", "Acknowledgements", "References",
+    ]  # fmt: skip
+    assert {*re.findall(r"@(\w+)\b", paper)} == {*re.findall(r"^@article\{(\w+),", bibliography, flags=re.MULTILINE)}
+    assert 750 <= len(paper.split()) <= 1750  # what JOSS asks for
+
+
 def contents(folder: Path) -> dict[str, bytes]:
     """Path in the folder -> bytes of each file, without compiled code."""
     files = (path for path in folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
@@ -175,6 +191,34 @@ def test_what_is_installed_has_every_package_and_the_studies(tmp_path):
     assert pages == {path.name for path in (ROOT / "docs").glob("*.md")} and len(pages) > 12
     assert {path.name for path in tmp_path.iterdir()} == {"roughcoat", "solver", "study"}
     assert PROJECT["project"]["scripts"] == {"roughcoat": "roughcoat.__main__:command"}
+
+
+def test_a_source_distribution_has_all_that_the_tests_need(tmp_path):
+    """Everything of the repository: the tests, the lists that they read, the lock, the sources of the core."""
+    clone, unwanted = tmp_path / "clone", shutil.ignore_patterns("__pycache__", "*.so", "*.pyd", "_build")
+    for folder in ("roughcoat", "solver", "study", "studies", "docs", "tests", "tools", "findings", ".ci", ".github"):
+        shutil.copytree(ROOT / folder, clone / folder, ignore=unwanted)
+    for made in ("examples", "reference"):  # by `make docs`
+        shutil.rmtree(clone / "docs" / made, ignore_errors=True)
+    for name in TOP:
+        shutil.copy(ROOT / name, clone)
+    wanted = {path.relative_to(clone).as_posix() for path in clone.rglob("*") if path.is_file()}
+    command = [sys.executable, "setup.py", "--quiet", "sdist", "--dist-dir", str(tmp_path)]
+    subprocess.run(command, cwd=clone, check=True, capture_output=True, timeout=120)
+    (packed,) = tmp_path.glob("*.tar.gz")
+    with tarfile.open(packed) as archive:
+        assert wanted - {name.partition("/")[2] for name in archive.getnames()} == set()
+
+
+def test_the_workflow_runs_what_ci_runs():
+    """Its Pythons are among those of the classifiers, and cibuildwheel's settings say which wheels."""
+    workflow = (ROOT / ".github/workflows/tests.yml").read_text(encoding="utf-8")
+    assert re.findall(r"- run: (\S+)$", workflow, flags=re.MULTILINE) == [".ci/run"]
+    (pythons,) = re.findall(r"python: \[(.*)\]", workflow)
+    named = {line.rsplit(" ", 1)[1] for line in PROJECT["project"]["classifiers"] if "Python :: 3." in line}
+    assert {*re.findall(r"3\.\d+", pythons)} <= named and "3.11" in pythons
+    assert "pipx run cibuildwheel" in workflow
+    assert all(build.startswith("cp311-") for build in PROJECT["tool"]["cibuildwheel"]["build"].split())
 
 
 def test_ci_runs_the_tests_of_the_readme():

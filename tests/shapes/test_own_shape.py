@@ -1,4 +1,4 @@
-"""A shape of somebody else's (steep_ball.py), as docs/extending.md says: smooth and rough."""
+"""A shape of somebody else's (steep_ball.py), as docs/own_shape.md says: smooth and rough."""
 
 import numpy as np
 import pages
@@ -23,7 +23,7 @@ def known(forgetful):
 
 def test_the_page_shows_it():
     assert (ROOT / "tests/shapes/steep_ball.py").read_text(encoding="utf-8") in pages.blocks(
-        "docs/extending.md", "python"
+        "docs/own_shape.md", "python"
     )
 
 

@@ -49,6 +49,17 @@ def test_every_public_name_has_a_page(site):
     assert 'id="roughcoat.solve"' in (site / "reference/roughcoat.solve.html").read_text(encoding="utf-8")
 
 
+def test_every_page_lists_its_neighbours(site):
+    """The left sidebar has the pages of the group that the bar names; only the start and the search have none."""
+    without = set()
+    for path in site.rglob("*.html"):
+        text = path.read_text(encoding="utf-8")
+        sidebar = re.search(r'<nav class="[^"]*\bbd-links\b.*?</nav>', text, flags=re.DOTALL)
+        if '<article class="bd-article"' in text and not (sidebar and "<a " in sidebar[0]):
+            without.add(path.relative_to(site).as_posix())
+    assert without <= {"index.html", "search.html", "genindex.html", "py-modindex.html"}
+
+
 def test_no_link_is_dead(site):
     pages = {path: path.read_text(encoding="utf-8") for path in site.rglob("*.html") if path.name != "contact.html"}
     anchors = {path: set(re.findall(r'\b(?:id|name)="([^"]+)"', text)) for path, text in pages.items()}
@@ -104,3 +115,36 @@ def test_a_browser_without_a_network_shows_every_page_and_formula(site):
         browser.close()
     elsewhere = [url for url in asked if not url.startswith((site.as_uri(), "data:", "blob:"))]
     assert elsewhere == [] and trouble == [] and formulas > 300
+
+
+@pytest.fixture
+def tab(site):
+    """A tab of a browser that has no network."""
+    if CHROMIUM is None:
+        pytest.skip("chromium is not installed (make explorer-test)")
+    sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed (make explorer-test)")
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        page = browser.new_page()
+        page.context.set_offline(True)
+        yield page
+        browser.close()
+
+
+def test_a_search_from_disk_quotes_the_pages(site, tab):
+    tab.goto((site / "search.html").as_uri() + "?q=hardness")
+    tab.wait_for_selector("#search-results p.context")
+    quoted = tab.evaluate("[...document.querySelectorAll('#search-results p.context')].map(e => e.innerText)")
+    assert len(quoted) > 5 and all("hard" in text.lower() for text in quoted)  # Sphinx looks for the stem
+
+
+@pytest.mark.parametrize("width", [390, 800, 1400])
+def test_pages_fit_a_phone_a_tablet_and_a_desk(site, tab, width):
+    """A page does not scroll sideways, and neither do its commands and answers."""
+    tab.set_viewport_size({"width": width, "height": 900})
+    wide = """[document.documentElement.scrollWidth, ...[...document.querySelectorAll(
+      '.highlight-sh pre, .highlight-text pre, .highlight-toml pre')].map(e => e.scrollWidth - e.clientWidth)]"""
+    for name in ("index", "two_minutes", "studies", "accuracy", "four_answers", "trust", "stresses", "examples/index"):
+        tab.goto((site / f"{name}.html").as_uri())
+        whole, *beyond = tab.evaluate(wide)
+        assert whole <= width and max(beyond, default=0) <= 0, name

@@ -1,6 +1,6 @@
 """`make validate`: the two scales against one. Rough spheres with every asperity resolved, on a half-space and on
 layers, of one height and of random heights, and cells of a lattice on layers, beside the predictions: docs/validate.nc,
-.md, .png, validate_cells.png, validate_limits.png.
+.md, .png, validate_cells.png, validate_limits.md, .png.
 
     python tools/resolved/validate.py
 
@@ -17,7 +17,7 @@ from validate_cells import cells as layer_cells
 from validate_cells import films, sparse
 from validate_figures import draw_cells, draw_limits, draw_means
 from validate_heights import SPHERES, cells, compared, finer, height_cells
-from validate_page import page
+from validate_page import texts
 from validate_rates import rates
 
 
@@ -52,7 +52,8 @@ def main(docs: Path, folder: Path) -> None:
     draw_means(parts["half_space"], parts["layer"], docs / "validate.png")
     draw_cells(parts["layer_cells"], docs / "validate_cells.png")
     draw_limits(parts, docs / "validate_limits.png")
-    (docs / "validate.md").write_text(page(parts), encoding="utf-8")
+    for name, text in texts(parts).items():
+        (docs / f"{name}.md").write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

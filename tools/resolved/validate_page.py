@@ -1,4 +1,4 @@
-"""The text of docs/validate.md."""
+"""The texts of docs/validate.md and docs/validate_limits.md."""
 
 import xarray as xr
 from validate_cases import RA
@@ -29,8 +29,9 @@ PAGE = """# Two scales against one
 
 Are two scales, a base and a micro law, right? `make validate` presses rough spheres with every asperity resolved, by
 conjugate gradients on square elements that are not periodic, and compares them with the two scales. It writes this
-page, its figures and `docs/validate.nc`. It takes {minutes} minutes of a processor. Each contact is kept once it is
-solved, so a run that was interrupted goes on where it was. R = E2* = 1 and Ra = {Ra:g}, on square lattices.
+page, [the limits and random heights](validate_limits.md), the figures and `docs/validate.nc`. It takes {minutes}
+minutes of a processor. Each contact is kept once it is solved, so a run that was interrupted goes on where it was.
+R = E2* = 1 and Ra = {Ra:g}, on square lattices.
 `tests/laws/lattice/test_lattice_sphere.py`, `tests/resolved/test_layered_sphere.py` and
 `tests/laws/heights/test_heights_sphere.py` have coarse ones.
 
@@ -123,8 +124,13 @@ different: a stiff layer bends between them.
 cell: points resolved, lines the law. (c) Mean pressure of rings of cells: points resolved, ± two standard errors, lines
 the mean field; grey the disc cell of one height. (d) Depth of the mean plane of periodic cells: points resolved, ± two
 standard errors.
+"""
+LIMITS = """# Two scales at their limits
 
-### Limits
+How fast does the law on the coated body tend to its limits, and is the mean field of random heights right? This page
+goes on where [validate.md](validate.md) ends, and says "resolved" as that page does.
+
+## Limits of the coated body
 
 How fast the law on the coated body tends to its limits, on a square lattice with λ = {rate_lam:g}, bonded, ν1 = 0.25. A
 *thick* layer differs from a half-space of its material as L(Gh) - 1 of the longest wave G = 2π/pitch, which falls as
@@ -190,14 +196,15 @@ TABLES = {
 }
 
 
-def page(parts: dict[str, xr.Dataset]) -> str:
-    """The page in Markdown."""
+def texts(parts: dict[str, xr.Dataset]) -> dict[str, str]:
+    """Name of a page -> its Markdown."""
     words = {"Ra": RA, "draws": DRAWS, "rings": RINGS, "cut": CUT, "summits": SUMMITS, "cells_drawn": CELLS_DRAWN}
     words |= {"one_percent": off_by(0.01), "five_percent": off_by(0.05), "ten_percent": off_by(0.1)}
     words |= {"minutes": MINUTES} | of_spheres(parts) | of_cells(parts) | {"rate_lam": LAM}
     finer = parts["heights"]["finer"]
     words |= {f"finer_{name}": float(finer.sel(quantity=name)) for name in ("D", "Ar_An")}
-    return PAGE.format(**words, **{name: write(parts[part]) for name, (part, write) in TABLES.items()})
+    words |= {name: write(parts[part]) for name, (part, write) in TABLES.items()}
+    return {name: text.format(**words) for name, text in (("validate", PAGE), ("validate_limits", LIMITS))}
 
 
 def of_spheres(parts: dict[str, xr.Dataset]) -> dict:

@@ -1,4 +1,4 @@
-"""The tables of docs/validate.md."""
+"""The tables of docs/validate.md and docs/validate_limits.md."""
 
 from itertools import product
 

@@ -109,7 +109,7 @@ def table() -> str:
 
 
 def markdown() -> str:
-    """The table of docs/materials.md: that of `table`, other names, strengths, condition and sources."""
+    """The table of docs/materials_table.md: that of `table`, other names, strengths, condition and sources."""
     head = ("material", "E", "ν", "E/(1 − ν²)", "strengths", "holds for", "source", "read", "source of the strengths")
     rows = [head, ("---",) * len(head)]
     for entry in _built_in().values():

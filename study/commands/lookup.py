@@ -95,6 +95,13 @@ def _number(name: str, text: str) -> float:
         raise ValueError(f"{name} = {shown(text)}: must be a number, in `unit`") from None
 
 
+def _deviations(name: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{name} = {shown(text)}: must be a number of robust deviations, such as 5") from None
+
+
 def _columns(name: str, text: str) -> list[int]:
     try:
         return [int(part) for part in text.split(",")]
@@ -138,6 +145,7 @@ READING: Kinds = {
     "missing": _text,
     "steep": _switch,
     "huge": _switch,
+    "despike": _deviations,
 }
 """The arguments of `read`, and what makes their values of texts."""
 MEASURING: Kinds = {"method": _text, "form": lambda _, text: _number_or_text(text), "rows": _text, "cutoff": _cutoffs}

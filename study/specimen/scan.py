@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from .heights.missing import treated
+from .heights.spikes import despiked
 from .pictures import of_heights
 
 #: Metres in a unit. The micro sign and the Greek letter are two characters; keyboards have one or the other.
@@ -71,6 +72,7 @@ def profile(
     missing: str = "fill",
     steep: bool = False,
     huge: bool = False,
+    despike: float | None = None,
 ) -> Scan:
     """A profile, from its heights and either their positions or their distance.
 
@@ -80,7 +82,7 @@ def profile(
     x, dx : positions on a uniform grid, rising or falling, or the distance of two points; in unit
     unit, height_unit : one of m, mm, um, nm, pm, angstrom, or as it is spelt otherwise
     name : of the scan, in messages
-    missing, steep, huge : as of `height_map`
+    missing, steep, huge, despike : as of `height_map`; the neighbours are four points on each side
 
     Returns
     -------
@@ -94,7 +96,7 @@ def profile(
         raise ValueError(f"{name}: give either the positions of the points, x, or their distance, dx")
     step = dx if x is None else _step(np.asarray(_in_unit(f"{name}: x", x, unit), dtype=float), np.shape(z), name)
     steps = (number(f"{name}: dx", step, unit),)
-    return _checked(z, steps, unit, height_unit, name, missing=missing, steep=steep, huge=huge)
+    return _checked(z, steps, unit, height_unit, name, missing=missing, steep=steep, huge=huge, despike=despike)
 
 
 def height_map(
@@ -108,6 +110,7 @@ def height_map(
     missing: str = "fill",
     steep: bool = False,
     huge: bool = False,
+    despike: float | None = None,
 ) -> Scan:
     """A map of heights.
 
@@ -121,6 +124,8 @@ def height_map(
         "skip" leaves them, and every statistic takes the points whose neighbours are all there; "refuse"
     steep : take slopes that no instrument measures (rms above 3), and heights that span more than the scan is long
     huge : take a scan longer than 1 m, heights of an rms below 1 pm, and asperities of a radius above 1 km
+    despike : take points for missing that are further than so many robust deviations (1.4826 times the median of all
+        these distances) from the median of their eight neighbours; 5 is usual, None takes all points as they are
 
     Returns
     -------
@@ -129,7 +134,8 @@ def height_map(
     Raises
     ------
     ValueError : fewer than 16 points in a direction, heights that are no numbers or all equal, a distance that is not
-        positive, an unknown unit, more missing points than allowed, or lengths whose unit must be another
+        positive, an unknown unit, more missing points than allowed, lengths whose unit must be another, or a despike
+        that is no positive number
     """
     dx = number(f"{name}: dx", dx, unit)
     axes = [z.coords[axis].values for axis in ("x", "y") if axis in getattr(z, "coords", ())]  # of xarray
@@ -138,7 +144,7 @@ def height_map(
         x, y = steps
         raise ValueError(f"{name}: the coordinates of z have steps of {x:g} along x, {y:g} along y: give dy")
     rows = dx if dy is None else number(f"{name}: dy", dy, unit)
-    return _checked(z, (rows, dx), unit, height_unit, name, missing=missing, steep=steep, huge=huge)
+    return _checked(z, (rows, dx), unit, height_unit, name, missing=missing, steep=steep, huge=huge, despike=despike)
 
 
 def metres(unit: str, name: str) -> float:
@@ -197,13 +203,14 @@ def _step(x: np.ndarray, shape: tuple, name: str) -> float:
     return abs(step)
 
 
-def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str, *, missing, steep, huge) -> Scan:
+def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str, *, missing, steep, huge, despike) -> Scan:
     """The scan in metres. Raises ValueError for heights or distances that no scan has."""
     z = _heights(z, len(steps), height_unit or unit, name)
     if not all(np.isfinite(step) and step > 0 for step in steps):
         raise ValueError(f"{name}: the distances of its points are {steps}; they must be positive")
     lateral, vertical = metres(unit, name), metres(height_unit or unit, name)
-    z, notes = treated(z, missing, name)
+    z, spikes = despiked(z, despike, name)
+    z, notes = treated(z, missing, name, spikes)
     if np.nanmax(z) == np.nanmin(z):
         raise ValueError(f"{name}: all {z.size} heights equal {np.nanmax(z):g}: there is no roughness to measure")
     scan = Scan(z * vertical, tuple(float(step) * lateral for step in steps), name, notes, bool(huge))

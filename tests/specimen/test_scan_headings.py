@@ -184,8 +184,13 @@ def test_interferometers(tmp_path):
     assert np.isnan(scan.z).sum() == 1
     assert_allclose(scan.z[1:], Z[1:] * 1e-8, rtol=1e-3)
     assert_allclose(scan.steps, 5e-7, rtol=1e-9)
-    with pytest.raises(ValueError, match="a.xyz: the file states its lengths itself; leave out unit"):
-        read(tmp_path, ZYGO.format("5e-7") + text(rows), "a.xyz", unit="um")
+    with pytest.raises(ValueError, match="a.xyz: the file states its lengths itself; leave out columns"):
+        read(tmp_path, ZYGO.format("5e-7") + text(rows), "a.xyz", columns=(0, 1, 2))
+    scan = read(tmp_path, ZYGO.format("5e-7") + text(rows), "a.xyz", unit="um", dx=0.4, missing="skip")
+    assert_allclose(scan.steps, 4e-7, rtol=1e-9)
+    assert scan.notes[0] == (
+        "points are dx = 0.4 and dy = 0.4 um apart, as the call says; the file states 5e-07 and 5e-07 m"
+    )
     with pytest.raises(ValueError, match="a.xyz: x and y are numbers of pixels, .* give dx and unit"):
         read(tmp_path, ZYGO.format("0") + text(rows), "a.xyz", unit="um")
     assert read(tmp_path, ZYGO.format("0") + text(rows), "a.xyz", unit="um", dx=2.0).steps == (2e-6, 2e-6)
@@ -216,8 +221,10 @@ def test_formats_that_state_their_lengths(tmp_path):
         scan = read(tmp_path, content, name)
         assert_allclose(scan.z, P * 1e-9, rtol=1e-9)
         assert_allclose(scan.steps, 0.25e-6, rtol=1e-12)
-        with pytest.raises(ValueError, match=f"{name}: the file states its lengths itself; leave out unit, dx"):
-            read(tmp_path, content, name, unit="um", dx=1)
+        scan = read(tmp_path, content, name, unit="um", dx=1, height_unit="m", steep=True, huge=True)
+        assert_allclose(scan.z, P * 1e-9, rtol=1e-9)
+        assert_allclose(scan.steps, 1e-6, rtol=1e-12)
+        assert scan.notes == ("points are dx = 1 um apart, as the call says; the file states 2.5e-07 m",)
 
 
 @pytest.mark.parametrize(

@@ -99,6 +99,8 @@ def test_what_a_scan_prints_is_what_point_takes(scan, capsys):
         (["unit=um", "dx=one"], 'scan: dx = "one": must be a number, in `unit`'),
         (["unit=um", "columns=0,x"], 'scan: columns = "0,x": must be columns, counted from 0, such as '),
         (["unit=um", "steep=perhaps"], 'scan: steep = "perhaps": must be steep=true or steep=false'),
+        (["unit=um", "despike=some"], 'scan: despike = "some": must be a number of robust deviations, such as 5'),
+        (["unit=um", "despike=-1"], "scan: scan.csv: despike = -1.0: must be a positive number of robust deviations"),
         (["unit=um", "cutoff=5"], 'scan: cutoff = "5" has no unit: must be a length, such as '),
         (["unit=um", "method=guess"], "scan: scan.csv: method = 'guess'; allowed are "),
         ([], "scan: scan.csv"),

@@ -10,6 +10,7 @@ from .. import pages
 from ..inputs.definition import StudyError
 from ..specimen import materials, roughness
 from ..specimen.quantities import quantity
+from ..specimen.scan import meant
 from ..terminal import answer, program, shown
 from . import signals
 from .arguments import SWITCH, assignment
@@ -73,7 +74,9 @@ def _arguments(texts: list[str]) -> dict[str, Any]:
         try:
             name, _ = assignment(text)
             if name not in kinds:
-                raise ValueError(f"{shown(name)} is nothing that `scan` takes; it takes {', '.join(kinds)}")
+                near = meant(name, kinds)
+                says = f"did you mean {near}?" if near else f"it takes {', '.join(kinds)}"
+                raise ValueError(f"{shown(name)} is nothing that `scan` takes; {says}")
             if name in arguments:
                 raise ValueError(f"{name} is given twice")
             arguments[name] = kinds[name](name, text.partition("=")[2].strip())

@@ -1,10 +1,14 @@
 """A measured surface: heights on a uniform grid, in metres. Numbers that no surface has are refused."""
 
+import difflib
+import functools
+import inspect
 import math
 import numbers
 import unicodedata
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
@@ -12,6 +16,7 @@ from .heights.missing import treated
 from .heights.spikes import despiked
 from .pictures import of_heights
 
+P, T = ParamSpec("P"), TypeVar("T")
 #: Metres in a unit. The micro sign and the Greek letter are two characters; keyboards have one or the other.
 MICRO = dict.fromkeys(("um", "µm", "μm"), 1e-6)
 UNITS = {"m": 1.0, "mm": 1e-3, **MICRO, "nm": 1e-9, "pm": 1e-12, "angstrom": 1e-10, "Å": 1e-10}
@@ -31,6 +36,15 @@ LONGEST, FLATTEST, BLUNTEST = 1.0, 1e-12, 1e3
 #: Largest distance of a position from the uniform grid, in steps. Curvatures err by about as much. Positions that are
 #: written to a tenth of the step pass.
 UNEVEN = 0.1
+
+
+#: Words that people have for an argument of `read`.
+_MEANT = {
+    **dict.fromkeys(("spacing", "step", "steps", "pixel", "pixel_size", "pitch", "resolution", "increment"), "dx"),
+    **dict.fromkeys(("units", "xunit", "x_unit"), "unit"),
+    **dict.fromkeys(("zunit", "z_unit", "height_units"), "height_unit"),
+    **dict.fromkeys(("spikes", "outliers"), "despike"),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +75,28 @@ class Scan:
         return of_heights(self)
 
 
+def meant(word: str, arguments: Iterable[str]) -> str | None:
+    """The one of the arguments that somebody means by another word, "pixel"; None if none is near."""
+    arguments, word = list(arguments), word.lower()
+    near = [_MEANT[word]] if word in _MEANT else difflib.get_close_matches(word, arguments, n=1, cutoff=0.75)
+    return near[0] if near and near[0] in arguments else None
+
+
+def refusing_others(function: Callable[P, T]) -> Callable[P, T]:
+    """The function; a TypeError for an argument that it does not take says which one may be meant."""
+    names = list(inspect.signature(function).parameters)
+
+    @functools.wraps(function)
+    def called(*args: P.args, **arguments: P.kwargs) -> T:
+        for word in arguments:
+            if word not in names and (near := meant(word, names)):
+                raise TypeError(f"{function.__name__} takes no {word}; did you mean {near}?")
+        return function(*args, **arguments)
+
+    return called
+
+
+@refusing_others
 def profile(
     z: Any,
     *,
@@ -99,6 +135,7 @@ def profile(
     return _checked(z, steps, unit, height_unit, name, missing=missing, steep=steep, huge=huge, despike=despike)
 
 
+@refusing_others
 def height_map(
     z: Any,
     *,

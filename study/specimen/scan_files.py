@@ -14,9 +14,10 @@ import numpy as np
 from solver.numerics.userfile import begins, checked, content, unpacked
 
 from . import netcdf_heights, x3p
-from .scan import FEWEST, Scan, metres, number, spelt
+from .foreign import plain
+from .scan import FEWEST, Scan, metres, number, refusing_others, spelt
 from .scan_grids import columns_of, npy_table, on_grid, overruled, scan_of, without_holes
-from .scan_headings import check_units, height_metres, stated, without_no_data
+from .scan_headings import check_units, height_metres, length, stated, stated_height_unit, without_no_data
 from .scan_texts import NumberTable, table_of, text_of
 
 #: Endings of files that are read as text if they are text, and by SurfaceTopography if they are none.
@@ -28,6 +29,7 @@ _FORCE = ("defl", "zsnsr", "lvdt", "raw", "force")
 _NO_FORMAT = "none of the formats that it knows fits the content"
 
 
+@refusing_others
 def read(
     path: str | PathLike,
     *,
@@ -153,13 +155,7 @@ def _zygo_pixel(table: NumberTable, has_dx: bool, name: str) -> float | None:
 
 def _of_table(name: str, table: NumberTable, arguments: dict, crop, how: dict) -> Scan:
     """The scan in a table of numbers: a profile, a map, or x, y, z of one."""
-    if "unit" not in arguments:
-        heading = table.heading[-1][1] if table.heading else ""
-        heading_in_words = f'. Its heading is "{heading[:80]}".' if heading else ""
-        raise ValueError(
-            f"{name}: give unit, such as unit='um', and height_unit if heights have another: units are not read from "
-            f"text and .npy{heading_in_words}"
-        )
+    _refuse_lacking(name, table, arguments)
     unit, height_unit = arguments["unit"], arguments.get("height_unit", arguments["unit"])
     cleaned, holes = without_holes(table.numbers)
     table = replace(table, numbers=cleaned, notes=table.notes + holes)
@@ -179,6 +175,30 @@ def _of_table(name: str, table: NumberTable, arguments: dict, crop, how: dict) -
         positions = [columns[:, 0] if dx is None else dx * np.arange(len(z))]
     steps = None if dx is None else [dy, dx][-z.ndim :]
     return scan_of(name, z, positions, steps=steps, units=(unit, height_unit), crop=crop, notes=notes, how=how)
+
+
+def _refuse_lacking(name: str, table: NumberTable, arguments: dict) -> None:
+    """Raise ValueError for all lengths at once that the call lacks: unit, dx of a map or one column, height_unit."""
+    rows, columns = table.numbers.shape
+    picked, unit = plain(arguments.get("columns")), arguments.get("unit")
+    is_map = picked is None and columns >= FEWEST and rows > 1
+    one_column = 1 in (rows, columns) if picked is None else np.size(picked) == 1
+    heading_unit = stated_height_unit(table)
+    other = heading_unit and (unit is None or metres(unit, name) != length(heading_unit))
+    also = [f"height_unit={heading_unit!r}, as the heading has it"] * bool(other and "height_unit" not in arguments)
+    lacks_dx = "dx" not in arguments and (is_map or one_column)
+    if unit is not None and is_map and lacks_dx:
+        sentences = [f"a map of {rows} × {columns} heights: give dx (and dy), their distance", *also]
+        raise ValueError(f"{name}: {'; and '.join(sentences)}")
+    if unit is None:
+        also = ["dx (and dy), the distance of points" if is_map else "dx, the distance of points"] * lacks_dx + also
+        heading = table.heading[-1][1] if table.heading else ""
+        raise ValueError(
+            f"{name}: give unit, such as unit='um', and height_unit if heights have another: units are not read from "
+            "text and .npy"
+            + (f". Give {' and '.join(also)} too" if also else "")
+            + (f'. Its heading is "{heading[:80]}".' if heading else "")
+        )
 
 
 def _instrument(path: Path, arguments: dict, channel: str | None, crop, how: dict) -> Scan:

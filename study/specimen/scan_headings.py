@@ -145,6 +145,13 @@ def height_metres(table: NumberTable, height_unit: str, name: str) -> tuple[floa
     return size, notes
 
 
+def stated_height_unit(table: NumberTable) -> str | None:
+    """The unit in which the heading has the heights, after its factor if it has one; None where it has none."""
+    value_unit = _value_unit(table)[0]
+    units = (conversion[1] for _, line in table.heading if (conversion := _factor(table, line, value_unit)))
+    return next(units, value_unit if value_unit and length(value_unit) else None)
+
+
 def _factor(table: NumberTable, line: str, value_unit: str) -> tuple[float, str] | None:
     """The factor that a line states, and the unit that it leads to."""
     if table.heading[0][1].startswith("Wyko ASCII"):

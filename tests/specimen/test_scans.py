@@ -263,3 +263,14 @@ def test_heights_under_a_mask_are_no_heights():
     z[3, 4] = 9e9
     with pytest.raises(ValueError, match="1 of 1024 heights are not numbers .NaN., the first in row 4, column 5"):
         roughness.height_map(np.ma.masked_greater(z, 1e9), dx=1, unit="um", missing="refuse")
+
+
+def test_words_for_an_argument():
+    """spacing, step and pixel were refused without a word of dx."""
+    for function in (roughness.read, roughness.height_map, roughness.profile):
+        for word in ("spacing", "step", "pixel", "Pixel_size"):
+            with pytest.raises(TypeError, match=f"^{function.__name__} takes no {word}; did you mean dx[?]$"):
+                function(Z, **{word: 1.0})
+        with pytest.raises(TypeError, match="unexpected keyword argument 'colour'"):
+            function(Z, colour=1)
+    assert roughness.read.__doc__.startswith("A profile or a map of heights from a file.")

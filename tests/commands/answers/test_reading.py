@@ -94,6 +94,8 @@ def test_what_a_scan_prints_is_what_point_takes(scan, capsys):
     ("words", "message"),
     [
         (["unit=um", "speed=3"], 'scan: "speed" is nothing that `scan` takes; it takes unit, height_unit, '),
+        (["unit=um", "spacing=3"], 'scan: "spacing" is nothing that `scan` takes; did you mean dx?'),
+        (["units=um", "dx=1"], 'scan: "units" is nothing that `scan` takes; did you mean unit?'),
         (["unit"], 'scan: "unit": must be NAME=VALUE'),
         (["unit=um", "unit=nm"], "scan: unit is given twice"),
         (["unit=um", "dx=one"], 'scan: dx = "one": must be a number, in `unit`'),

@@ -278,3 +278,20 @@ def test_a_factor_makes_metres_of_a_phase(tmp_path, z):
     with pytest.raises(ValueError, match=r"makes m of the heights, but height_unit is um: give height_unit='m'"):
         roughness.read(tmp_path / "phase.txt", unit="um", dx=0.369862)
     assert roughness.read(tmp_path / "phase.txt", unit="um", height_unit="m", dx=0.369862).z.shape == z.shape
+
+
+def test_all_lengths_that_a_text_lacks_are_asked_for_at_once(tmp_path, z):
+    """unit led to dx, dx to height_unit, one message after the other."""
+    heading = "pixel size=3.69862e-007 m\ndata unit=rad\nheight conversion factor (-> m)=2.91818e-008"
+    np.savetxt(tmp_path / "phase.txt", z, header=heading, comments="")
+    np.savetxt(tmp_path / "column.txt", z[0], header="Value units: nm")
+    for name, arguments, asked in (
+        ("phase.txt", {}, r"give unit, .*\. Give dx \(and dy\), .* and height_unit='m', as the heading has it too"),
+        ("phase.txt", {"dx": 1}, r"give unit, .* Give height_unit='m', as the heading has it too\. Its heading is"),
+        ("phase.txt", {"height_unit": "m"}, r"give unit, .* Give dx \(and dy\), the distance of points too\. Its"),
+        ("phase.txt", {"unit": "um"}, r"a map of 64 × 96 heights: give dx \(and dy\), .*; and height_unit='m', as the"),
+        ("phase.txt", {"unit": "m"}, r"a map of 64 × 96 heights: give dx \(and dy\), their distance$"),
+        ("column.txt", {}, r"give unit, .* Give dx, the distance of points and height_unit='nm', as the heading has"),
+    ):
+        with pytest.raises(ValueError, match=f"^{name}: {asked}"):
+            roughness.read(tmp_path / name, **arguments)

@@ -17,7 +17,7 @@ from . import netcdf_heights, x3p
 from .foreign import plain
 from .scan import FEWEST, Scan, metres, number, refusing_others, spelt
 from .scan_grids import columns_of, npy_table, on_grid, overruled, scan_of, without_holes
-from .scan_headings import check_units, height_metres, length, stated, stated_height_unit, without_no_data
+from .scan_headings import check_units, extent_notes, height_metres, length, stated, stated_height_unit, without_no_data
 from .scan_texts import NumberTable, table_of, text_of
 
 #: Endings of files that are read as text if they are text, and by SurfaceTopography if they are none.
@@ -169,6 +169,7 @@ def _of_table(name: str, table: NumberTable, arguments: dict, crop, how: dict) -
     z = z * (size / metres(height_unit, name))
     if z.ndim == 2:
         positions = [step * np.arange(points) for step, points in zip((dy, dx), z.shape, strict=True)]
+        notes += extent_notes(table, (dy, dx), unit, name)
     elif columns.shape[1] == 3:
         z, positions = on_grid(columns, z, None if dx is None else (dy, dx), name)
     else:
@@ -196,7 +197,7 @@ def _refuse_lacking(name: str, table: NumberTable, arguments: dict) -> None:
         raise ValueError(
             f"{name}: give unit, such as unit='um', and height_unit if heights have another: units are not read from "
             "text and .npy"
-            + (f". Give {' and '.join(also)} too" if also else "")
+            + (f". Also give {', and '.join(also)}" if also else "")
             + (f'. Its heading is "{heading[:80]}".' if heading else "")
         )
 

@@ -265,3 +265,22 @@ def test_a_part_of_a_scan(tmp_path):
     ):
         with pytest.raises(ValueError, match=f"^a.txt: .*{message}"):
             read(tmp_path, BODY, crop=crop, **MAP)
+
+
+@pytest.mark.parametrize(
+    ("heading", "dx", "said"),
+    [
+        ("Width: 40.0 µm\nHeight: 40 µm", 1.0, []),
+        ("Width: 40.0 µm\nHeight: 40 µm", 40 / 39, ["1 um a point, but dx is 1.0256 um", "but dy is 1.0256 um"]),
+        ("# Width: 40000 nm", 1.0, []),
+        ("pixel size=3.69862e-007 m", 0.369862, []),
+        ("pixel size=3.69862e-007 m", 0.38, ['line 1 has "pixel size=3.69862e-007 m", 0.36986 um a point, but dx is']),
+        ("Height: 12 V\nWidth: 4", 1.0, []),
+    ],
+)
+def test_distances_of_a_heading_are_compared(tmp_path, heading, dx, said):
+    """L/(N - 1) in the place of L/N made slopes 2.5 % too small, and the heading had L."""
+    scan = read(tmp_path, f"{heading}\n{BODY}", unit="um", height_unit="nm", dx=dx)
+    assert len(scan.notes) == len(said)
+    assert all(part in note for part, note in zip(said, scan.notes, strict=True))
+    assert_allclose(scan.steps, dx * 1e-6, rtol=1e-12)

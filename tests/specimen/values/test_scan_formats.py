@@ -286,12 +286,16 @@ def test_all_lengths_that_a_text_lacks_are_asked_for_at_once(tmp_path, z):
     np.savetxt(tmp_path / "phase.txt", z, header=heading, comments="")
     np.savetxt(tmp_path / "column.txt", z[0], header="Value units: nm")
     for name, arguments, asked in (
-        ("phase.txt", {}, r"give unit, .*\. Give dx \(and dy\), .* and height_unit='m', as the heading has it too"),
-        ("phase.txt", {"dx": 1}, r"give unit, .* Give height_unit='m', as the heading has it too\. Its heading is"),
-        ("phase.txt", {"height_unit": "m"}, r"give unit, .* Give dx \(and dy\), the distance of points too\. Its"),
+        ("phase.txt", {}, r"give unit, .*\. Also give dx \(and dy\), .*, and height_unit='m', as the heading has it"),
+        ("phase.txt", {"dx": 1}, r"give unit, .* Also give height_unit='m', as the heading has it\. Its heading is"),
+        ("phase.txt", {"height_unit": "m"}, r"give unit, .* Also give dx \(and dy\), the distance of points\. Its"),
         ("phase.txt", {"unit": "um"}, r"a map of 64 × 96 heights: give dx \(and dy\), .*; and height_unit='m', as the"),
         ("phase.txt", {"unit": "m"}, r"a map of 64 × 96 heights: give dx \(and dy\), their distance$"),
-        ("column.txt", {}, r"give unit, .* Give dx, the distance of points and height_unit='nm', as the heading has"),
+        (
+            "column.txt",
+            {},
+            r"give unit, .* Also give dx, the distance of points, and height_unit='nm', as the heading has",
+        ),
     ):
         with pytest.raises(ValueError, match=f"^{name}: {asked}"):
             roughness.read(tmp_path / name, **arguments)

@@ -49,6 +49,34 @@ def read(raw: bytes, arguments: dict, channel: str | None, name: str) -> Heights
             file.close()
 
 
+def data_sets(raw: bytes) -> dict[str, np.ndarray]:
+    """The data sets of an HDF5 file that may be maps, by name, heights (x, y); {} where it has none or is another file.
+
+    The first index runs along x, as in the files of the contact-mechanics challenge and in SurfaceTopography.
+    """
+    import netCDF4
+    from xarray.backends.netCDF4_ import NETCDF4_PYTHON_LOCK
+
+    def maps(group: Any, path: str) -> dict[str, np.ndarray]:
+        variables = {path + key: each for key, each in group.variables.items()}
+        here = {
+            key: np.ma.filled(np.ma.asarray(each[...], dtype=float), np.nan)
+            for key, each in variables.items()
+            if each.ndim == 2 and min(each.shape) > 0 and getattr(each.dtype, "kind", "O") in "biuf"
+        }
+        return here | {key: z for name, each in group.groups.items() for key, z in maps(each, f"{path}{name}/").items()}
+
+    with NETCDF4_PYTHON_LOCK:
+        try:
+            file = netCDF4.Dataset("heights", memory=raw)
+        except (OSError, ValueError, RuntimeError):
+            return {}
+        try:
+            return maps(file, "")
+        finally:
+            file.close()
+
+
 def _axes(variable: Any) -> list[str]:
     """The dimensions of more than one point, "x" and "y" in small letters."""
     pairs = zip(variable.dimensions, variable.shape, strict=True)

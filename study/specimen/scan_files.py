@@ -26,6 +26,9 @@ TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".xyz", ".prf", ".smd", ".sdf", 
 _LENGTHS = ("unit", "height_unit", "dx", "dy")
 #: Channels of a curve of force against distance, in small letters.
 _FORCE = ("defl", "zsnsr", "lvdt", "raw", "force")
+_NO_LENGTHS = (
+    "the file states no distance of its points: give dx (and dy) and unit, and height_unit if heights have another"
+)
 _NO_FORMAT = "none of the formats that it knows fits the content"
 
 
@@ -212,6 +215,8 @@ def _instrument(path: Path, arguments: dict, channel: str | None, crop, how: dic
     except ImportError as error:
         if ending not in TEXT and path.is_file() and (text := text_of(path)) is not None:
             return _of_text(name, text, arguments, channel, crop, how)
+        if (scan := _of_data_sets(path, arguments, channel, crop, how)) is not None:
+            return scan
         if ending in TEXT:
             raise ValueError(
                 f"{name}: not a text file; text in UTF-8 or UTF-16, .npy and formats of instruments are read. If it is "
@@ -253,6 +258,39 @@ def _instrument(path: Path, arguments: dict, channel: str | None, crop, how: dic
     return _of_instrument(topography, name, arguments, crop, notes, how, refused)
 
 
+def _of_data_sets(path: Path, arguments: dict, channel: str | None, crop, how: dict) -> Scan | None:
+    """The scan in a data set of HDF5, which states no lengths, read without SurfaceTopography; None if it has none."""
+    name, is_hdf5 = path.name, path.is_file() and begins(path).startswith(netcdf_heights.MAGIC[-1])
+    maps = netcdf_heights.data_sets(unpacked(content(path))) if is_hdf5 else {}
+    if not maps:
+        return None
+    if "columns" in arguments:
+        raise ValueError(f"{name}: the format states its lengths itself; leave out columns")
+    listed = ", ".join(map(repr, maps))
+    if channel is not None and channel not in maps:
+        raise ValueError(f"{name}: channel = {channel!r}, but the file has {listed}")
+    lacks_lengths = not {"dx", "unit"} <= arguments.keys()
+    sentences = [_NO_LENGTHS] * lacks_lengths
+    if channel is None and len(maps) > 1:
+        sentences.append(f"the file has the data sets {listed}: choose the heights with channel=")
+    if sentences:
+        raise ValueError(f"{name}: {'; and '.join(sentences)}")
+    chosen = channel or next(iter(maps))
+    z, note = maps[chosen].T, f"channel {chosen!r}" + f" of {listed}" * (len(maps) > 1)
+    if _are_labels(chosen, z):
+        raise ValueError(f"{name}: {note} has labels, which are no heights")
+    unit = arguments["unit"]
+    steps = [number(f"{name}: {key}", arguments.get(key, arguments["dx"]), unit) for key in ("dy", "dx")]
+    positions = [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
+    units = unit, arguments.get("height_unit", unit)
+    return scan_of(name, z, positions, steps=steps, units=units, crop=crop, notes=(note,), how=how)
+
+
+def _are_labels(channel: str, z: np.ndarray) -> bool:
+    """Whether a channel is named for labels or a mask, and has whole numbers alone."""
+    return bool(re.search("label|mask", channel, re.IGNORECASE) and (z % 1 == 0).all())
+
+
 def _without_mask(library, topography, channel) -> tuple:
     """A map of Gwyddion with the heights under its mask, and a note of them.
 
@@ -285,7 +323,7 @@ def _of_instrument(topography, name: str, arguments: dict, crop, notes: tuple, h
         overrules = stated is not None and spelt(stated) is not None and not arguments.keys().isdisjoint(_LENGTHS)
         topography = topography if stated is None or overrules else topography.to_unit("m")
         z = np.ma.filled(np.ma.asarray(topography.heights()).astype(float), np.nan).T
-        if re.search("label|mask", str(notes[:1]).partition(" of ")[0], re.IGNORECASE) and (z % 1 == 0).all():
+        if _are_labels(str(notes[:1]).partition(" of ")[0], z):
             raise ValueError(f"{notes[0]} has labels, which are no heights")
         z = np.where(np.isinf(z), np.copysign(1e300, z), z)  # the largest number times a scale: `scan_of` says so
         steps = [float(step) for step in np.atleast_1d(topography.pixel_size)][::-1] if topography.is_uniform else None
@@ -301,9 +339,7 @@ def _of_instrument(topography, name: str, arguments: dict, crop, notes: tuple, h
 def _lacking(channel, arguments: dict) -> list[str]:
     """Sentences about all lengths that a channel of SurfaceTopography and the call both lack."""
     if channel.physical_sizes is None and "dx" not in arguments:
-        with_unit = " and unit" if channel.unit is None else ""
-        heights = ", and height_unit if heights have another" if channel.unit is None else ""
-        return [f"the file states no distance of its points: give dx (and dy){with_unit}{heights}"]
+        return [_NO_LENGTHS if channel.unit is None else "the file states no distance of its points: give dx (and dy)"]
     return ["the file states no unit of length; give unit"] * (channel.unit is None and "unit" not in arguments)
 
 

@@ -11,6 +11,7 @@ from ..inputs.definition import StudyError
 from ..scan_laws import roughness
 from ..specimen import materials
 from ..specimen.quantities import quantity
+from ..specimen.scan import meant
 from ..terminal import answer, program, shown
 from . import signals
 from .arguments import SWITCH, assignment
@@ -92,7 +93,9 @@ def _arguments(texts: list[str], kinds: "Kinds") -> dict[str, Any]:
         try:
             name, _ = assignment(text)
             if name not in kinds:
-                raise ValueError(f"{shown(name)} is nothing that `scan` takes; it takes {', '.join(kinds)}")
+                near = meant(name, kinds)
+                says = f"did you mean {near}?" if near else f"it takes {', '.join(kinds)}"
+                raise ValueError(f"{shown(name)} is nothing that `scan` takes; {says}")
             if name in arguments:
                 raise ValueError(f"{name} is given twice")
             arguments[name] = kinds[name](name, text.partition("=")[2].strip())
@@ -118,6 +121,13 @@ def _whole(name: str, text: str) -> int:
     if not text.isdecimal():
         raise ValueError(f"{name} = {shown(text)}: must be a whole number")
     return int(text)
+
+
+def _deviations(name: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{name} = {shown(text)}: must be a number of robust deviations, such as 5") from None
 
 
 def _columns(name: str, text: str) -> list[int]:
@@ -163,6 +173,7 @@ READING: Kinds = {
     "missing": _text,
     "steep": _switch,
     "huge": _switch,
+    "despike": _deviations,
 }
 """The arguments of `read`, and what makes their values of texts."""
 MEASURING: Kinds = {"method": _text, "form": lambda _, text: _number_or_text(text), "rows": _text, "cutoff": _cutoffs}

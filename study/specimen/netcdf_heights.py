@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .scan import UNEVEN, metres, number, spelt
+from .scan_grids import overruled
 
 #: The first bytes of a netCDF file: of a classic one, and of HDF5, the form of version 4.
 MAGIC = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF\r\n\x1a\n")
@@ -26,9 +27,9 @@ class Heights(NamedTuple):
 def read(raw: bytes, arguments: dict, channel: str | None, name: str) -> Heights | None:
     """The heights of a netCDF file over dimensions x and y, or over x; None where it has none.
 
-    arguments : unit, height_unit, dx, dy, where the file does not state them
+    arguments : unit, height_unit, dx, dy, which hold in the place of what the file states
 
-    Raises ValueError: several variables and none chosen, no steps or units, or those of the file given again.
+    Raises ValueError: several variables and none chosen, or no steps or units.
     """
     import netCDF4  # heavy: it is needed for these files alone
     from xarray.backends.netCDF4_ import NETCDF4_PYTHON_LOCK
@@ -44,6 +45,34 @@ def read(raw: bytes, arguments: dict, channel: str | None, name: str) -> Heights
                 return None
             variable = named[_chosen(list(named), channel, name)]
             return _heights(file, variable, arguments, name, tuple(named))
+        finally:
+            file.close()
+
+
+def data_sets(raw: bytes) -> dict[str, np.ndarray]:
+    """The data sets of an HDF5 file that may be maps, by name, heights (x, y); {} where it has none or is another file.
+
+    The first index runs along x, as in the files of the contact-mechanics challenge and in SurfaceTopography.
+    """
+    import netCDF4
+    from xarray.backends.netCDF4_ import NETCDF4_PYTHON_LOCK
+
+    def maps(group: Any, path: str) -> dict[str, np.ndarray]:
+        variables = {path + key: each for key, each in group.variables.items()}
+        here = {
+            key: np.ma.filled(np.ma.asarray(each[...], dtype=float), np.nan)
+            for key, each in variables.items()
+            if each.ndim == 2 and min(each.shape) > 0 and getattr(each.dtype, "kind", "O") in "biuf"
+        }
+        return here | {key: z for name, each in group.groups.items() for key, z in maps(each, f"{path}{name}/").items()}
+
+    with NETCDF4_PYTHON_LOCK:
+        try:
+            file = netCDF4.Dataset("heights", memory=raw)
+        except (OSError, ValueError, RuntimeError):
+            return {}
+        try:
+            return maps(file, "")
         finally:
             file.close()
 
@@ -84,20 +113,22 @@ def _heights(file: Any, variable: Any, arguments: dict, name: str, named: tuple)
     order = [axes.index(axis) for axis in ("y", "x") if axis in axes]
     z, axes = z.transpose(order), [axes[i] for i in order]
     axis_positions = {axis: _positions(file, axis, points, name) for axis, points in zip(axes, z.shape, strict=True)}
-    units = _units(file, variable, axes, arguments, name)
-    if lacking := [axis for axis in axes if axis_positions[axis] is None]:
-        if "dx" not in arguments:
-            missing = " and ".join(f"no positions of {axis}" for axis in lacking)
-            raise ValueError(f"{name}: the file states {missing}: give dx{' (and dy)' * (len(axes) == 2)}")
-    elif more := [key for key in ("dx", "dy") if key in arguments]:
-        raise ValueError(f"{name}: the file states the positions of its points itself; leave out {', '.join(more)}")
+    stated = _stated_units(file, variable, axes, name)
+    lacking = [axis for axis in axes if axis_positions[axis] is None]
+    units = _units(stated, lacking, arguments, name)
+    overruling = {key: value for key, value in arguments.items() if stated.get(key, not lacking)}
+    if lacking:  # then `unit` is that of dx, and holds for no more where the file has one
+        overruling.pop("unit", None)
+    size = metres(arguments.get("unit", units[0]), name) / metres(units[0], name)
     positions, steps = [], []
     for axis, points in zip(axes, z.shape, strict=True):
         step = arguments.get("dy", arguments.get("dx")) if axis == "y" else arguments.get("dx")
-        steps.append(axis_positions[axis][0] if axis_positions[axis] else number(f"{name}: d{axis}", step, units[0]))
-        positions.append(axis_positions[axis][1] if axis_positions[axis] else steps[-1] * np.arange(points))
+        of_file = axis_positions[axis]
+        steps.append(of_file[0] if of_file else number(f"{name}: d{axis}", step, units[0]) * size)
+        positions.append(of_file[1] if of_file else steps[-1] * np.arange(points))
+    lengths = overruled(positions, steps, units, overruling, name)
     notes = (f"channel {variable.name!r}" + f" of {', '.join(map(repr, named))}" * (len(named) > 1),)
-    return Heights(z, positions, steps, units, notes)
+    return Heights(z, lengths.positions, lengths.steps, lengths.units, notes + lengths.notes)
 
 
 def _positions(file: Any, axis: str, points: int, name: str) -> tuple[float, np.ndarray] | None:
@@ -120,8 +151,8 @@ def _positions(file: Any, axis: str, points: int, name: str) -> tuple[float, np.
     return length / points if rounded else abs(step), x
 
 
-def _units(file: Any, variable: Any, axes: list[str], arguments: dict, name: str) -> tuple[str, str]:
-    """The units of positions and of heights, of the file or, where it has none, of the call."""
+def _stated_units(file: Any, variable: Any, axes: list[str], name: str) -> dict[str, str | None]:
+    """The unit of the positions, `unit`, and that of the heights, `height_unit`; None where the file has none."""
     units = {axis: _unit(file, axis, name) for axis in axes}
     lateral = {unit for unit in units.values() if unit}
     if len({metres(unit, name) for unit in lateral}) > 1:
@@ -130,16 +161,27 @@ def _units(file: Any, variable: Any, axes: list[str], arguments: dict, name: str
     height = _unit_of(variable, name)
     if height is None and unit and hasattr(file.variables.get("x"), "unit"):  # of SurfaceTopography: of all lengths
         height = unit
-    stated = {"unit": unit, "height_unit": height}
-    for key, value in stated.items():
-        if value and key in arguments and metres(arguments[key], name) != metres(value, name):
-            raise ValueError(f"{name}: {key} is {arguments[key]}, but the file states {value}: leave out {key}")
-    stated = {key: value or arguments.get(key) for key, value in stated.items()}
-    if not height and "unit" in arguments and not unit:
-        stated["height_unit"] = arguments.get("height_unit", arguments["unit"])
-    if lacking := [key for key, value in stated.items() if not value]:
-        raise ValueError(f"{name}: the file states no {' and no '.join(lacking)}: give {', '.join(lacking)}")
-    return stated["unit"], stated["height_unit"]
+    return {"unit": unit, "height_unit": height}
+
+
+def _units(stated: dict[str, str | None], lacking: list[str], arguments: dict, name: str) -> tuple[str, str]:
+    """The units of positions and of heights, of the file or, where it has none, of the call.
+
+    lacking : axes without positions
+
+    Raises ValueError: units or distances that neither has, all in one message.
+    """
+    units = {key: value or arguments.get(key) for key, value in stated.items()}
+    if not any(stated.values()) and "unit" in arguments:
+        units["height_unit"] = arguments.get("height_unit", arguments["unit"])
+    asked = [key for key, value in units.items() if not value]
+    sentences = [f"no {' and no '.join(asked)}: give {', '.join(asked)}"] if asked else []
+    if lacking and "dx" not in arguments:
+        missing = " and ".join(f"no positions of {axis}" for axis in lacking)
+        sentences.append(f"{missing}: give dx{' (and dy)' * ('y' in lacking)}")
+    if sentences:
+        raise ValueError(f"{name}: the file states {'; and '.join(sentences)}")
+    return str(units["unit"]), str(units["height_unit"])
 
 
 def _unit(file: Any, axis: str, name: str) -> str | None:

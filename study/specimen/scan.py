@@ -1,17 +1,23 @@
 """A measured surface: heights on a uniform grid, in metres. Numbers that no surface has are refused."""
 
+import difflib
+import functools
+import inspect
 import math
 import numbers
 import unicodedata
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
 from .heights.memory import present
 from .heights.missing import treated
+from .heights.spikes import despiked
 from .pictures import of_heights
 
+P, T = ParamSpec("P"), TypeVar("T")
 #: Metres in a unit. The micro sign and the Greek letter are two characters; keyboards have one or the other.
 MICRO = dict.fromkeys(("um", "µm", "μm"), 1e-6)
 UNITS = {"m": 1.0, "mm": 1e-3, **MICRO, "nm": 1e-9, "pm": 1e-12, "angstrom": 1e-10, "Å": 1e-10}
@@ -31,6 +37,15 @@ LONGEST, FLATTEST, BLUNTEST = 1.0, 1e-12, 1e3
 #: Largest distance of a position from the uniform grid, in steps. Curvatures err by about as much. Positions that are
 #: written to a tenth of the step pass.
 UNEVEN = 0.1
+
+
+#: Words that people have for an argument of `read`.
+_MEANT = {
+    **dict.fromkeys(("spacing", "step", "steps", "pixel", "pixel_size", "pitch", "resolution", "increment"), "dx"),
+    **dict.fromkeys(("units", "xunit", "x_unit"), "unit"),
+    **dict.fromkeys(("zunit", "z_unit", "height_units"), "height_unit"),
+    **dict.fromkeys(("spikes", "outliers"), "despike"),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +76,28 @@ class Scan:
         return of_heights(self)
 
 
+def meant(word: str, arguments: Iterable[str]) -> str | None:
+    """The one of the arguments that somebody means by another word, "pixel"; None if none is near."""
+    arguments, word = list(arguments), word.lower()
+    near = [_MEANT[word]] if word in _MEANT else difflib.get_close_matches(word, arguments, n=1, cutoff=0.75)
+    return near[0] if near and near[0] in arguments else None
+
+
+def refusing_others(function: Callable[P, T]) -> Callable[P, T]:
+    """The function; a TypeError for an argument that it does not take says which one may be meant."""
+    names = list(inspect.signature(function).parameters)
+
+    @functools.wraps(function)
+    def called(*args: P.args, **arguments: P.kwargs) -> T:
+        for word in arguments:
+            if word not in names and (near := meant(word, names)):
+                raise TypeError(f"{function.__name__} takes no {word}; did you mean {near}?")
+        return function(*args, **arguments)
+
+    return called
+
+
+@refusing_others
 def profile(
     z: Any,
     *,
@@ -72,6 +109,7 @@ def profile(
     missing: str = "fill",
     steep: bool = False,
     huge: bool = False,
+    despike: float | None = None,
 ) -> Scan:
     """A profile, from its heights and either their positions or their distance.
 
@@ -81,7 +119,7 @@ def profile(
     x, dx : positions on a uniform grid, rising or falling, or the distance of two points; in unit
     unit, height_unit : one of m, mm, um, nm, pm, angstrom, or as it is spelt otherwise
     name : of the scan, in messages
-    missing, steep, huge : as of `height_map`
+    missing, steep, huge, despike : as of `height_map`; the neighbours are four points on each side
 
     Returns
     -------
@@ -95,9 +133,10 @@ def profile(
         raise ValueError(f"{name}: give either the positions of the points, x, or their distance, dx")
     step = dx if x is None else _step(np.asarray(_in_unit(f"{name}: x", x, unit), dtype=float), np.shape(z), name)
     steps = (number(f"{name}: dx", step, unit),)
-    return _checked(z, steps, unit, height_unit, name, missing=missing, steep=steep, huge=huge)
+    return _checked(z, steps, unit, height_unit, name, missing=missing, steep=steep, huge=huge, despike=despike)
 
 
+@refusing_others
 def height_map(
     z: Any,
     *,
@@ -109,6 +148,7 @@ def height_map(
     missing: str = "fill",
     steep: bool = False,
     huge: bool = False,
+    despike: float | None = None,
 ) -> Scan:
     """A map of heights.
 
@@ -122,6 +162,8 @@ def height_map(
         "skip" leaves them, and every statistic takes the points whose neighbours are all there; "refuse"
     steep : take slopes that no instrument measures (rms above 3), and heights that span more than the scan is long
     huge : take a scan longer than 1 m, heights of an rms below 1 pm, and asperities of a radius above 1 km
+    despike : take points for missing that are further than so many robust deviations (1.4826 times the median of all
+        these distances) from the median of their eight neighbours; 5 is usual, None takes all points as they are
 
     Returns
     -------
@@ -130,7 +172,8 @@ def height_map(
     Raises
     ------
     ValueError : fewer than 16 points in a direction, heights that are no numbers or all equal, a distance that is not
-        positive, an unknown unit, more missing points than allowed, or lengths whose unit must be another
+        positive, an unknown unit, more missing points than allowed, lengths whose unit must be another, or a despike
+        that is no positive number
     """
     dx = number(f"{name}: dx", dx, unit)
     axes = [z.coords[axis].values for axis in ("x", "y") if axis in getattr(z, "coords", ())]  # of xarray
@@ -139,7 +182,7 @@ def height_map(
         x, y = steps
         raise ValueError(f"{name}: the coordinates of z have steps of {x:g} along x, {y:g} along y: give dy")
     rows = dx if dy is None else number(f"{name}: dy", dy, unit)
-    return _checked(z, (rows, dx), unit, height_unit, name, missing=missing, steep=steep, huge=huge)
+    return _checked(z, (rows, dx), unit, height_unit, name, missing=missing, steep=steep, huge=huge, despike=despike)
 
 
 def metres(unit: str, name: str) -> float:
@@ -198,13 +241,14 @@ def _step(x: np.ndarray, shape: tuple, name: str) -> float:
     return abs(step)
 
 
-def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str, *, missing, steep, huge) -> Scan:
+def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str, *, missing, steep, huge, despike) -> Scan:
     """The scan in metres. Raises ValueError for heights or distances that no scan has."""
     z = _heights(z, len(steps), height_unit or unit, name)
     if not all(np.isfinite(step) and step > 0 for step in steps):
         raise ValueError(f"{name}: the distances of its points are {steps}; they must be positive")
     lateral, vertical = metres(unit, name), metres(height_unit or unit, name)
-    z, notes = treated(z, missing, name)
+    z, spikes = despiked(z, despike, name)
+    z, notes = treated(z, missing, name, spikes)
     if np.nanmax(z) == np.nanmin(z):
         raise ValueError(f"{name}: all {z.size} heights equal {np.nanmax(z):g}: there is no roughness to measure")
     scan = Scan(z * vertical, tuple(float(step) * lateral for step in steps), name, notes, bool(huge))

@@ -14,18 +14,25 @@ import numpy as np
 from solver.numerics.userfile import begins, checked, content, unpacked
 
 from . import netcdf_heights, x3p
-from .scan import FEWEST, Scan, metres, number
-from .scan_grids import columns_of, npy_table, on_grid, scan_of, without_holes
-from .scan_headings import check_units, height_metres, stated, without_no_data
+from .foreign import plain
+from .scan import FEWEST, Scan, metres, number, refusing_others, spelt
+from .scan_grids import columns_of, npy_table, on_grid, overruled, scan_of, without_holes
+from .scan_headings import check_units, extent_notes, height_metres, length, stated, stated_height_unit, without_no_data
 from .scan_texts import NumberTable, table_of, text_of
 
 #: Endings of files that are read as text if they are text, and by SurfaceTopography if they are none.
 TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".xyz", ".prf", ".smd", ".sdf", ".gz", "")
+#: Arguments that hold in the place of what a file states.
+_LENGTHS = ("unit", "height_unit", "dx", "dy")
 #: Channels of a curve of force against distance, in small letters.
 _FORCE = ("defl", "zsnsr", "lvdt", "raw", "force")
+_NO_LENGTHS = (
+    "the file states no distance of its points: give dx (and dy) and unit, and height_unit if heights have another"
+)
 _NO_FORMAT = "none of the formats that it knows fits the content"
 
 
+@refusing_others
 def read(
     path: str | PathLike,
     *,
@@ -39,6 +46,7 @@ def read(
     missing: str = "fill",
     steep: bool = False,
     huge: bool = False,
+    despike: float | None = None,
 ) -> Scan:
     """A profile or a map of heights from a file.
 
@@ -57,12 +65,13 @@ def read(
     path : of the file
     unit : unit of x, y, dx, dy and crop: m, mm, um, nm, pm or angstrom. Text and .npy have none, so it must be given.
     height_unit : unit of z; None: as `unit`
-    dx, dy : distance of the points, in unit; dy is dx if it is not given
+    dx, dy : distance of the points, in unit; dy is dx if it is not given. Where a file states its lengths, unit,
+        height_unit, dx and dy of the call hold in their place, and the notes say what the file states
     columns : which columns to take, counted from 0: (x, z), (x, y, z), or (z,) with dx
     channel : name of the channel to read; None: the first of heights. The notes of the scan name it
     crop : (x0, x1) or (x0, x1, y0, y1), the part to keep, in unit (m where it is None) or texts with units. x and y are
         those of the file, or begin with 0 at the first point
-    missing, steep, huge : as of `height_map`
+    missing, steep, huge, despike : as of `height_map`
 
     Returns
     -------
@@ -79,7 +88,7 @@ def read(
             checked(path)
     except ValueError as error:
         raise ValueError(f"{path.name}: {error}") from None
-    ending, how = path.suffix.lower(), {"missing": missing, "steep": steep, "huge": huge}
+    ending, how = path.suffix.lower(), {"missing": missing, "steep": steep, "huge": huge, "despike": despike}
     arguments = {"unit": unit, "height_unit": height_unit, "dx": dx, "dy": dy, "columns": columns}
     arguments = {name: value for name, value in arguments.items() if value is not None}
     text = text_of(path) if ending in TEXT else None
@@ -103,12 +112,16 @@ def _of_own_format(path: Path, arguments: dict, channel: str | None, crop, how: 
         return None if heights is None else scan_of(name, **heights._asdict(), crop=crop, how=how)
     if not head.startswith(b"PK") or (surface := x3p.read(unpacked(content(path)), name)) is None:
         return None
-    if arguments or channel is not None:
-        more = ", ".join([*arguments, *["channel"] * (channel is not None)])
-        raise ValueError(f"{name}: the format states its lengths itself; leave out {more}")
-    z, steps = surface
+    return _of_stated(name, *surface, arguments, channel, crop, how)
+
+
+def _of_stated(name: str, z, steps, arguments: dict, channel: str | None, crop, how: dict) -> Scan:
+    """The scan of heights at distances that a format states in m. Raises ValueError for a column or channel of it."""
+    if more := [key for key, value in {**arguments, "channel": channel}.items() if value and key not in _LENGTHS]:
+        raise ValueError(f"{name}: the format states its lengths itself; leave out {', '.join(more)}")
     positions = [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
-    return scan_of(name, z, positions, steps=steps, crop=crop, how=how)
+    lengths = overruled(positions, list(steps), ("m", "m"), arguments, name)
+    return scan_of(name, z, **lengths._asdict(), crop=crop, how=how)
 
 
 def _of_text(name: str, text: str, arguments: dict, channel: str | None, crop, how: dict) -> Scan:
@@ -116,16 +129,16 @@ def _of_text(name: str, text: str, arguments: dict, channel: str | None, crop, h
     surface = stated(text, name)
     table = None if surface else table_of(text, name, channel)
     pixel = None if surface else _zygo_pixel(table, "dx" in arguments, name)
-    if surface or pixel:
-        if arguments or channel is not None:
-            more = ", ".join([*arguments, *["channel"] * (channel is not None)])
-            raise ValueError(f"{name}: the file states its lengths itself; leave out {more}")
-        if pixel:
-            return _of_table(name, table, {"unit": "m", "height_unit": "um", "dx": pixel}, crop, how)
-        z, steps = surface
-        positions = [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
-        return scan_of(name, z, positions, steps=steps, crop=crop, how=how)
-    return _of_table(name, table, arguments, crop, how)
+    if surface:
+        return _of_stated(name, *surface, arguments, channel, crop, how)
+    if not pixel:
+        return _of_table(name, table, arguments, crop, how)
+    if "columns" in arguments:
+        raise ValueError(f"{name}: the file states its lengths itself; leave out columns")
+    lengths = overruled([np.arange(2.0)] * 2, [pixel] * 2, ("m", "um"), arguments, name)
+    taken = {"unit": lengths.units[0], "height_unit": lengths.units[1]}
+    scan = _of_table(name, table, taken | dict(zip(("dy", "dx"), lengths.steps or (), strict=False)), crop, how)
+    return replace(scan, notes=lengths.notes + scan.notes)
 
 
 def _zygo_pixel(table: NumberTable, has_dx: bool, name: str) -> float | None:
@@ -145,13 +158,7 @@ def _zygo_pixel(table: NumberTable, has_dx: bool, name: str) -> float | None:
 
 def _of_table(name: str, table: NumberTable, arguments: dict, crop, how: dict) -> Scan:
     """The scan in a table of numbers: a profile, a map, or x, y, z of one."""
-    if "unit" not in arguments:
-        heading = table.heading[-1][1] if table.heading else ""
-        heading_in_words = f'. Its heading is "{heading[:80]}".' if heading else ""
-        raise ValueError(
-            f"{name}: give unit, such as unit='um', and height_unit if heights have another: units are not read from "
-            f"text and .npy{heading_in_words}"
-        )
+    _refuse_lacking(name, table, arguments)
     unit, height_unit = arguments["unit"], arguments.get("height_unit", arguments["unit"])
     cleaned, holes = without_holes(table.numbers)
     table = replace(table, numbers=cleaned, notes=table.notes + holes)
@@ -165,12 +172,37 @@ def _of_table(name: str, table: NumberTable, arguments: dict, crop, how: dict) -
     z = z * (size / metres(height_unit, name))
     if z.ndim == 2:
         positions = [step * np.arange(points) for step, points in zip((dy, dx), z.shape, strict=True)]
+        notes += extent_notes(table, (dy, dx), unit, name)
     elif columns.shape[1] == 3:
         z, positions = on_grid(columns, z, None if dx is None else (dy, dx), name)
     else:
         positions = [columns[:, 0] if dx is None else dx * np.arange(len(z))]
     steps = None if dx is None else [dy, dx][-z.ndim :]
     return scan_of(name, z, positions, steps=steps, units=(unit, height_unit), crop=crop, notes=notes, how=how)
+
+
+def _refuse_lacking(name: str, table: NumberTable, arguments: dict) -> None:
+    """Raise ValueError for all lengths at once that the call lacks: unit, dx of a map or one column, height_unit."""
+    rows, columns = table.numbers.shape
+    picked, unit = plain(arguments.get("columns")), arguments.get("unit")
+    is_map = picked is None and columns >= FEWEST and rows > 1
+    one_column = 1 in (rows, columns) if picked is None else np.size(picked) == 1
+    heading_unit = stated_height_unit(table)
+    other = heading_unit and (unit is None or metres(unit, name) != length(heading_unit))
+    also = [f"height_unit={heading_unit!r}, as the heading has it"] * bool(other and "height_unit" not in arguments)
+    lacks_dx = "dx" not in arguments and (is_map or one_column)
+    if unit is not None and is_map and lacks_dx:
+        sentences = [f"a map of {rows} × {columns} heights: give dx (and dy), their distance", *also]
+        raise ValueError(f"{name}: {'; and '.join(sentences)}")
+    if unit is None:
+        also = ["dx (and dy), the distance of points" if is_map else "dx, the distance of points"] * lacks_dx + also
+        heading = table.heading[-1][1] if table.heading else ""
+        raise ValueError(
+            f"{name}: give unit, such as unit='um', and height_unit if heights have another: units are not read from "
+            "text and .npy"
+            + (f". Also give {', and '.join(also)}" if also else "")
+            + (f'. Its heading is "{heading[:80]}".' if heading else "")
+        )
 
 
 def _instrument(path: Path, arguments: dict, channel: str | None, crop, how: dict) -> Scan:
@@ -183,6 +215,8 @@ def _instrument(path: Path, arguments: dict, channel: str | None, crop, how: dic
     except ImportError as error:
         if ending not in TEXT and path.is_file() and (text := text_of(path)) is not None:
             return _of_text(name, text, arguments, channel, crop, how)
+        if (scan := _of_data_sets(path, arguments, channel, crop, how)) is not None:
+            return scan
         if ending in TEXT:
             raise ValueError(
                 f"{name}: not a text file; text in UTF-8 or UTF-16, .npy and formats of instruments are read. If it is "
@@ -199,21 +233,22 @@ def _instrument(path: Path, arguments: dict, channel: str | None, crop, how: dic
     if kind in ("asc", "xyz"):
         return _of_text(name, text_of(path), arguments, channel, crop, how)
     chosen, notes = _chosen(channels, default, channel, name) if channels else (None, ())
-    lacks = {"dx", "dy"} if chosen and chosen.physical_sizes is None else set()
-    lacks |= {"height_unit"} if chosen and chosen.unit is None else set()
-    if more := [key for key in arguments if key not in {"unit"} | lacks]:
-        raise ValueError(f"{name}: the format states its lengths itself; leave out {', '.join(more)}")
-    if "dx" in lacks and not {"dx", "unit"} <= arguments.keys():
-        raise ValueError(f"{name}: the file states no distance of its points: give dx (and dy) and unit")
-    if kind == "h5" and channel is None and len(channels) > 1:
+    if "columns" in arguments:
+        raise ValueError(f"{name}: the format states its lengths itself; leave out columns")
+    lengths_lacking = _lacking(chosen, arguments) if chosen else []
+    several = kind == "h5" and channel is None and len(channels) > 1
+    if several or lengths_lacking:
         named = ", ".join(repr(each.channel_id) for each in channels)
-        raise ValueError(f"{name}: the file has the data sets {named}: choose the heights with channel=")
+        data_sets = [f"the file has the data sets {named}: choose the heights with channel="] * several
+        raise ValueError(f"{name}: {'; and '.join([*lengths_lacking, *data_sets])}")
     how_read = {"channel_index": chosen.index} if chosen and chosen is not default else {}
-    if "dx" in lacks:
-        steps = (
-            number(f"{name}: dx", arguments["dx"], arguments["unit"]),
-            number(f"{name}: dy", arguments.get("dy", arguments["dx"]), ""),
-        )
+    if chosen and chosen.physical_sizes is None:
+        dx, unit = arguments.pop("dx"), arguments.get("unit", chosen.unit)
+        steps = number(f"{name}: dx", dx, unit), number(f"{name}: dy", arguments.pop("dy", dx), unit)
+        if chosen.unit:  # then the sizes are in this unit, and `unit` is that of dx alone
+            arguments.pop("unit", None)
+            size = metres(unit, name) / metres(chosen.unit, name)
+            steps = steps[0] * size, steps[1] * size
         how_read["physical_sizes"] = tuple(n * step for n, step in zip(chosen.nb_grid_pts, steps, strict=False))
     with _as_value_error(refused, ending):
         topography = library.read_topography(_source(path), **how_read)
@@ -221,6 +256,39 @@ def _instrument(path: Path, arguments: dict, channel: str | None, crop, how: dic
             topography, of_mask = _without_mask(library, topography, chosen)
             notes += of_mask
     return _of_instrument(topography, name, arguments, crop, notes, how, refused)
+
+
+def _of_data_sets(path: Path, arguments: dict, channel: str | None, crop, how: dict) -> Scan | None:
+    """The scan in a data set of HDF5, which states no lengths, read without SurfaceTopography; None if it has none."""
+    name, is_hdf5 = path.name, path.is_file() and begins(path).startswith(netcdf_heights.MAGIC[-1])
+    maps = netcdf_heights.data_sets(unpacked(content(path))) if is_hdf5 else {}
+    if not maps:
+        return None
+    if "columns" in arguments:
+        raise ValueError(f"{name}: the format states its lengths itself; leave out columns")
+    listed = ", ".join(map(repr, maps))
+    if channel is not None and channel not in maps:
+        raise ValueError(f"{name}: channel = {channel!r}, but the file has {listed}")
+    lacks_lengths = not {"dx", "unit"} <= arguments.keys()
+    sentences = [_NO_LENGTHS] * lacks_lengths
+    if channel is None and len(maps) > 1:
+        sentences.append(f"the file has the data sets {listed}: choose the heights with channel=")
+    if sentences:
+        raise ValueError(f"{name}: {'; and '.join(sentences)}")
+    chosen = channel or next(iter(maps))
+    z, note = maps[chosen].T, f"channel {chosen!r}" + f" of {listed}" * (len(maps) > 1)
+    if _are_labels(chosen, z):
+        raise ValueError(f"{name}: {note} has labels, which are no heights")
+    unit = arguments["unit"]
+    steps = [number(f"{name}: {key}", arguments.get(key, arguments["dx"]), unit) for key in ("dy", "dx")]
+    positions = [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
+    units = unit, arguments.get("height_unit", unit)
+    return scan_of(name, z, positions, steps=steps, units=units, crop=crop, notes=(note,), how=how)
+
+
+def _are_labels(channel: str, z: np.ndarray) -> bool:
+    """Whether a channel is named for labels or a mask, and has whole numbers alone."""
+    return bool(re.search("label|mask", channel, re.IGNORECASE) and (z % 1 == 0).all())
 
 
 def _without_mask(library, topography, channel) -> tuple:
@@ -247,22 +315,32 @@ def _without_mask(library, topography, channel) -> tuple:
 
 
 def _of_instrument(topography, name: str, arguments: dict, crop, notes: tuple, how: dict, refused: str) -> Scan:
-    """The scan of a topography of SurfaceTopography, in metres or, where the file has no unit, in the caller's."""
-    unit = arguments.get("unit")
-    if (topography.unit is None) == (unit is None):
-        unit_text = "no unit of length; give unit" if unit is None else f"the unit {topography.unit!r}; leave out unit"
-        raise ValueError(f"{name}: the file states {unit_text}")
+    """The scan of a topography of SurfaceTopography. Its lengths are all in one unit, or none."""
+    stated = topography.unit
+    if stated is None and "unit" not in arguments:
+        raise ValueError(f"{name}: the file states no unit of length; give unit")
     with _as_value_error(refused, ""), np.errstate(over="ignore"):
-        topography = topography if unit else topography.to_unit("m")
+        overrules = stated is not None and spelt(stated) is not None and not arguments.keys().isdisjoint(_LENGTHS)
+        topography = topography if stated is None or overrules else topography.to_unit("m")
         z = np.ma.filled(np.ma.asarray(topography.heights()).astype(float), np.nan).T
-        if re.search("label|mask", str(notes[:1]).partition(" of ")[0], re.IGNORECASE) and (z % 1 == 0).all():
+        if _are_labels(str(notes[:1]).partition(" of ")[0], z):
             raise ValueError(f"{notes[0]} has labels, which are no heights")
         z = np.where(np.isinf(z), np.copysign(1e300, z), z)  # the largest number times a scale: `scan_of` says so
         steps = [float(step) for step in np.atleast_1d(topography.pixel_size)][::-1] if topography.is_uniform else None
         positions = None if steps else [np.asarray(topography.positions(), dtype=float)]
-    units = (unit, arguments.get("height_unit", unit)) if unit else ("m", "m")
     positions = positions or [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
-    return scan_of(name, z, positions, steps=steps, units=units, crop=crop, notes=notes, how=how)
+    unit = arguments.get("unit", "m")
+    units = (unit, arguments.get("height_unit", unit)) if stated is None else (stated if overrules else "m",) * 2
+    lengths = overruled(positions, steps, (units[0], units[1]), arguments, name)
+    lengths = lengths._replace(notes=notes + lengths.notes)
+    return scan_of(name, z, **lengths._asdict(), crop=crop, how=how)
+
+
+def _lacking(channel, arguments: dict) -> list[str]:
+    """Sentences about all lengths that a channel of SurfaceTopography and the call both lack."""
+    if channel.physical_sizes is None and "dx" not in arguments:
+        return [_NO_LENGTHS if channel.unit is None else "the file states no distance of its points: give dx (and dy)"]
+    return ["the file states no unit of length; give unit"] * (channel.unit is None and "unit" not in arguments)
 
 
 def _source(path: Path):

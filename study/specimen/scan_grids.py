@@ -1,9 +1,13 @@
-"""From positions and heights as a file has them to a scan: .npy, x y z of a grid, rounding, the part to keep."""
+"""From positions and heights as a file has them to a scan: .npy, x y z of a grid, rounding, the part to keep.
+
+And lengths of the call in the place of those that a file states: a reader or a file may be wrong.
+"""
 
 import dataclasses
 import math
 from decimal import Decimal
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.format import MAGIC_PREFIX
@@ -22,6 +26,17 @@ COARSE = 0.01
 #: A number this large is no height in any unit, and finite: programs mark missing points with the largest number that
 #: they have, 1.7e38, 3.4e38 or 1.8e308, times the scale of the heights perhaps.
 NO_HEIGHT = 1e20
+#: Distances that differ by this share are equal: files round them.
+EQUAL = 1e-6
+
+
+class Lengths(NamedTuple):
+    """What `scan_of` takes: positions and steps along each axis, units of positions and heights, notes."""
+
+    positions: list[np.ndarray]
+    steps: list[float] | None
+    units: tuple[str, str]
+    notes: tuple[str, ...]
 
 
 def npy_table(path: Path) -> NumberTable:
@@ -178,6 +193,40 @@ def _rounded_step(x: np.ndarray) -> float | None:
     return abs(line.deriv()(0)) if rounded and not lone and digit <= COARSE * abs(x[-1] - x[0]) else None
 
 
+def overruled(
+    positions: list[np.ndarray], steps: list[float] | None, units: tuple[str, str], arguments: dict, name: str
+) -> Lengths:
+    """Lengths with `unit`, `height_unit`, `dx` and `dy` of the call in the place of what the file states, in `units`.
+
+    `unit` alone is that of the file's numbers; beside dx it is the unit of dx. Without it dx is in the file's unit.
+
+    Raises ValueError: a distance that is no number, dy without dx, or a unit that is unknown.
+    """
+    units_taken = arguments.get("unit", units[0]), arguments.get("height_unit", units[1])
+    differ = [metres(taken, name) != metres(stated, name) for taken, stated in zip(units_taken, units, strict=True)]
+    notes = (f"heights are in {units_taken[1]}, as height_unit says; the file states {units[1]}",) * differ[1]
+    if "dx" not in arguments:
+        if "dy" in arguments:
+            raise ValueError(f"{name}: give dx beside dy, both in the place of what the file states")
+        notes += (f"x and y are in {units_taken[0]}, as unit says; the file states {units[0]}",) * differ[0]
+        return Lengths(positions, steps, units_taken, notes)
+    dx = number(f"{name}: dx", arguments["dx"], units_taken[0])
+    dy = number(f"{name}: dy", arguments["dy"], units_taken[0]) if "dy" in arguments else dx
+    stated = [step * metres(units[0], name) for step in steps or [np.nan]]
+    taken = [dy, dx][-len(positions) :]
+    ratios = np.array(taken[-len(stated) :]) * metres(units_taken[0], name) / np.array(stated)
+    if not np.allclose(ratios, 1, rtol=0, atol=EQUAL):
+        by_call = " and ".join(f"{key} = {step:g}" for key, step in zip(("dx", "dy"), taken[::-1], strict=False))
+        by_file = " and ".join(f"{step / metres(units[0], name):g}" for step in stated[::-1])
+        notes += (
+            f"points are {by_call} {units_taken[0]} apart, as the call says; the file states {by_file} {units[0]}"
+            if steps
+            else f"points are {by_call} {units_taken[0]} apart, as the call says; the file has unequal steps",
+        )
+    counts = [len(axis) for axis in positions]
+    return Lengths([step * np.arange(n) for step, n in zip(taken, counts, strict=True)], taken, units_taken, notes)
+
+
 def scan_of(name, z, positions, *, steps=None, units=("m", "m"), crop=None, notes=(), how) -> Scan:
     """The scan of heights at positions, cut to `crop`.
 
@@ -186,7 +235,7 @@ def scan_of(name, z, positions, *, steps=None, units=("m", "m"), crop=None, note
     steps : distance of the points along each axis; None: that of the positions
     crop : (x0, x1) or (x0, x1, y0, y1), or None
     notes : sentences about how the file was read
-    how : missing, steep and huge of `height_map`
+    how : missing, steep, huge and despike of `height_map`
     """
     z, holes = without_holes(z)
     notes = (*notes, *holes)

@@ -59,6 +59,36 @@ _SIZE = re.compile(
 )
 
 
+#: A size of the whole map, or the distance of its points, as headings have them.
+_EXTENT = re.compile(
+    rf"^\W*(?:(?P<all>width|height)|(?P<each>(?:xy?[\s_-]*)?pixel[\s_-]*(?:size|width)))\W*?[:=]\s*(?P<value>{_NUMBER})"
+    rf"\s*(?P<unit>{_UNIT})\W*$",
+    re.IGNORECASE,
+)
+#: A distance may differ by this share from that of the heading, which is rounded: 1/N of N points would be more.
+_ROUNDED = 1e-3
+
+
+def extent_notes(table: NumberTable, steps: tuple[float, float], unit: str, name: str) -> tuple[str, ...]:
+    """Notes where the heading of a map has other distances of points than the steps (dy, dx) in `unit`.
+
+    The width of Gwyddion is that of all points, N steps and not the N - 1 from the first to the last.
+    """
+    notes: tuple[str, ...] = ()
+    for number, line in table.heading:
+        if not (match := _EXTENT.match(line)) or not (size := length(match["unit"])):
+            continue
+        axis = 0 if (match["all"] or "").lower() == "height" else 1
+        points = table.numbers.shape[axis] if match["all"] else 1
+        of_heading = float(match["value"].replace(",", ".")) * size / metres(unit, name) / points
+        if abs(of_heading - steps[axis]) > _ROUNDED * abs(of_heading):
+            notes += (
+                f'line {number} has "{line[:80]}", {of_heading:.5g} {unit} a point, but {("dy", "dx")[axis]} is '
+                f"{steps[axis]:.5g} {unit}, which is taken",
+            )
+    return notes
+
+
 def length(word: str) -> float | None:
     """Metres in a unit as a heading writes it; None if it is none of length."""
     return spelt(word) or {"A": 1e-10}.get(word)
@@ -143,6 +173,13 @@ def height_metres(table: NumberTable, height_unit: str, name: str) -> tuple[floa
             raise ValueError(f"{at}: the heading has two factors of the heights, or 0: take out what does not hold")
         size, notes = factor * length(unit), (f"heights are multiplied by {factor:g} {unit}, as line {number} says",)
     return size, notes
+
+
+def stated_height_unit(table: NumberTable) -> str | None:
+    """The unit in which the heading has the heights, after its factor if it has one; None where it has none."""
+    value_unit = _value_unit(table)[0]
+    units = (conversion[1] for _, line in table.heading if (conversion := _factor(table, line, value_unit)))
+    return next(units, value_unit if value_unit and length(value_unit) else None)
 
 
 def _factor(table: NumberTable, line: str, value_unit: str) -> tuple[float, str] | None:

@@ -10,7 +10,7 @@ from pages import check_examples
 from surfaces import random_surface
 
 from study import roughness
-from study.specimen.heights.measured_asperities import density, length
+from study.specimen.heights.measured_asperities import counted_density, density, length
 from study.specimen.quantities import quantity
 from study.studies.paper.numbers import TABLE1
 
@@ -96,3 +96,13 @@ def test_densities_and_lengths_that_are_said_are_read_again():
         assert quantity("Nbar", density(1.234 * 10.0**power), "1/m^2").value == pytest.approx(1.23 * 10.0**power)
     for power in range(-10, 4):
         assert quantity("Ra", length(1.234 * 10.0**power), "m").value == pytest.approx(1.23 * 10.0**power)
+    assert [density(1.25e9), density(4.321e15)] == ["1250 mm⁻²", "4320 µm⁻²"]  # they were 1.25e+03
+
+
+def test_a_density_as_people_write_it():
+    for Nbar, words in ((1.2512e10, "12,510 1/mm²"), (3e5, "0.3 1/mm²"), (9.87654e11, "987,700 1/mm²")):
+        assert counted_density(Nbar) == words
+    assert counted_density(2.5e12) == "2.5 1/µm²"
+    z, step = random_surface(64, 8)
+    answer = roughness.measure(roughness.height_map(z, dx=step))
+    assert f"(Nbar = {counted_density(answer.Nbar)}): one asperity" in str(answer)

@@ -184,8 +184,13 @@ def test_interferometers(tmp_path):
     assert np.isnan(scan.z).sum() == 1
     assert_allclose(scan.z[1:], Z[1:] * 1e-8, rtol=1e-3)
     assert_allclose(scan.steps, 5e-7, rtol=1e-9)
-    with pytest.raises(ValueError, match="a.xyz: the file states its lengths itself; leave out unit"):
-        read(tmp_path, ZYGO.format("5e-7") + text(rows), "a.xyz", unit="um")
+    with pytest.raises(ValueError, match="a.xyz: the file states its lengths itself; leave out columns"):
+        read(tmp_path, ZYGO.format("5e-7") + text(rows), "a.xyz", columns=(0, 1, 2))
+    scan = read(tmp_path, ZYGO.format("5e-7") + text(rows), "a.xyz", unit="um", dx=0.4, missing="skip")
+    assert_allclose(scan.steps, 4e-7, rtol=1e-9)
+    assert scan.notes[0] == (
+        "points are dx = 0.4 and dy = 0.4 um apart, as the call says; the file states 5e-07 and 5e-07 m"
+    )
     with pytest.raises(ValueError, match="a.xyz: x and y are numbers of pixels, .* give dx and unit"):
         read(tmp_path, ZYGO.format("0") + text(rows), "a.xyz", unit="um")
     assert read(tmp_path, ZYGO.format("0") + text(rows), "a.xyz", unit="um", dx=2.0).steps == (2e-6, 2e-6)
@@ -216,8 +221,10 @@ def test_formats_that_state_their_lengths(tmp_path):
         scan = read(tmp_path, content, name)
         assert_allclose(scan.z, P * 1e-9, rtol=1e-9)
         assert_allclose(scan.steps, 0.25e-6, rtol=1e-12)
-        with pytest.raises(ValueError, match=f"{name}: the file states its lengths itself; leave out unit, dx"):
-            read(tmp_path, content, name, unit="um", dx=1)
+        scan = read(tmp_path, content, name, unit="um", dx=1, height_unit="m", steep=True, huge=True)
+        assert_allclose(scan.z, P * 1e-9, rtol=1e-9)
+        assert_allclose(scan.steps, 1e-6, rtol=1e-12)
+        assert scan.notes == ("points are dx = 1 um apart, as the call says; the file states 2.5e-07 m",)
 
 
 @pytest.mark.parametrize(
@@ -258,3 +265,22 @@ def test_a_part_of_a_scan(tmp_path):
     ):
         with pytest.raises(ValueError, match=f"^a.txt: .*{message}"):
             read(tmp_path, BODY, crop=crop, **MAP)
+
+
+@pytest.mark.parametrize(
+    ("heading", "dx", "said"),
+    [
+        ("Width: 40.0 µm\nHeight: 40 µm", 1.0, []),
+        ("Width: 40.0 µm\nHeight: 40 µm", 40 / 39, ["1 um a point, but dx is 1.0256 um", "but dy is 1.0256 um"]),
+        ("# Width: 40000 nm", 1.0, []),
+        ("pixel size=3.69862e-007 m", 0.369862, []),
+        ("pixel size=3.69862e-007 m", 0.38, ['line 1 has "pixel size=3.69862e-007 m", 0.36986 um a point, but dx is']),
+        ("Height: 12 V\nWidth: 4", 1.0, []),
+    ],
+)
+def test_distances_of_a_heading_are_compared(tmp_path, heading, dx, said):
+    """L/(N - 1) in the place of L/N made slopes 2.5 % too small, and the heading had L."""
+    scan = read(tmp_path, f"{heading}\n{BODY}", unit="um", height_unit="nm", dx=dx)
+    assert len(scan.notes) == len(said)
+    assert all(part in note for part, note in zip(said, scan.notes, strict=True))
+    assert_allclose(scan.steps, dx * 1e-6, rtol=1e-12)

@@ -215,10 +215,20 @@ def test_instruments(monkeypatch):
     instrument(monkeypatch, heights=lambda: np.ma.masked_greater(TABLE.T, 1.9))
     with pytest.raises(ValueError, match=r"a.x3p: \d+ of 323 heights are not numbers"):
         roughness.read("a.x3p")
-    with pytest.raises(ValueError, match=r"a.x3p: the file states the unit 'nm'; leave out unit"):
-        roughness.read("a.x3p", unit="nm")
-    with pytest.raises(ValueError, match=r"a.x3p: the format states its lengths itself; leave out height_unit, dx"):
-        roughness.read("a.x3p", height_unit="nm", dx=1)
+    with pytest.raises(ValueError, match=r"a.x3p: the format states its lengths itself; leave out columns"):
+        roughness.read("a.x3p", columns=(0,))
+    instrument(monkeypatch, heights=lambda: TABLE.T)
+    same = roughness.read("a.opd", unit="nm", height_unit="nm", dx=2.0, dy=4.0)
+    assert_allclose(same.z, TABLE * 1e-9, rtol=1e-14)
+    assert_allclose(same.steps, (4e-9, 2e-9), rtol=1e-14)
+    assert same.notes == ()
+    scan = roughness.read("a.opd", unit="um", height_unit="um", dx=3.0)
+    assert_allclose(scan.z, TABLE * 1e-6, rtol=1e-14)
+    assert_allclose(scan.steps, (3e-6, 3e-6), rtol=1e-14)
+    assert scan.notes == (
+        "heights are in um, as height_unit says; the file states nm",
+        "points are dx = 3 and dy = 3 um apart, as the call says; the file states 2 and 4 nm",
+    )
 
     def failing(path):
         raise RuntimeError("no topography\nat all")
@@ -253,3 +263,14 @@ def test_heights_under_a_mask_are_no_heights():
     z[3, 4] = 9e9
     with pytest.raises(ValueError, match="1 of 1024 heights are not numbers .NaN., the first in row 4, column 5"):
         roughness.height_map(np.ma.masked_greater(z, 1e9), dx=1, unit="um", missing="refuse")
+
+
+def test_words_for_an_argument():
+    """spacing, step and pixel were refused without a word of dx."""
+    for function in (roughness.read, roughness.height_map, roughness.profile):
+        for word in ("spacing", "step", "pixel", "Pixel_size"):
+            with pytest.raises(TypeError, match=f"^{function.__name__} takes no {word}; did you mean dx[?]$"):
+                function(Z, **{word: 1.0})
+        with pytest.raises(TypeError, match="unexpected keyword argument 'colour'"):
+            function(Z, colour=1)
+    assert roughness.read.__doc__.startswith("A profile or a map of heights from a file.")

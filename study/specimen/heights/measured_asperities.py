@@ -119,7 +119,8 @@ class Roughness:
     def _numbers(self) -> list[str]:
         relief = 1 / (3 * math.pi * self.Nbar * self.Ra)
         return [
-            f"N̄ = {density(self.Nbar)}: one asperity in a square of {length(self.Nbar**-0.5)}.",
+            f"N̄ = {density(self.Nbar)} (Nbar = {counted_density(self.Nbar)}): one asperity in a square of "
+            f"{length(self.Nbar**-0.5)}.",
             f"Ra = {length(self.Ra)}, the radius of an asperity. The ISO roughness Ra (mean height) is "
             f"{length(self.iso_Ra)}: another quantity.",
             f"sigma = {length(self.sigma_summits)}, the standard deviation of the summits' heights, and cut = "
@@ -177,4 +178,11 @@ def length(x: float) -> str:
 
 def density(Nbar: float) -> str:
     """Asperities per unit area as text, to three digits."""
-    return f"{Nbar / 1e12:.3g} µm⁻²" if Nbar >= 1e10 else f"{Nbar / 1e6:.3g} mm⁻²"
+    per_area, unit = (Nbar / 1e12, "µm⁻²") if Nbar >= 1e10 else (Nbar / 1e6, "mm⁻²")
+    return f"{rounded(per_area, 3)} {unit}"
+
+
+def counted_density(Nbar: float) -> str:
+    """Asperities per unit area as people write and compare them: "12,510 1/mm²", four digits; from 1e6 on in 1/µm²."""
+    per_area, unit = (Nbar / 1e6, "1/mm²") if Nbar < 1e12 else (Nbar / 1e12, "1/µm²")
+    return f"{float(f'{per_area:.4g}'):,.10g} {unit}"

@@ -18,8 +18,10 @@ TENSION = 0.3
 CHOICES = ("fill", "skip", "refuse")
 
 
-def treated(z: np.ndarray, missing: str, name: str) -> tuple[np.ndarray, tuple[str, ...]]:
+def treated(z: np.ndarray, missing: str, name: str, spikes: int = 0) -> tuple[np.ndarray, tuple[str, ...]]:
     """The heights, treated as `missing` says where a point is missing (NaN), and sentences about it.
+
+    spikes : how many of these points `despike` has taken out
 
     "fill": interpolated from their neighbours; "skip": NaN, which `measure` leaves out; "refuse": none may be missing.
 
@@ -41,6 +43,8 @@ def treated(z: np.ndarray, missing: str, name: str) -> tuple[np.ndarray, tuple[s
     gaps = (
         f"{count} of {z.size} heights are not numbers (NaN), the first in {_place(absent)}: {_percent(share)} missing"
     )
+    of_spikes = f"despike took out {spikes} points, which count as missing"
+    gaps += f" ({of_spikes})" * bool(spikes)
     out = 'missing="skip" takes the statistics of the points that are there, or crop the scan to a part without gaps'
     if missing == "refuse":
         raise ValueError(
@@ -50,8 +54,12 @@ def treated(z: np.ndarray, missing: str, name: str) -> tuple[np.ndarray, tuple[s
         raise ValueError(f"{name}: {gaps}, and at most {FILLED:.0%} is interpolated; {out}")
     if missing == "fill":
         verb = "was" if count == 1 else "were"
-        return filled(z), (f"{count} of {z.size} heights ({_percent(share)}) {verb} missing, and interpolated",)
+        return filled(z), (
+            *[of_spikes] * bool(spikes),
+            f"{count} of {z.size} heights ({_percent(share)}) {verb} missing, and interpolated",
+        )
     return z, (
+        *[of_spikes] * bool(spikes),
         f"{_percent(share)} of the heights are missing: the numbers are of the points that have all their neighbours",
     )
 

@@ -73,7 +73,8 @@ def test_what_a_netcdf_file_does_not_state_is_asked_for(tmp_path, z):
         roughness.read(tmp_path / "a.nc")
     assert_allclose(roughness.read(tmp_path / "a.nc", height_unit="nm").z, z * 1e-9, rtol=1e-12)
     dataset(z, positions=False, height=None).to_netcdf(tmp_path / "b.nc")
-    with pytest.raises(ValueError, match=r"^b.nc: the file states no unit and no height_unit: give unit, height_unit"):
+    every = r"no unit and no height_unit: give unit, height_unit; and no positions of y and no positions of x: give dx "
+    with pytest.raises(ValueError, match=rf"^b.nc: the file states {every}\(and dy\)$"):
         roughness.read(tmp_path / "b.nc")
     with pytest.raises(ValueError, match=r"^b.nc: the file states no positions of y and no positions of x|: give dx"):
         roughness.read(tmp_path / "b.nc", unit="um")
@@ -85,8 +86,7 @@ def test_what_a_netcdf_file_does_not_state_is_asked_for(tmp_path, z):
 @pytest.mark.parametrize(
     ("change", "arguments", "part"),
     [
-        ({}, {"unit": "mm"}, "unit is mm, but the file states um: leave out unit"),
-        ({}, {"dx": 0.5}, "states the positions of its points itself; leave out dx"),
+        ({}, {"dy": 0.5}, "give dx beside dy, both in the place of what the file states"),
         ({}, {"columns": (0,)}, "leave out columns"),
         ({}, {"channel": "height"}, "channel = 'height', but the file has 'heights'"),
         ({"height": "V"}, {}, "heights is in 'V', which is no unit of length"),
@@ -157,8 +157,8 @@ def test_x3p_of_whole_numbers_with_points_that_are_not_valid(tmp_path, z):
 
 def test_x3p_that_is_refused(tmp_path, z):
     x3p(tmp_path / "a.x3p", z)
-    with pytest.raises(ValueError, match=r"^a.x3p: the format states its lengths itself; leave out unit"):
-        roughness.read(tmp_path / "a.x3p", unit="um")
+    with pytest.raises(ValueError, match=r"^a.x3p: the format states its lengths itself; leave out columns, channel"):
+        roughness.read(tmp_path / "a.x3p", columns=(0,), channel="z")
     x3p(tmp_path / "b.x3p", z[:, :90])
     with pytest.raises(ValueError, match=r"^b.x3p: bindata/data.bin of the X3P file has 46080 bytes"):
         roughness.read(tmp_path / "b.x3p")
@@ -278,3 +278,24 @@ def test_a_factor_makes_metres_of_a_phase(tmp_path, z):
     with pytest.raises(ValueError, match=r"makes m of the heights, but height_unit is um: give height_unit='m'"):
         roughness.read(tmp_path / "phase.txt", unit="um", dx=0.369862)
     assert roughness.read(tmp_path / "phase.txt", unit="um", height_unit="m", dx=0.369862).z.shape == z.shape
+
+
+def test_all_lengths_that_a_text_lacks_are_asked_for_at_once(tmp_path, z):
+    """unit led to dx, dx to height_unit, one message after the other."""
+    heading = "pixel size=3.69862e-007 m\ndata unit=rad\nheight conversion factor (-> m)=2.91818e-008"
+    np.savetxt(tmp_path / "phase.txt", z, header=heading, comments="")
+    np.savetxt(tmp_path / "column.txt", z[0], header="Value units: nm")
+    for name, arguments, asked in (
+        ("phase.txt", {}, r"give unit, .*\. Also give dx \(and dy\), .*, and height_unit='m', as the heading has it"),
+        ("phase.txt", {"dx": 1}, r"give unit, .* Also give height_unit='m', as the heading has it\. Its heading is"),
+        ("phase.txt", {"height_unit": "m"}, r"give unit, .* Also give dx \(and dy\), the distance of points\. Its"),
+        ("phase.txt", {"unit": "um"}, r"a map of 64 × 96 heights: give dx \(and dy\), .*; and height_unit='m', as the"),
+        ("phase.txt", {"unit": "m"}, r"a map of 64 × 96 heights: give dx \(and dy\), their distance$"),
+        (
+            "column.txt",
+            {},
+            r"give unit, .* Also give dx, the distance of points, and height_unit='nm', as the heading has",
+        ),
+    ):
+        with pytest.raises(ValueError, match=f"^{name}: {asked}"):
+            roughness.read(tmp_path / name, **arguments)

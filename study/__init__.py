@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from . import catalogue
     from .adhesion import effective_work
     from .api import Study, load
+    from .creep import effective_load
     from .data import derived, units
     from .data.dataset import decode
     from .data.units import from_physical, readable, reduced_modulus, to_physical
@@ -51,6 +52,7 @@ __all__ = [
     "derived",
     "design",
     "drawing",
+    "effective_load",
     "effective_work",
     "extremes",
     "feasible",
@@ -84,6 +86,7 @@ _HOME = {
     "design": "inverse.design",
     "feasible": "inverse.design_choice",
     "front": "inverse.design_choice",
+    "effective_load": "creep",
     "effective_work": "adhesion",
     "first_yield": "yields.first_yield",
     "h_protect": "yields.protecting_layer",

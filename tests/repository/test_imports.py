@@ -32,7 +32,7 @@ ROOMS = {
     "study": (
         *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "derivatives"),
         *("in_words", "files", "store", "work", "lazy", "solving", "fields", "inverse", "adhesion"),
-        *("yields", "figures", "api", "catalogue", "explorer", "commands", "__main__"),
+        *("creep", "yields", "figures", "api", "catalogue", "explorer", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.

@@ -150,6 +150,7 @@ RUN = (
     "README.md",
     *(f"docs/{name}.md" for name in ("accuracy", "python", "shapes", "adhesion", "stacks", "fit", "afm")),
     "docs/other_programs.md",
+    "docs/time.md",
 )
 
 

@@ -16,7 +16,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from . import catalogue
+    from . import catalogue, samples
     from .adhesion import effective_work
     from .api import Study, load
     from .creep import effective_load
@@ -70,6 +70,7 @@ __all__ = [
     "readable",
     "reduced_modulus",
     "roughness",
+    "samples",
     "sensitivities",
     "solve",
     "stresses",
@@ -114,6 +115,7 @@ _MODULES = {
     "derived": "data.derived",
     "materials": "specimen.materials",
     "roughness": "specimen.roughness",
+    "samples": "samples",
     "units": "data.units",
     "vocabulary": "inputs.vocabulary",
 }

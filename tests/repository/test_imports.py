@@ -30,7 +30,7 @@ ROOMS = {
         *("schemes", "smooth", "ways", "models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (
-        *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "derivatives"),
+        *("terminal", "arrays", "samples", "specimen", "inputs", "pages", "rules", "data", "derivatives"),
         *("in_words", "files", "store", "work", "lazy", "solving", "fields", "inverse", "adhesion"),
         *("creep", "yields", "figures", "api", "catalogue", "explorer", "commands", "__main__"),
     ),

@@ -19,7 +19,7 @@ from importlib import import_module
 from pathlib import Path
 
 from .commands import signals
-from .commands.arguments import Parser, Version, add_curves, add_engine, folder, part, proposed
+from .commands.arguments import Parser, Version, add_columns, add_curves, add_engine, folder, part, proposed
 from .commands.signals import INTERRUPTED
 from .terminal import empty_buffers, interrupt, memory_message, open_closed_streams, program, say, short_of_memory
 
@@ -52,6 +52,8 @@ def parser() -> argparse.ArgumentParser:
     sub = command("point", "point", "solve one contact and say in words what was found", "NAME=VALUE")
     sub.add_argument("--json", action="store_true", help="as numbers, for a program")
     sub.add_argument("--stresses", type=folder, metavar="FILE", help="draw its stresses too: .png, .pdf or .svg")
+    add_columns(sub)
+    sub.add_argument("--beside", choices=("bare",), help="the body without its layer too, in columns of its own")
     sub.epilog = (
         'such as R="5 mm" punch="steel 52100" h="2 um" layer="DLC a-C:H" body="steel 52100" P="10 N" micro=smooth'
     )
@@ -113,6 +115,7 @@ def parser() -> argparse.ArgumentParser:
         else:
             text = "of the rows of a study, or of a file .nc, that is named (default: csv)"
             sub.add_argument("--format", choices=("csv", "xlsx"), default="csv", help=text)
+            add_columns(sub)
     sub = command("drawing", "tradeoff", "measure error against time of every way to solve")
     sub.add_argument("--force", action="store_true", help="measure again what has been measured")
     return top

@@ -19,8 +19,8 @@ def scan() -> Path:
     """A made scan of a rough surface, which `roughcoat scan` reads without an option.
 
     It is a map of 96 by 96 heights every 0.25 µm in the text format of ISO 25178-71, one period of a random surface
-    with normal heights, waves of 2 µm and longer, a standard deviation of the heights of 50 nm, and a root mean square of
-    the slope along x of 0.0432.
+    with normal heights, waves of 2 µm and longer, a standard deviation of the heights of 50 nm, and a root mean
+    square of the slope along x of 0.0432.
 
     Returns
     -------

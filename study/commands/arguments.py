@@ -70,6 +70,10 @@ def add_curves(sub: argparse.ArgumentParser) -> None:
     ):
         option = group.add_argument(name, metavar=word, default="", help=text)
         option.completer = partial(proposed, "--x")
+    option = group.add_argument("--colour", metavar="QUANTITY", default="", help="a map of it over the axes x and y")
+    option.completer = partial(proposed, "--x")
+    group.add_argument("--scale", choices=("linear", "log"), default="", help="of y, or of the colour")
+    group.add_argument("--limits", type=words, metavar="LOW,HIGH", help="of y, or of the colour, such as 0,2GPa")
     group.add_argument("--where", action="append", type=assignment, default=[], metavar="AXIS=VALUE", help="this alone")
 
 

@@ -130,6 +130,7 @@ bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tools/bench/benchmark.py bench.json
 	$(VENV)/bin/python tools/fields/benchmark_fields.py
 	$(VENV)/bin/python tools/fields/benchmark_shapes.py
+	$(VENV)/bin/python tools/fit/benchmark_fits.py
 
 speed: $(READY) ## speeds of what people run, on an idle machine: docs/speed.md
 	$(VENV)/bin/python tools/bench/benchmark.py --page docs/speed.md

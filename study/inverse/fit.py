@@ -26,10 +26,10 @@ from .fits.model import HERTZ, CurveModel
 from .fits.question import Question, inside, read_question, region
 from .fits.tables.branch import planned
 from .fits.tasks import Task, fit_task, forget
-from .no_pull import joined, without
+from .no_pull import OF_ADHESION, joined, without
 
-#: Curves in a block, in a block of those that adhere, and the multiple to which their points are filled up.
-_BLOCK, _STICKING, _PART = 64, 8, 64
+#: Curves in a block, and the multiple to which their points are filled up.
+_BLOCK, _PART = 64, 64
 #: Fits that look for the contact point of a part of the depth.
 _ROUNDS = 5
 _calls = count()
@@ -121,7 +121,8 @@ def fit(
     fitted = fit_dataset(question, rows, status, X, Y, there, plan)
     fitted = fitted.assign_coords({name: data[name] for name in data.coords})
     fitted = fitted.assign_attrs({"depth": list(limits)} if limits else {})
-    if "w_adhesion" in question.bounds and "w_adhesion" not in question.priors and len(question.free) > 1 and not plan:
+    beside = {*question.free} - {*OF_ADHESION}
+    if "w_adhesion" in question.bounds and "w_adhesion" not in question.priors and beside and not plan:
         options |= {"depth": limits, "x": x, "y": y, "progress": progress}
         fitted = _with_and_without(fitted, (X, Y, S), (free, options, parameters), question.bounds["w_adhesion"][0])
     return _as_called(fitted.assign_attrs(words_of(question, fitted)), question.called)
@@ -165,8 +166,7 @@ def _every(question: Question, arrays: tuple, there: np.ndarray, screen: Any) ->
     unknowns = len(question.model.unknowns) + len(question.shifts)
     status = np.where(_usable(X, Y, there, unknowns, "D0" in question.shifts), -1, FitStatus.INVALID_INPUT)
     rows: dict[int, tuple] = {}
-    most = _STICKING if question.model.sticks else _BLOCK
-    blocks = list(_blocks(there, status < 0, _stiffness(X, Y, question) if X.size else np.zeros(len(X)), most))
+    blocks = list(_blocks(there, status < 0, _stiffness(X, Y, question) if X.size else np.zeros(len(X))))
     with Progress("fit", int((status < 0).sum()), screen, passing=True) as progress:
         try:
             for index, fits in _fits(question, blocks, arrays, there):
@@ -267,15 +267,15 @@ def _stiffness(X: np.ndarray, Y: np.ndarray, question: Question) -> np.ndarray:
         return (np.nanmax(Y, axis=1) - np.nanmin(Y, axis=1)) ** (1 / e) / np.nanmax(np.abs(X), axis=1) ** (q / e)
 
 
-def _blocks(there: np.ndarray, usable: np.ndarray, stiffness: np.ndarray, most: int) -> Iterator[tuple]:
+def _blocks(there: np.ndarray, usable: np.ndarray, stiffness: np.ndarray) -> Iterator[tuple]:
     """For each block its curves, the same filled up to a multiple of AT_LEAST by the last one, and its number of
     points. Curves that are alike come together: they share tiles."""
     size = -(-there.sum(axis=1) // _PART) * _PART
     for points in np.unique(size[usable]):
         same = np.flatnonzero((size == points) & usable)
         same = same[np.argsort(stiffness[same], kind="stable")]
-        for begin in range(0, len(same), most):
-            index = same[begin : begin + most]
+        for begin in range(0, len(same), _BLOCK):
+            index = same[begin : begin + _BLOCK]
             yield index, np.concatenate([index, np.repeat(index[-1:], -len(index) % AT_LEAST)]), points
 
 

@@ -13,7 +13,7 @@ _PULL, _AVERAGE = 2.5, 5
 #: best of several searches gains by chance.
 _SURE, _MORE = 0.95, 3
 #: Parameters that mean nothing without adhesion.
-_OF_ADHESION = ("w_adhesion", "adhesion", "sigma0", "z0", "branch", "k_machine")
+OF_ADHESION = ("w_adhesion", "adhesion", "sigma0", "z0", "branch", "k_machine")
 #: End of a name -> what holds the intervals of two fits.
 _BOTH = {"low": np.fmin, "high": np.fmax, "spread": np.fmax}
 _LOST = (5, 6, 127)  # statuses without numbers
@@ -21,9 +21,9 @@ _LOST = (5, 6, 127)  # statuses without numbers
 
 def without(free: Any, parameters: dict) -> tuple[Any, dict]:
     """`free` and the parameters of the same fit without adhesion."""
-    names = {name: bounds for name, bounds in free.items() if name != "w_adhesion"} if isinstance(free, dict) else None
-    rest = [name for name in free if name != "w_adhesion"] if names is None else names
-    return rest, {name: value for name, value in parameters.items() if name not in _OF_ADHESION}
+    names = [name for name in free if name not in OF_ADHESION]
+    rest = {name: free[name] for name in names} if isinstance(free, dict) else names
+    return rest, {name: value for name, value in parameters.items() if name not in OF_ADHESION}
 
 
 def _is_quiet(plain: xr.Dataset) -> bool:

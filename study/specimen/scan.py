@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from .heights.memory import present
 from .heights.missing import treated
 from .pictures import of_heights
 
@@ -250,11 +251,19 @@ def _of_a_size(scan: Scan, taken: str) -> None:
 def _plausible(scan: Scan, taken: str) -> None:
     """Raise ValueError for slopes that no instrument measures: the unit of heights or lengths must be wrong."""
     span = np.nanmax(scan.z) - np.nanmin(scan.z)
-    differences = [np.diff(scan.z, axis=axis) / step for axis, step in enumerate(scan.steps)]
-    slope = max((math.sqrt(np.nanmean(slopes**2)) for slopes in differences if np.isfinite(slopes).any()), default=0.0)
+    slope = math.sqrt(max(_mean_square_slope(scan.z, axis, step) for axis, step in enumerate(scan.steps)))
     if span > max(scan.sizes) or slope > STEEPEST:
         raise ValueError(
             f"{scan.name}: heights span {span:.3g} m on a scan {max(scan.sizes):.3g} m long, with an rms slope of "
             f"{slope:.3g}; no instrument measures slopes above {STEEPEST:g}. {taken}: give unit and height_unit as "
             "the file has them, cut away its spikes, or take it as it is with steep=True."
         )
+
+
+def _mean_square_slope(z: np.ndarray, axis: int, step: float) -> float:
+    """Mean square of the slopes along an axis of a map; 0 where there is none."""
+    slopes = np.diff(z, axis=axis)
+    slopes /= step
+    slopes = present(slopes)
+    slopes *= slopes
+    return float(slopes.mean()) if slopes.size else 0.0

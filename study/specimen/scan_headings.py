@@ -210,7 +210,11 @@ def stated(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]] | None:
     """Heights and steps in m of a format whose heading states all lengths, SDF, SMD or PRF; None for other text."""
     if re.match(r"a[\w .-]+\n", text) and re.search(r"^\s*zscale\s*=", text, re.IGNORECASE | re.MULTILINE):
         return _sdf(text, name)
-    if re.search(r"^CZ\s+[A-Z]\s", text, re.MULTILINE) and re.search(r"^\s*(?:EOR|\x03)\s*$", text, re.MULTILINE):
+    if (
+        "CZ" in text
+        and re.search(r"^CZ\s+[A-Z]\s", text, re.MULTILINE)
+        and re.search(r"^\s*(?:EOR|\x03)\s*$", text, re.MULTILINE)
+    ):
         return _records(text, name)
     return None
 

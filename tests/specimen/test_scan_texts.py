@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from study import roughness
+from study.specimen import scan_texts
 
 RANDOM = np.random.default_rng(0)
 Z = np.round(RANDOM.normal(size=(40, 40)), 4)  # nm
@@ -235,3 +236,19 @@ def test_uneven_positions_are_not_rounded_ones(tmp_path):
     ):
         with pytest.raises(ValueError, match="the positions x are not uniform"):
             read(tmp_path, text(table(np.c_[x, P])), **IN)
+
+
+@pytest.mark.parametrize("separator, mark", [(";", ","), ("\t", "."), (",", "."), (" ", ".")])
+def test_plain_rows_are_those_that_are_read_one_by_one(separator, mark):
+    """All digits of all numbers, and the lines of the heading; a word in the last row leaves the rows to the reader of
+    single ones, and a row that is too short is refused as there."""
+    heights = np.random.default_rng(0).standard_normal((20, 20)) * 10.0 ** np.arange(-10, 10)
+    rows = [separator.join(map(repr, row)).replace(".", mark) for row in heights.tolist()]
+    text = "\n".join(["# heights", "width: 3", *rows, ""])
+    table = scan_texts.table_of(text, "map.txt")
+    assert (table.numbers == heights).all() and table.heading == ((1, "# heights"), (2, "width: 3"))
+    with_word = "\n".join([*rows[:-1], rows[-1].rpartition(separator)[0] + separator + "nan"])
+    several = scan_texts.table_of(with_word, "map.txt").numbers
+    assert (several[:-1] == heights[:-1]).all() and np.isnan(several[-1, -1])
+    with pytest.raises(ValueError, match="line 20: 19 number"):
+        scan_texts.table_of("\n".join([*rows[:-1], rows[-1].rpartition(separator)[0]]), "map.txt")

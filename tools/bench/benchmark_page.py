@@ -74,6 +74,13 @@ layers. And the numbers of a case would depend on its company, if only to rtol. 
 
 {predicted}
 
+## Fits and scans
+
+Seconds are processor time of one curve of 80 points, in a warm process, with intervals by profiles. Under Maugis w lies
+between bounds of a factor of 20. `make bench` prints the same, and a fit of nanite if that is installed.
+
+{fits}
+
 ## A rough sphere with other codes
 
 The asperities are on a square lattice, with a pitch of a tenth of the contact radius. Tamaas and ContactMechanics
@@ -99,7 +106,8 @@ def measured_page() -> str:
         load=load,
         nodes=16,
         run=upright(beside_the_solver(run)),
-        start=starts(),
+        start=printed("start/benchmark_start.py"),
+        fits=printed("fit/benchmark_fits.py"),
         workloads=table(workloads()),
         latency=table(latency()),
         cores_used=table(second_core()),
@@ -109,9 +117,9 @@ def measured_page() -> str:
     )
 
 
-def starts() -> str:
-    """The table of `make start`."""
-    script = Path(__file__).parents[1] / "start" / "benchmark_start.py"
+def printed(name: str) -> str:
+    """The tables that a script of tools prints, such as that of `make start`."""
+    script = Path(__file__).parents[1] / name
     return subprocess.run([sys.executable, str(script)], check=True, capture_output=True, text=True).stdout.strip()
 
 

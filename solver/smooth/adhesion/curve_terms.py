@@ -19,7 +19,7 @@ from .jkr import Jkr
 from .maugis import Maugis, ring_stress
 
 #: Sublayers in each octave of a graded layer: answers with both are extrapolated, as of errors that fall like 1/m².
-_SUBLAYERS = (4, 8)
+SUBLAYERS = (4, 8)
 
 
 class CurveTerms(NamedTuple):
@@ -37,8 +37,13 @@ def curve_terms(problem, x):
     """
     if not is_graded(problem).any():
         return _curve_terms(problem, x)
-    few, many = (_curve_terms(problem.but(sublayers=np.full(len(problem), count)), x) for count in _SUBLAYERS)
-    return CurveTerms(*((4 * more - less) / 3 for less, more in zip(few, many, strict=True)))
+    few, many = (_curve_terms(problem.but(sublayers=np.full(len(problem), count)), x) for count in SUBLAYERS)
+    return CurveTerms(*extrapolated(few, many))
+
+
+def extrapolated(few, many):
+    """The arrays of a graded layer from those with few and with many sublayers, :data:`SUBLAYERS`."""
+    return ((4 * more - less) / 3 for less, more in zip(few, many, strict=True))
 
 
 def _curve_terms(problem, x):

@@ -6,7 +6,6 @@ import numpy as np
 
 from solver.numerics import batch
 
-from ...inputs.punch.shapes import ANGLES
 from .model import HERTZ
 from .tables.branch import Loads, branch
 from .tables.ratio_table import STEP, Cubics, RatioTable
@@ -103,7 +102,7 @@ class MeasuredCurves:
         self, table: TermTable, p: np.ndarray, values: dict, moved: bool
     ) -> tuple[np.ndarray, dict, np.ndarray]:
         """`contact` of what sticks; without adhesion at points that do not stick."""
-        model, terms = table.model, table.terms
+        model = table.model
         shift = {name: p[:, [self.names.index(name)]] for name in self.shifts}
         depth = self.x - shift.get("D0", 0.0) * self.wide[:, None]
         loads = branch(table.rows(values, depth.max(axis=1), moved), depth)
@@ -120,12 +119,9 @@ class MeasuredCurves:
             np.where(contact, *pair) / high for pair in zip(loads.sticks, loads.free, strict=True)
         )
         by = {"x": slope}
-        rows = dict(zip((*table.axes, *(model.moved if moved else ())), by_rows, strict=True))
+        rows = dict(zip((*table.names, *(model.moved if moved else ())), by_rows, strict=True))
         for name in (*model.unknowns, *(model.moved if moved else ())):
-            factors = terms.by(name, values)
-            if name in ANGLES and name not in model.unknowns:  # by its logarithm, not that of its tangent
-                angle = np.radians(model.value(name))
-                factors = factors * (2 * angle / np.sin(2 * angle))
+            factors = table.by(name, values)
             by[name] = rows.get(name, 0.0) + sum(factors[i] * by_parts[i] for i in range(4))
         others = [by[name] for name in model.moved] if moved else []
         return P, by, np.array(others)

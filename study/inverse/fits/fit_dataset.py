@@ -186,7 +186,10 @@ def _validity(
     flags, valid, about = np.zeros(len(X), np.int64), np.where(good, deepest, np.nan), {}
     plastic, outside = np.zeros((2, len(X)), bool)
     if good.any():
-        contacts = _contacts(question, value[good], (deepest - D0)[good])
+        few, depths = good.sum() <= _FEW, (deepest - D0)[good]
+        every = _at_all_parts(question, value[good], depths) if few else None
+        last = slice(2**_HALVINGS - 1, None, 2**_HALVINGS)
+        contacts = _contacts(question, value[good], depths) if every is None else every.isel(curve=last)
         flags[good], about = contacts["validity"].values, contacts["validity"].attrs
         outside[good] = contacts["status"].values == Status.OUTSIDE_LAW
         touched = value[good, model.unknowns.index(model.modulus)] if model.modulus in model.unknowns else None
@@ -194,14 +197,18 @@ def _validity(
         plastic[good] = flows(model, touched, contacts)
         broken = np.flatnonzero((flags != 0) | outside)
         holds, fails = np.zeros(len(broken), int), np.full(len(broken), 2**_HALVINGS)  # in parts of the depth
-        at_once = _all_parts(question, value[broken], (deepest - D0)[broken]) if 0 < len(broken) <= _FEW else None
+        at_once = None
+        if every is not None:
+            at_once = _hold(every).reshape(len(depths), -1)[np.isin(np.flatnonzero(good), broken)]
+        elif 0 < len(broken) <= _FEW:
+            at_once = _hold(_at_all_parts(question, value[broken], (deepest - D0)[broken])).reshape(len(broken), -1)
         for _ in range(_HALVINGS if len(broken) else 0):
             part = (holds + fails) // 2
             x = part / 2**_HALVINGS * (deepest - D0)[broken]
             if at_once is None:
                 good_there = _hold(_contacts(question, value[broken], x))
             else:
-                good_there = at_once[np.arange(len(broken)), part]
+                good_there = at_once[np.arange(len(broken)), part - 1]
             holds, fails = np.where(good_there, part, holds), np.where(good_there, fails, part)
         x = holds / 2**_HALVINGS * (deepest - D0)[broken]
         valid[broken] = np.where(holds > 0, D0[broken] + x, -np.inf)
@@ -222,12 +229,11 @@ def _hold(contacts: xr.Dataset) -> np.ndarray:
     return (contacts["validity"].values == 0) & (contacts["status"].values != Status.OUTSIDE_LAW)
 
 
-def _all_parts(question: Question, value: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """(M, 1 + parts) bool: no assumption is violated at a part of the depths x (M,)."""
-    parts = np.arange(1, 2**_HALVINGS)
+def _at_all_parts(question: Question, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
+    """Contacts over `curve` at 1, 2 ... 2**_HALVINGS parts of the depths x (M,), one depth after the other."""
+    parts = np.arange(1, 2**_HALVINGS + 1)
     every = np.repeat(value, len(parts), axis=0), (x[:, None] * parts / 2**_HALVINGS).ravel()
-    good = _hold(_contacts(question, *every))
-    return np.pad(good.reshape(len(x), -1), ((0, 0), (1, 0)))
+    return _contacts(question, *every)
 
 
 def _contacts(question: Question, value: np.ndarray, x: np.ndarray) -> xr.Dataset:

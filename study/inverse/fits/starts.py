@@ -119,7 +119,10 @@ def _with_modulus(question, curve, p, low, high, x, load):
         if model.sticks:  # too soft a layer pulls
             step = np.where(F[:, 0] <= 0, 1.5, step)
         step *= np.sign(HERTZ[model.x, model.y][0][1])
-        p[:, i] = np.clip(p[:, i] + np.clip(np.nan_to_num(step), -2.0, 2.0), low[:, i], high[:, i])
+        before = p[:, i].copy()
+        p[:, i] = np.clip(before + np.clip(np.nan_to_num(step), -2.0, 2.0), low[:, i], high[:, i])
+        if np.array_equal(p[:, i], before):  # further steps would be the same
+            break
     return p
 
 

@@ -10,6 +10,7 @@ import numbers
 import numpy as np
 
 from ..quantities import has_unit, quantity, readable
+from .memory import row_blocks, variance
 
 #: The polynomials by name: their degree.
 DEGREES = {"mean": 0, "plane": 1, "quadratic": 2}
@@ -48,7 +49,7 @@ def without_form(z: np.ndarray, steps: tuple, form, name: str) -> tuple[np.ndarr
 
 def taken_by_polynomial(z: np.ndarray, steps: tuple, degree: int) -> float:
     """The part of the variance of the heights that the polynomial of least squares takes, 0 to 1."""
-    return max(0.0, 1 - float(np.nanvar(_residual(z, steps, degree)) / np.nanvar(z)))
+    return max(0.0, 1 - variance(_residual(z, steps, degree)) / float(np.nanvar(z)))
 
 
 def _radius(form, name: str) -> float:
@@ -70,7 +71,13 @@ def _residual(z: np.ndarray, steps: tuple, degree: int) -> np.ndarray:
     """The heights without the polynomial of this total degree that fits best."""
     x = _lines(z, steps)
     powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i) if z.ndim == 2 or i == 0]
-    return z - _surface(_fitted(z, x, powers, np.eye(len(powers))), x, powers).reshape(z.shape)
+    coefficients = _fitted(z, x, powers, np.eye(len(powers)))
+    if z.ndim == 1:
+        return z - _surface(coefficients, x, powers).reshape(z.shape)
+    rest = np.empty(z.shape)
+    for rows in row_blocks(z):
+        np.subtract(z[rows], _surface(coefficients, [x[0], x[1][rows]], powers), out=rest[rows])
+    return rest
 
 
 def _without_sphere(z: np.ndarray, steps: tuple, curvature: float | None) -> tuple[np.ndarray, float]:
@@ -117,10 +124,12 @@ def _lines(z: np.ndarray, steps: tuple) -> list[np.ndarray]:
 def _fitted(z: np.ndarray, x: list, powers: list, basis: np.ndarray) -> np.ndarray:
     """Coefficients of the powers (of y, of x) in the combination of the rows of `basis` that fits the heights best."""
     across, along = (np.vander(line.ravel(), 2 * max(map(max, powers)) + 1, increasing=True) for line in x)
-    present = np.isfinite(z).reshape(along.shape[0], across.shape[0])
-    mean = np.nanmean(z)
-    heights = np.where(present, z.reshape(present.shape) - mean, 0.0)
-    sums, moments = (along.T @ (of @ across) for of in (present.astype(float), heights))
+    mean, grid = np.nanmean(z), z.reshape(along.shape[0], across.shape[0])
+    sums, moments = np.zeros((2, along.shape[1], across.shape[1]))
+    for rows in row_blocks(grid):
+        present = np.isfinite(grid[rows])
+        sums += along[rows].T @ (present.astype(float) @ across)
+        moments += along[rows].T @ (np.where(present, grid[rows] - mean, 0.0) @ across)
     normal = np.array([[sums[i + k, j + m] for k, m in powers] for i, j in powers])
     side = np.array([moments[power] for power in powers])
     coefficients = np.linalg.lstsq(basis @ normal @ basis.T, basis @ side, rcond=1e-14)[0] @ basis

@@ -11,6 +11,7 @@ from ..scan import BLUNTEST, FEWEST, FLATTEST, Scan, number
 from . import scan_peaks
 from .form import without_form
 from .measured_asperities import Roughness, length, over
+from .memory import mean
 from .row_jumps import aligned
 from .scan_doubts import doubts, form_doubts, jump_doubts
 
@@ -172,7 +173,9 @@ def _asperities(scan: Scan, z: np.ndarray, filtered: str, method: str, notes: tu
         else f"{asperities.counted} peaks found as points above their two neighbours, converted to summits of an "
         "isotropic Gaussian surface",
     }
-    iso_Ra = float(np.nanmean(np.abs(z - np.nanmean(z))))
+    deviations = z - np.nanmean(z)
+    iso_Ra = mean(np.abs(deviations, out=deviations))
+    del deviations
     count = scan_peaks.number_of(z, scan.steps, asperities.density)
     answer = Roughness(
         *map(float, (asperities.density, 1 / asperities.curvature, asperities.spread, iso_Ra, count)),

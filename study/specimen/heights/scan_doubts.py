@@ -9,6 +9,7 @@ from ...terminal import rounded
 from . import scan_peaks
 from .form import taken_by_polynomial
 from .measured_asperities import length
+from .memory import mean
 from .row_jumps import jumps
 
 #: Least distance of asperities in points of the scan. Those of white noise are three points apart, one in nine points.
@@ -83,10 +84,11 @@ def doubts(
     if max(slopes) > ISOTROPIC * min(slopes) and not any(JUMP in note for note in before):
         ratio = rounded(math.sqrt(max(slopes) / min(slopes))) if min(slopes) > 0 else "infinitely many"
         yield f"slopes along one axis are {ratio} times those along the other: asperities are long, not round"
-    skewness, alpha = (
-        float(np.nanmean((z - np.nanmean(z)) ** 3) / np.nanstd(z) ** 3),
-        scan_peaks.bandwidth(scan_peaks.mean_moments(along)),
-    )
+    cubes = z - np.nanmean(z)
+    cubes **= 3
+    third = mean(cubes)
+    del cubes  # as large as the map
+    skewness, alpha = third / float(np.nanstd(z)) ** 3, scan_peaks.bandwidth(scan_peaks.mean_moments(along))
     if asperities.counted is None and (abs(skewness) > SKEWED or alpha < 1.5):
         yield (
             f"skewness {skewness:.2g}, α = {alpha:.3g}: a Gaussian surface has 0, and at least 1.5; "

@@ -9,11 +9,13 @@ larger distance. N̄ and Ra depend on the distance: a mean over two distances wo
 
 import itertools
 import math
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from .memory import present
 from .missing import filled
 
 #: ISO 16610-21: a Gaussian of this width, in cutoffs, lets half of a wave of the cutoff's length pass.
@@ -104,21 +106,24 @@ def _over(z: np.ndarray, axis: int, lag: float, order: int, mean) -> float:
     """Mean of the squared first or second differences of points `lag` apart, over the points whose partners are there.
     Between two whole lags it is a power of the lag, as on a self-affine surface."""
     low = math.floor(lag + 1e-6)
-    values = [mean(_present(_differences(z, axis, whole, order)) ** 2) for whole in (low, low + 1)[: 1 + (lag > low)]]
+    values = [mean(_squares(z, axis, whole, order)) for whole in (low, low + 1)[: 1 + (lag > low)]]
     if lag <= low * (1 + 1e-6) or min(values) == 0:
         return float(values[0])
     return float(values[0] * (values[1] / values[0]) ** (math.log(lag / low) / math.log1p(1 / low)))
 
 
-def _differences(z: np.ndarray, axis: int, lag: int, order: int) -> np.ndarray:
-    """First or second differences over `lag` points along one axis."""
+def _squares(z: np.ndarray, axis: int, lag: int, order: int) -> np.ndarray:
+    """Squared first or second differences over `lag` points along one axis, flat, those that are there; a zero if there
+    is none."""
     z = np.moveaxis(z, axis, 0)
-    return z[lag:] - z[:-lag] if order == 1 else z[2 * lag :] - 2 * z[lag:-lag] + z[: -2 * lag]
-
-
-def _present(values: np.ndarray) -> np.ndarray:
-    """The finite values, flat; a zero if there is none."""
-    values = values[np.isfinite(values)]
+    if order == 1:
+        values = z[lag:] - z[:-lag]
+    else:
+        values = -2 * z[lag:-lag]
+        values += z[2 * lag :]
+        values += z[: -2 * lag]
+    values = present(values)
+    values *= values
     return values if values.size else np.zeros(1)
 
 
@@ -187,7 +192,7 @@ def _summits(z: np.ndarray, steps: tuple, lags: list[int]) -> Asperities | None:
     highest &= whole
     apart = [lag * step for lag, step in zip(lags, steps, strict=True)]
     second = (
-        (around[tuple(axis)] + around[tuple(-axis)] - 2 * centre)[highest] / d**2
+        (around[tuple(axis)][highest] + around[tuple(-axis)][highest] - 2 * centre[highest]) / d**2
         for axis, d in zip(np.eye(z.ndim, dtype=int), apart, strict=True)
     )
     curvatures = -sum(second) / z.ndim
@@ -215,5 +220,6 @@ def whole(z: np.ndarray, steps: tuple) -> int:
 def usual_curvature(z: np.ndarray, steps: tuple) -> float:
     """The curvature of `gaussian_summits` with m4 from the median of the second differences, a Gaussian one of √m4."""
     d = max(steps)
-    medians = [_over(z, axis, d / step, 2, np.median) / d**4 for axis, step in enumerate(steps)]
+    median = partial(np.median, overwrite_input=True)
+    medians = [_over(z, axis, d / step, 2, median) / d**4 for axis, step in enumerate(steps)]
     return CURVATURE * math.sqrt(np.mean(medians)) / MEDIAN

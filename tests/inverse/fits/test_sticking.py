@@ -20,6 +20,7 @@ GEL |= {"micro": "smooth"}
 SPHERE, CONE = GEL | {"shape": "sphere"}, GEL | {"shape": "cone", "half_angle": 70.0, "R": None}
 BARE = {"R": "5 um", "nu2": 0.45, "base": "half_space", "micro": "smooth"}
 TRUE = {"E1": "5 kPa", "w_adhesion": "0.4 mJ/m^2"}
+MAUGIS = GEL | {"E2": "rigid", "adhesion": "maugis", "sigma0": "2 kPa"}
 #: Depths in m from beyond pull-off to 0.2 R.
 DEPTHS = np.linspace(-0.5e-6, 1e-6, 40)
 STACK = {"R": "5 um", "punch": "rigid", "E2": "rigid", "micro": "smooth"}
@@ -57,7 +58,11 @@ def curve_of(inputs, free, **options):
     return curve, np.array([[*p, *np.zeros(len(question.shifts))]])
 
 
-@pytest.mark.parametrize("inputs", [GEL, SPHERE, CONE, GEL | {"adhesion": "dmt"}], ids=["gel", "sphere", "cone", "dmt"])
+@pytest.mark.parametrize(
+    "inputs",
+    [GEL, SPHERE, CONE, GEL | {"adhesion": "dmt"}, MAUGIS],
+    ids=["gel", "sphere", "cone", "dmt", "maugis"],
+)
 def test_the_table_has_the_loads_of_the_solver(inputs):
     """To 3e-5 of the range of loads, where there is a contact, whatever values the table begins with."""
     free, other = ["E1", "w_adhesion", "h"], {"E1": "20 kPa", "w_adhesion": "2 mJ/m^2", "h": "5 um"}
@@ -79,7 +84,7 @@ def test_the_last_tile_is_the_one_in_which_the_largest_depth_is():
     assert (depth[:, -1] > deepest).all() and (depth[:, -1 - LENGTH // 6] <= deepest).all()
 
 
-@pytest.mark.parametrize("inputs", [GEL, SPHERE, CONE], ids=["gel", "sphere", "cone"])
+@pytest.mark.parametrize("inputs", [GEL, SPHERE, CONE, MAUGIS], ids=["gel", "sphere", "cone", "maugis"])
 def test_derivatives_are_those_of_differences(inputs):
     """On the branch and in the ramp beyond its end, by all unknowns and the contact point."""
     free = ["E1", "w_adhesion", "half_angle" if "half_angle" in inputs else "h"]
@@ -117,14 +122,17 @@ CASES = {
     "machine": (GEL | {"k_machine": "0.01 N/m"}, {"E1": 5e3, "w_adhesion": 4e-4}),
     "stack": (STACK, {"w_adhesion": 4e-4}),
     "dmt": (GEL | {"adhesion": "dmt"}, {"E1": 5e3, "w_adhesion": 4e-4}),
+    "maugis": (MAUGIS, {"E1": 5e3, "w_adhesion": 4e-4}),
+    "stress": (MAUGIS | {"E1": "5 kPa"}, {"sigma0": 2e3, "w_adhesion": 4e-4}),
     "half-space": (BARE, {"E2": 5e3, "w_adhesion": 4e-4}),
 }  # fmt: skip
-UNITS = {"E1": "Pa", "E2": "Pa", "h": "m", "w_adhesion": "J/m^2", "half_angle": "deg"}
+UNITS = {"E1": "Pa", "E2": "Pa", "h": "m", "w_adhesion": "J/m^2", "half_angle": "deg", "sigma0": "Pa"}
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_the_truth_comes_back(name):
-    """To 1e-4, from bounds in the middle of which it is not, with a contact point and a baseline that are off."""
+    """To 1e-4, from bounds in the middle of which it is not, with a contact point and a baseline that are off; to 1e-3
+    the stress of a ring, of which the curve says little."""
     inputs, truth = CASES[name]
     texts = {key: f"{value!r} {UNITS[key]}" for key, value in truth.items()}
     P = loads(DEPTHS, **inputs | texts)
@@ -134,7 +142,7 @@ def test_the_truth_comes_back(name):
     fit = fitted(DEPTHS + 1e-7, P + 2e-9, bounds, **rest, intervals="fisher")
     assert status(fit) == ["converged"]
     for key, value in truth.items():
-        assert_allclose(fit[key], value, rtol=1e-4)
+        assert_allclose(fit[key], value, rtol=1e-3 if key == "sigma0" else 1e-4)
     assert_allclose(fit.D0, 1e-7, rtol=0, atol=1e-11)
     assert_allclose(fit.residual, 0, rtol=0, atol=2e-5 * P.max())
 
@@ -170,6 +178,15 @@ def test_the_bits_of_a_curve_do_not_depend_on_its_company():
             assert alone[name].values[0] == together[name].values[i], name
 
 
+def test_the_bits_of_a_curve_under_maugis():
+    P = loads(DEPTHS, **BARE | {"adhesion": "maugis", "sigma0": "2 kPa", "E2": "5 kPa"}, w_adhesion="0.4 mJ/m^2")
+    curves = P * np.array([[0.7], [1.0], [1.5]])
+    about = BARE | {"adhesion": "maugis", "sigma0": "2 kPa", "w_adhesion": "1 mJ/m^2", "intervals": "fisher"}
+    together, alone = (fitted(DEPTHS, part, ["E2", "w_adhesion"], **about) for part in (curves, curves[1]))
+    for name in ("E2", "w_adhesion", "D0", "w_adhesion_low", "fit_status"):
+        assert alone[name].values[0] == together[name].values[1], name
+
+
 def test_spreads_of_other_inputs_make_the_answer_less_sure():
     """By a modulus of the base with ±: E1 follows it as it does when the base has another one."""
     P, free = loads(DEPTHS, **GEL | TRUE), ["E1", "w_adhesion"]
@@ -177,6 +194,17 @@ def test_spreads_of_other_inputs_make_the_answer_less_sure():
     unsure = fitted(DEPTHS, P, free, **about | {"R": "5 ± 0.25 um"})
     other = fitted(DEPTHS, P, free, **about | {"R": "5.25 um"})
     assert_allclose(unsure.E1_spread, np.abs(other.E1 - 5e3), rtol=0.1)
+
+
+def test_spreads_under_maugis():
+    """A punch of another radius makes another fit; a spread of the radius moves w so."""
+    about = BARE | {"adhesion": "maugis", "sigma0": "2 kPa", "E2": "5 kPa"}
+    P = loads(DEPTHS, **about, w_adhesion="0.4 mJ/m^2")
+    about |= {"w_adhesion": "1 mJ/m^2", "contact_point": False, "baseline": False, "intervals": "fisher"}
+    usual, unsure, other = (
+        fitted(DEPTHS, P, ["w_adhesion"], **about | {"R": R}) for R in ("5 um", "5 ± 0.05 um", "5.05 um")
+    )
+    assert_allclose(unsure.w_adhesion_spread, np.abs(other.w_adhesion - usual.w_adhesion), rtol=0.1)
 
 
 def test_of_a_plan_the_spreads_are_those_of_the_fit():

@@ -6,7 +6,9 @@ cubic is drawn.
 
 import numpy as np
 
+from ....inputs.punch.shapes import ANGLES
 from ..model import CurveModel, is_ratio
+from .ring_table import RingTable
 from .terms import Terms, is_modulus
 from .tiles import WIDE, WIDE_RATIO, Chebyshev, Lattice, Position
 
@@ -23,10 +25,21 @@ _OF_MODULI, _POINTS = {1: 18, 2: 16, 3: 12}, {1: 10, 2: 7, 3: 5}
 _WIDE_MODULUS, _WIDE = np.log(1000.0), np.log(4.0)
 #: So many tiles up or down the largest radius of a curve is searched.
 _FAR = 16
+#: A ring may take so many times as much from the depth as the edge of JKR.
+_MORE = 1.5
 
 
 def _width(name: str) -> float:
     return _WIDE_MODULUS if is_modulus(name) else WIDE_RATIO if is_ratio(name) else _WIDE
+
+
+def _slopes(values: np.ndarray) -> np.ndarray:
+    """Derivatives of functions (..., L) at the points of a lattice, by differences: of fourth order, at its ends of
+    second order."""
+    slopes = np.gradient(values, STEP, axis=-1, edge_order=2)
+    near, far = values[..., 3:-1] - values[..., 1:-3], values[..., 4:] - values[..., :-4]
+    slopes[..., 2:-2] = (8 * near - far) / (12 * STEP)
+    return slopes
 
 
 class TermTable:
@@ -39,6 +52,24 @@ class TermTable:
         count = min(len(self.axes), 3)
         points = [Chebyshev((_OF_MODULI if is_modulus(name) else _POINTS)[count]) for name in self.axes]
         self.lattice = Lattice(points, list(map(_width, self.axes)), 8, _LATTICE)
+        rings = model.scene.parameters.get("adhesion") == "maugis"
+        self.rings = RingTable(self.terms, points, list(map(_width, self.axes)), _LATTICE) if rings else None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The unknown inputs of which :meth:`rows` have derivatives."""
+        return self.model.unknowns if self.rings else self.axes
+
+    def by(self, name: str, values: dict) -> np.ndarray:
+        """Derivatives (4,) or (4, B, 1) of the logarithms of the terms by the coordinate of an input, that are not in
+        :meth:`rows`."""
+        factors = self.terms.by(name, values)
+        if name in ANGLES and name not in self.model.unknowns:  # by its logarithm, not that of its tangent
+            angle = np.radians(self.model.value(name))
+            factors = factors * (2 * angle / np.sin(2 * angle))
+        if self.rings:
+            factors[2:] = 0.0
+        return factors
 
     def tile(self, place: tuple[int, ...], moved: bool) -> np.ndarray:
         """A tile: 8 logarithms and slopes, or their derivatives by the inputs `moved` of the model, (1 or moved, 8,
@@ -56,9 +87,9 @@ class TermTable:
         return np.ascontiguousarray(np.swapaxes(np.array(changes), 2, 3))
 
     def rows(self, values: dict, deepest: np.ndarray, moved: bool = False) -> np.ndarray:
-        """Rows (1 + axes + moved, B, 8, LENGTH) of B curves: the logarithms of the terms, with their factors, and
-        slopes; their derivatives by the coordinates of unknown inputs and, without those of the factors, by the inputs
-        `moved`.
+        """Rows (1 + names + moved, B, 8, LENGTH) of B curves: the logarithms of the terms, with their factors, and
+        slopes; without what :meth:`by` has, their derivatives by the coordinates of the unknown inputs `names`, and by
+        the inputs `moved`.
 
         values : unknown input -> (B, 1)
         deepest : (B,) in m; the lattice reaches beyond it
@@ -78,12 +109,31 @@ class TermTable:
         count = len(self.model.moved) if moved else 0
         whole = self.lattice.read(self.tile, last - _TILES + 1, position, _TILES, count)
         whole[0, :, :4] += factors[:, :, None]
+        if self.rings:
+            whole = self._with_rings(self.rings, whole, values, position, last - _TILES + 1, moved)
         below = STEP * np.arange(-_BELOW * _LATTICE, 0)
         first = (
             whole[..., :4, :1] + whole[..., 4:, :1] * below,
             np.broadcast_to(whole[..., 4:, :1], (*whole.shape[:2], 4, len(below))),
         )
         return np.concatenate([np.concatenate(first, axis=2), whole], axis=3)
+
+    def _with_rings(
+        self, rings: RingTable, whole: np.ndarray, values: dict, position: Position, first: np.ndarray, moved: bool
+    ) -> np.ndarray:
+        """Rows with the pulls of rings, from those `whole` of the table, whose lattice begins at the tiles `first`."""
+        x = WIDE * first[:, None] + STEP * np.arange(whole.shape[3])
+        pulls, others = rings.pulls(values, position, first, x, moved)
+        names = (*self.names, *(self.model.moved if moved else ()))
+        rows = np.zeros((1 + len(names), *whole.shape[1:]))
+        rows[0, :, [0, 1, 4, 5]] = whole[0, :, [0, 1, 4, 5]]
+        rows[0, :, [2, 3, 6, 7]] = np.moveaxis(pulls, 1, 0)
+        tabulated = dict(zip((*self.axes, *(self.model.moved if moved else ())), whole[1:], strict=True))
+        for row, name, other in zip(rows[1:], names, others, strict=True):
+            if name in tabulated:
+                row[:, [0, 1, 4, 5]] = tabulated[name][:, [0, 1, 4, 5]]
+            row[:, 2:4], row[:, 6:] = other, _slopes(other)
+        return rows
 
     def _last(self, position: Position, factors: np.ndarray, deepest: np.ndarray) -> np.ndarray:
         """The tile (B,) in which each curve reaches its largest depth: at its end the depth is larger and rises."""
@@ -96,6 +146,7 @@ class TermTable:
             first = last[left] - (0 if step < _FAR else 1)
             rows = self.lattice.read(self.tile, first, position.values_of(left), 1)[0, :, :, -1]
             f = np.exp(rows[:, :4] + factors[left])
+            f[:, 3] *= _MORE if self.rings else 1.0
             depth, slope = f[:, 1] - f[:, 3], f[:, 1] * rows[:, 5] - f[:, 3] * rows[:, 7]
             beyond = (depth > deepest[left]) & (slope > 0)
             if step < _FAR:

@@ -3,7 +3,8 @@
 P = P₀ - pull_P and D = D₀ - pull_D, :mod:`solver.smooth.adhesion.curve_terms`. P₀ and pull_P have the modulus E of
 the touched body as a factor. Under :mod:`~solver.smooth.adhesion.jkr` both pulls go with the root of w/E, and
 under a paraboloid or a cone lengths act through a/h alone. So w and k_machine are no coordinates of a table, and often
-E, h, R and half_angle are not.
+E, h, R and half_angle are not. Of :mod:`~solver.smooth.adhesion.maugis` the terms are those of JKR here; its pulls
+follow from a :class:`.ring_table.RingTable`.
 """
 
 from typing import Any, NamedTuple
@@ -14,6 +15,7 @@ from solver.shapes import PARABOLOID
 from solver.smooth.adhesion.curve_terms import curve_terms
 
 from ....inputs.scene.scales import with_unit
+from ....inputs.scene.scene import Scene
 from ..model import CurveModel, is_ratio
 
 #: Powers of E, w, of the length that is the unit of a, and of R in P₀, D₀, pull_P and pull_D.
@@ -55,16 +57,16 @@ class Terms(NamedTuple):
         values, numbers = model.scene.values, model.scene.parameters
         law = numbers.get("adhesion", "jkr")
         powers = _USUAL | (_DMT if law == "dmt" else {})
-        left_out = {"k_machine"} | ({"w_adhesion"} if law != "maugis" else set())
+        left_out = {"k_machine", "w_adhesion", "sigma0", "z0"}
         shape = numbers.get("shape", PARABOLOID)
-        similar = shape in (PARABOLOID, "cone") and law != "maugis"
+        similar = shape in (PARABOLOID, "cone")
         similar &= numbers.get("base", "layered") in ("layered", "half_space", "auto")
         length = "h" if "h" in values and similar and numbers.get("base", "layered") != "half_space" else "R"
         if similar:
             powers = powers | (_DMT_SIMILAR if law == "dmt" else _CONE if shape == "cone" else _SIMILAR)
             left_out |= {"h", "R", "half_angle"}
         moduli = {name for name in values if is_modulus(name)} - {model.modulus}
-        if law != "maugis" and all(np.all(np.isinf(values[name])) for name in moduli):
+        if all(np.all(np.isinf(values[name])) for name in moduli):
             left_out.add(model.modulus)
         axes = tuple(name for name in model.unknowns if name not in left_out)
         return cls(model, {name: np.array(row, float) for name, row in powers.items()}, axes, length)
@@ -95,17 +97,22 @@ class Terms(NamedTuple):
         total = total + self.powers["w"] * (name == "w_adhesion") - self.powers["cotangent"] * (name == "half_angle")
         return total + self.powers["length"] * (name == self.length) + self.powers["R"] * (name == "R")
 
+    def numbers(self, values: dict[str, np.ndarray]) -> tuple[Scene, dict[str, Any]]:
+        """The scene with other values (C,) of inputs, and its numbers for the solver except load, depth and radius."""
+        changed = self.model.scene_of(values)
+        names = {name: value for name, value in changed.parameters.items() if name in changed.lexicon.parameters}
+        names = {name: value for name, value in names.items() if name not in ("P", "a", "D", "k_machine", "branch")}
+        names["base"] = {"auto": "layered"}.get(word := names.get("base", "layered"), word)
+        return changed, names
+
     def logarithms(self, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:
         """The logarithms of the terms without their factors, and their slopes by x, (8, C, m), at the radii x (m,) of
         contacts with values (C,) of inputs: x is the logarithm of the radius over the length, or what the solver takes
         for shapes that end or are flat around the axis."""
-        model = self.model
         count = len(next(iter(values.values()), np.zeros(1)))
-        changed = model.scene_of(values)
-        names = {name: v for name, v in changed.parameters.items() if name not in ("k_machine", "branch")}
-        base = names.get("base", "layered")
-        base = "layered" if base == "auto" else base
-        problem = changed.lexicon.problem(names, base=base, a=np.full(count, 0.01))
+        changed, names = self.numbers(values)
+        names |= {"adhesion": "jkr"} if names.get("adhesion") == "maugis" else {}
+        problem = changed.lexicon.problem(names, a=np.full(count, 0.01))
         shift = np.log(names["h"]) if self.length == "h" else 0.0
         terms = curve_terms(problem, np.broadcast_to(x + np.reshape(shift, (-1, 1)), (count, len(x))))
         factors = np.broadcast_to(self.factors(values).reshape(4, -1), (4, count))
@@ -121,14 +128,8 @@ class Terms(NamedTuple):
     def moved(self, name: str, values: dict[str, np.ndarray], x: np.ndarray, still: np.ndarray) -> np.ndarray:
         """Derivatives of `logarithms`, which are `still` (8, C, m), by the logarithm of an input that is not unknown;
         by a ratio itself."""
-        if name in ("k_machine", "w_adhesion") and name not in self.axes_of_law:
+        if name in ("k_machine", "w_adhesion", "sigma0", "z0"):
             return 0 * still
         value = np.full(still.shape[1], self.model.value(name))
         by = _MOVE * (-1.0 if is_ratio(name) else value)  # a ratio of 0.5 does not rise
         return (self.logarithms(values | {name: value + by}, x) - still) / (-_MOVE if is_ratio(name) else _MOVE)
-
-    @property
-    def axes_of_law(self) -> tuple[str, ...]:
-        """Inputs of adhesion that are no mere factors."""
-        law = self.model.scene.parameters.get("adhesion", "jkr")
-        return ("w_adhesion", "sigma0", "z0") if law == "maugis" else ()

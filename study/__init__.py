@@ -16,9 +16,10 @@ from importlib.machinery import ModuleSpec, PathFinder
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from . import catalogue
+    from . import catalogue, samples
     from .adhesion import effective_work
     from .api import Study, load
+    from .creep import effective_load
     from .data import derived, units
     from .data.dataset import decode
     from .data.units import from_physical, readable, reduced_modulus, to_physical
@@ -52,6 +53,7 @@ __all__ = [
     "derived",
     "design",
     "drawing",
+    "effective_load",
     "effective_work",
     "extremes",
     "feasible",
@@ -69,6 +71,7 @@ __all__ = [
     "readable",
     "reduced_modulus",
     "roughness",
+    "samples",
     "sensitivities",
     "solve",
     "stresses",
@@ -85,6 +88,7 @@ _HOME = {
     "design": "inverse.design",
     "feasible": "inverse.design_choice",
     "front": "inverse.design_choice",
+    "effective_load": "creep",
     "effective_work": "adhesion",
     "first_yield": "yields.first_yield",
     "h_protect": "yields.protecting_layer",
@@ -112,6 +116,7 @@ _MODULES = {
     "derived": "data.derived",
     "materials": "specimen.materials",
     "roughness": "scan_laws.roughness",
+    "samples": "samples",
     "units": "data.units",
     "vocabulary": "inputs.vocabulary",
 }

@@ -1,11 +1,12 @@
 """Command line of roughcoat: `roughcoat COMMAND`, or `python -m study COMMAND`, which is the same; one of
 
-point | fit | design | explore | scan | materials | docs | list | check | run | retry | status | verify | clean | plot |
-table | tradeoff.
+point | fit | design | explore | scan | materials | docs | doctor | new | show | list | check | run | retry | status |
+verify | clean | plot | table | tradeoff.
 
 Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. A command goes on
 when its terminal is gone or its reader has left. That its answer finds a full disk is an error, 1, only of the commands
-that do nothing but answer (point, fit, design, scan, materials, docs, list, check, status, --dry-run).
+that do nothing but answer (point, fit, design, scan, materials, docs, doctor, show, list, check, status,
+--dry-run).
 """
 
 import argparse
@@ -18,7 +19,7 @@ from importlib import import_module
 from pathlib import Path
 
 from .commands import signals
-from .commands.arguments import Parser, Version, add_curves, add_engine, folder, part, proposed
+from .commands.arguments import Parser, Version, add_columns, add_curves, add_engine, folder, part, proposed
 from .commands.signals import INTERRUPTED
 from .terminal import empty_buffers, interrupt, memory_message, open_closed_streams, program, say, short_of_memory
 
@@ -44,13 +45,15 @@ def parser() -> argparse.ArgumentParser:
         if items:
             argument = sub.add_argument("items", nargs=least, metavar=items, default=[])
             argument.completer = partial(proposed, name)
-        if module not in ("point", "fitting", "designing", "exploring", "lookup"):
+        if module not in ("point", "fitting", "designing", "beginning", "lookup"):
             sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
         return sub
 
     sub = command("point", "point", "solve one contact and say in words what was found", "NAME=VALUE")
     sub.add_argument("--json", action="store_true", help="as numbers, for a program")
     sub.add_argument("--stresses", type=folder, metavar="FILE", help="draw its stresses too: .png, .pdf or .svg")
+    add_columns(sub)
+    sub.add_argument("--beside", choices=("bare",), help="the body without its layer too, in columns of its own")
     sub.epilog = (
         'such as R="5 mm" punch="steel 52100" h="2 um" layer="DLC a-C:H" body="steel 52100" P="10 N" micro=smooth'
     )
@@ -69,7 +72,7 @@ def parser() -> argparse.ArgumentParser:
         'such as p_max="180 MPa" h="1 um .. 1 mm" R="5 mm" punch="steel 52100" layer=PTFE bonding=bonded '
         'body="steel 52100" P="5 N" Nbar="1e5 1/mm^2" Ra="2 um"'
     )
-    sub = command("exploring", "explore", "write a page that solves contacts in a browser, without a network")
+    sub = command("beginning", "explore", "write a page that solves contacts in a browser, without a network")
     sub.add_argument("--out", type=folder, default="contact.html", metavar="FILE", help="default: contact.html")
     sub = command("lookup", "scan", "measure the asperities of a scan of a rough surface", "FILE")
     sub.usage = "%(prog)s FILE [NAME=VALUE ...]"
@@ -77,6 +80,12 @@ def parser() -> argparse.ArgumentParser:
     sub.epilog = "such as wafer.csv unit=um height_unit=nm cutoff='2.5 um'; all names: " + f"{program()} docs roughness"
     command("lookup", "materials_", "list the materials that are known by name; say all of one", "NAME", least="*")
     command("lookup", "docs", "list the pages of the documentation; show one: docs/model.md", "PAGE", least="*")
+    command("beginning", "doctor", "say what this installation has, and whether it solves a contact rightly")
+    sub = command("beginning", "new", "write a study file to edit, NAME.toml, with comments", "NAME")
+    text = "a copy of this study, such as dlc_on_steel"
+    source = sub.add_argument("--from", dest="source", metavar="STUDY", help=text)
+    source.completer = partial(proposed, "show")
+    command("beginning", "show", "print a study file, of yours or of this package", "STUDY")
     sub = command("computing", "list_", "list the study files, their size and state")
     text = "default: the working folder and studies, or those of this package"
     sub.add_argument("folder", type=folder, nargs="?", help=text)
@@ -107,6 +116,7 @@ def parser() -> argparse.ArgumentParser:
         else:
             text = "of the rows of a study, or of a file .nc, that is named (default: csv)"
             sub.add_argument("--format", choices=("csv", "xlsx"), default="csv", help=text)
+            add_columns(sub)
     sub = command("drawing", "tradeoff", "measure error against time of every way to solve")
     sub.add_argument("--force", action="store_true", help="measure again what has been measured")
     return top
@@ -150,7 +160,7 @@ def complete(commands: argparse.ArgumentParser) -> None:
 def perform(options, kept: str) -> int:
     """Run a command on each of its items, whatever is wrong with the others. Returns the largest exit code."""
     module, name = options.action
-    if wrong := wrong_core() if module not in ("lookup", "exploring", "checking") else "":
+    if wrong := wrong_core() if module not in ("lookup", "beginning", "checking") else "":
         say(wrong, sys.stderr)
         return 2
     commands = import_module(f".commands.{module}", __package__)

@@ -160,7 +160,7 @@ class Study:
 
         Parameters
         ----------
-        x, y, hue, where : as of `study.plot`
+        x, y, hue, where : as of `study.plot`; so are colour, scale and limits
 
         Returns
         -------

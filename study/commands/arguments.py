@@ -45,6 +45,21 @@ def add_engine(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--yes", action="store_true", help="go on however large the study is")
 
 
+def add_columns(sub: argparse.ArgumentParser) -> None:
+    """Options of a table of numbers: which columns, and in which units."""
+    option = sub.add_argument("--columns", type=words, metavar="NAME,...", help="these alone, such as h,P,a,p_max")
+    option.completer = partial(proposed, "--x")
+    sub.add_argument("--units", type=words, metavar="UNIT,...", help="numbers in these, such as um,N,MPa; else in SI")
+
+
+def words(text: str) -> list[str]:
+    """The words of a list with commas."""
+    found = [word.strip() for word in text.split(",")]
+    if not all(found) or len(set(found)) < len(found):
+        raise argparse.ArgumentTypeError(f'"{on_one_line(text)}": must be different words with commas between them')
+    return found
+
+
 def add_curves(sub: argparse.ArgumentParser) -> None:
     """Options of `plot` to draw curves of the results of a study, or of a results file, instead of a known figure."""
     group = sub.add_argument_group("curves of the results of a study, or of a file .nc")
@@ -55,6 +70,10 @@ def add_curves(sub: argparse.ArgumentParser) -> None:
     ):
         option = group.add_argument(name, metavar=word, default="", help=text)
         option.completer = partial(proposed, "--x")
+    option = group.add_argument("--colour", metavar="QUANTITY", default="", help="a map of it over the axes x and y")
+    option.completer = partial(proposed, "--x")
+    group.add_argument("--scale", choices=("linear", "log"), default="", help="of y, or of the colour")
+    group.add_argument("--limits", type=words, metavar="LOW,HIGH", help="of y, or of the colour, such as 0,2GPa")
     group.add_argument("--where", action="append", type=assignment, default=[], metavar="AXIS=VALUE", help="this alone")
 
 

@@ -12,7 +12,7 @@ from .. import catalogue
 from ..api import load
 from ..data.provenance import command_line
 from ..figures import figure_results
-from ..figures.plots import drawn
+from ..figures.plots import shaped
 from ..figures.registry import is_measured, study_beside
 from ..figures.style import style
 from ..inputs.definition import StudyError
@@ -61,10 +61,15 @@ def _curves(options, name: str) -> int:
     dataset = results_of(options, name)
     if isinstance(dataset, int):
         return dataset
-    stem, title = f"{Path(name).stem}_{options.y}", f"{Path(name).stem}: {options.y} against {options.x}"
+    study = Path(name).stem
+    stem, title = f"{study}_{options.y}", f"{study}: {options.y} against {options.x}"
+    if options.colour:
+        stem, title = f"{study}_{options.colour}", f"{study}: {options.colour} over {options.x} and {options.y}"
     try:
         with style():
-            figure, columns = drawn(dataset, options.x, options.y, options.hue, dict(options.where), Figure)
+            names, look = (options.x, options.y, options.hue), vars(options)
+            look = {name: look[name] for name in ("colour", "scale", "limits")}
+            figure, columns = shaped(dataset, names, dict(options.where), Figure, **look)
         figure = catalogue.without_parameters(figure) if options.bare else figure
         written = catalogue.save(Path(options.folder) / stem, figure, columns, title)
     except (StudyError, OSError, MemoryError):

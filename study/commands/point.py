@@ -54,6 +54,7 @@ def point(options, texts: list[str]) -> int:
     if picture and not picture.lower().endswith(_PICTURES):
         raise StudyError([f"--stresses {picture}: must end with one of {', '.join(_PICTURES)}"])
     several = any(isinstance(value, list) for value in parameters.values())
+    as_table = _is_table(options)
     if picture and several:
         raise StudyError([f"--stresses {picture}: the picture is of one contact, and there is a list of values"])
     with warnings.catch_warnings():
@@ -65,16 +66,39 @@ def point(options, texts: list[str]) -> int:
             contact = (
                 solve(**parameters) if several else solve_one(f"--stresses {picture}" * bool(picture), **parameters)
             )
+            bare = _bare(parameters) if options.beside else None
         except StudyError as error:
             raise StudyError(message.removeprefix("solve: ") for message in error.messages) from None
     if options.json or picture:
         contact = as_dataset(contact)
-    text = _as_json(contact) if options.json else columns(contact) if contact["status"].dims else summary(contact)
+    if as_table:
+        from ..in_words.chosen_columns import table_of  # it imports xarray and pandas
+
+        contact = as_dataset(contact)
+        text = table_of(contact, options.columns, options.units, bare)
+    else:
+        text = _as_json(contact) if options.json else columns(contact) if several else summary(contact)
     code = answer(text) or int((contact["status"] != 0).any())
-    if contact["status"].dims and not options.json:  # a table has no sentences
+    if (several or as_table) and not options.json:  # a table has no sentences
         for sentence in dict.fromkeys(text for case in _cases(contact) for text in assumed(case)):
             say(f"assumed: {sentence}", sys.stderr)
     return code or (_draw_stresses(contact, Path(picture)) if picture else 0)
+
+
+def _is_table(options) -> bool:
+    """Whether a table of numbers is asked for. Raises StudyError beside an option that it has no place for."""
+    options_of_tables = [name for name in ("columns", "units", "beside") if getattr(options, name)]
+    if options_of_tables and (options.json or options.stresses):
+        other = "--json" if options.json else "--stresses"
+        raise StudyError([f"--{options_of_tables[0]} makes a table of numbers: leave out {other}"])
+    return bool(options_of_tables)
+
+
+def _bare(parameters: dict[str, Any]) -> xr.Dataset:
+    """The same contacts on the body without its layers."""
+    from ..in_words.chosen_columns import without_layer  # it imports xarray and pandas
+
+    return solve(**without_layer(parameters))
 
 
 def _draw_stresses(contact: xr.Dataset, path: Path) -> int:
@@ -98,6 +122,8 @@ def _as_json(contacts: xr.Dataset) -> str:
 
 
 def _cases(contacts: xr.Dataset) -> list[xr.Dataset]:
+    if not contacts["status"].dims:
+        return [contacts]
     cases = contacts.stack({"case": contacts["status"].dims}, create_index=False)
     return [cases.isel(case=i) for i in range(cases.sizes["case"])]
 

@@ -10,10 +10,10 @@ from typing import Any
 from xarray import Dataset
 
 from ..api import load
-from ..data.frames import frames
 from ..figures.formats import guarded, write
 from ..files.access import Unusable
 from ..files.results_file import open_results
+from ..in_words.chosen_columns import in_units, rows_of, selected
 from ..inputs.definition import StudyError
 from ..inputs.places import study_file
 from ..terminal import answer
@@ -55,7 +55,8 @@ def write_rows(options, name: str) -> int:
         return dataset
     if "status" not in dataset:
         raise StudyError([f"{name}: this dataset is not one of contacts: it has no status"])
-    tables, stem = frames(dataset), Path(options.folder) / Path(name).stem
+    dataset = in_units(selected(dataset, options.columns), options.units)
+    tables, stem = rows_of(dataset, options.columns), Path(options.folder) / Path(name).stem
     if options.format == "csv":
         names = {kind: stem.with_name(f"{stem.name}{f'_{kind}' * (kind != 'contacts')}.csv") for kind in tables}
         answer(*(write(names[kind], _guarded(table).to_csv(index=False)) for kind, table in tables.items()))

@@ -19,11 +19,12 @@ from ..inputs.scene.stacks import short
 from ..inputs.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
 from .figure_results import check_size, drawable, why_none
-from .fit_picture import fits
 from .labels import axis_label, legend_texts, multiple, name_of, stated, with_units, wrapped
+from .plotted.fit_picture import fits
+from .plotted.map_picture import map_of
+from .plotted.tornado import ORDINATE, tornado
 from .registry import Columns, joined
 from .style import StyledFigure, as_points, shades, spaced_by_factors, style, tick_decades
-from .tornado import ORDINATE, tornado
 
 MOST_PANELS, MOST_NAMES = 12, 12  # of a figure, of its legend
 FINE, FEW = 200, 9  # points of the curve of a profile, at least; of those that it passes through
@@ -31,7 +32,17 @@ BAND = {"alpha": 0.25, "linewidth": 0}  # of ± one standard deviation
 NOT_VALID = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9}
 
 
-def plot(dataset: xr.Dataset, x: str = "", y: str = "", hue: str = "", **where: Any) -> Figure:
+def plot(
+    dataset: xr.Dataset,
+    x: str = "",
+    y: str = "",
+    hue: str = "",
+    *,
+    colour: str = "",
+    scale: str = "",
+    limits: tuple[Any, Any] | None = None,
+    **where: Any,
+) -> Figure:
     """A figure of `y` against `x`, a curve for each value of `hue`, a panel for each combination of the other axes.
 
     A notebook shows it where it is the last value of a cell; `savefig` writes it. It is none of pyplot, and looks the
@@ -44,6 +55,10 @@ def plot(dataset: xr.Dataset, x: str = "", y: str = "", hue: str = "", **where: 
     x, y : names of variables of the dataset, or of study.derived.QUANTITIES, which follow from it; y = "input": how
         much each input changes x, a, P, D, p0, p_max, Ar_An or dP_dD of one contact, as bars
     hue : name of a dimension, or "label" of the cases
+    colour : name of a variable or quantity, which is then a map over the dimensions x and y; where `validity` is not 0,
+        the map is hatched, and failed cases are white
+    scale : "linear" or "log" of y, or of the colour of a map; "" chooses
+    limits : lowest and highest y, or colour of a map, in the units of the dataset or as texts with a unit
     where : values to be drawn alone, such as bonding="bonded"
 
     Returns
@@ -55,7 +70,49 @@ def plot(dataset: xr.Dataset, x: str = "", y: str = "", hue: str = "", **where: 
     StudyError : no dataset, or a stacked one, a name is not there, a value neither, or more than 12 panels
     """
     with style():
-        return drawn(dataset, x, y, hue, where, StyledFigure)[0]
+        return shaped(dataset, (x, y, hue), where, StyledFigure, colour=colour, scale=scale, limits=limits)[0]
+
+
+def shaped(
+    dataset: xr.Dataset, names: tuple, where: dict, new: Callable[..., Figure], *, colour: str, scale: str, limits: Any
+) -> tuple:
+    """What `drawn` gives, with the scale and limits of the ordinate; or a map, if `colour` is not ""."""
+    x, y, hue = names
+    if scale not in ("", "linear", "log"):
+        raise StudyError([f"plot: scale = {scale}: must be linear or log"])
+    if (colour or scale or limits is not None) and isinstance(dataset, xr.Dataset):
+        if "fit_status" in dataset or y == ORDINATE:
+            raise StudyError(["plot: colour, scale and limits are of curves and maps of contacts: leave them out"])
+        if colour and hue:
+            raise StudyError(["plot: a map has no hue: leave it out"])
+    if colour:
+        contacts = chosen(with_names(drawable(dataset, (x, y, colour, *where)), [x, y, colour]), where)
+        check_size(contacts, x, y)
+        return map_of(contacts, x, y, colour, (scale, _ends(contacts[colour], limits)), new)
+    figure, columns = drawn(dataset, x, y, hue, where, new)
+    if scale or limits is not None:
+        ordinate = with_names(dataset, [short(y)])[short(y)]
+        ends = _ends(ordinate, limits)
+        for axes in (axes for axes in figure.axes if axes.get_visible()):
+            axes.set(**({"yscale": scale} if scale else {}))
+            axes.set(**({"ylim": [end / multiple(ordinate)[1] for end in ends]} if ends else {}))
+            tick_decades(axes.yaxis)
+    return figure, columns
+
+
+def _ends(array: xr.DataArray, limits: Any) -> list[float] | None:
+    """Limits in the unit of an array. Raises StudyError: these are not two, the lower first."""
+    if limits is None:
+        return None
+    ends = []
+    for limit in limits if isinstance(limits, (list, tuple)) else [limits]:
+        try:
+            ends.append(float(limit))
+        except (TypeError, ValueError):
+            ends.append(number(str(array.name), limit, array.attrs.get("units", "1")))
+    if len(ends) != 2 or not ends[0] < ends[1]:
+        raise StudyError([f"plot: limits = {limits}: must be two, the lower first"])
+    return ends
 
 
 def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Callable[..., Figure]) -> tuple:

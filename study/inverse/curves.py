@@ -16,7 +16,7 @@ from ..inputs.definition import StudyError
 from ..inputs.vocabulary import VOCABULARY
 from ..specimen.quantities import quantity
 from ..terminal import shown
-from .force_curves import Reading, is_of_instrument, place, reading_of
+from .force_curves import Reading, is_of_instrument, place, reading_of, without_indents
 from .force_curves import read as of_instrument
 
 COLUMNS = ("D", "P", "a", "dP_dD")
@@ -36,6 +36,7 @@ def curves(
     curve: int | str | None = None,
     spring_constant: Any = None,
     sensitivity: Any = None,
+    area: Any = None,
 ) -> xr.Dataset:
     """Measured curves in SI: depth D, load P, contact radius a or stiffness dP/dD over (curve, point).
 
@@ -50,6 +51,10 @@ def curves(
     curve : the one to take of several: its name in the column `curve`, or its number, counted from 0; None: all
     spring_constant : of the cantilever, N/m or a text with a unit; None: the file has it
     sensitivity : length that the cantilever bends by a volt, m/V or a text with a unit; None: the file has it
+    area : of the columns h (depth), P (load) and S (stiffness at the start of unloading) of Oliver and Pharr: the area
+        function of the tip, which makes a = √(A(hc)/π) of the contact depth hc = h - 0.75 P/S. Numbers C0, C1, C2 ...
+        of A = C0 hc² + C1 hc + C2 hc^(1/2) + C3 hc^(1/4) + ..., hc in nm, A in nm²; or a function of hc in m to m².
+        None where there is a column A. The dataset has a and dP_dD = S
 
     Returns
     -------
@@ -66,10 +71,10 @@ def curves(
     >>> study.curves({"D": ([0.0, 10.0], "nm"), "P": ([0.0, 2.0], "nN")}).P.values.tolist()
     [[0.0, 2e-09]]
     """
-    return measured(source, reading=reading_of(part, curve, spring_constant, sensitivity))
+    return measured(source, reading=reading_of(part, curve, spring_constant, sensitivity), area=area)
 
 
-def measured(source: Any, least: int = 2, reading: Reading = _AS_IT_IS) -> xr.Dataset:
+def measured(source: Any, least: int = 2, reading: Reading = _AS_IT_IS, area: Any = None) -> xr.Dataset:
     """The dataset that `curves` returns, with `least` columns or more: a plan needs one."""
     is_file = isinstance(source, (str, Path))
     if is_file and is_of_instrument(Path(source), reading):
@@ -78,7 +83,7 @@ def measured(source: Any, least: int = 2, reading: Reading = _AS_IT_IS) -> xr.Da
     if strange := [name for name, value in options.items() if value != getattr(_AS_IT_IS, name)]:
         kind = "of files of instruments, and the columns of all else are taken as they are"
         raise StudyError([f"curves: {strange[0]} is {kind}: leave it out"])
-    dataset = _of_source(source, is_file, least)
+    dataset = _of_source(source, is_file, least, area)
     if is_file and least > 1 and dataset.sizes["point"] < 2:
         raise StudyError([f"{Path(source).as_posix()}: has one row: a curve has two points or more"])
     return dataset if reading.curve is None else _chosen(dataset, reading.curve)
@@ -102,12 +107,16 @@ def _chosen(dataset: xr.Dataset, curve: Any) -> xr.Dataset:
     return chosen.isel(point=slice(0, last))
 
 
-def _of_source(source: Any, is_file: bool, least: int) -> xr.Dataset:
+def _of_source(source: Any, is_file: bool, least: int, area: Any) -> xr.Dataset:
     """The curves in a text file, a dictionary or a Dataset."""
     if is_file:
-        return _of_columns(*_read(Path(source)), least=least)
+        columns, labels, where = _read(Path(source))
+        return _of_columns(without_indents(columns, area, where), labels, where, least=least)
     if isinstance(source, dict):
-        return _of_columns({name: _pair(name, value) for name, value in source.items()}, least=least)
+        columns = {name: _pair(name, value) for name, value in source.items()}
+        return _of_columns(without_indents(columns, area, "curves"), least=least)
+    if area is not None:
+        raise StudyError(["curves: area goes with the columns h, P and S: leave it out"])
     if isinstance(source, xr.Dataset):
         names = [name for name in COLUMNS if name in source]
         strange = [dim for name in names for dim in source[name].dims if dim not in ("curve", "point")]

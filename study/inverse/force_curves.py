@@ -206,3 +206,63 @@ def _half(height: np.ndarray, force: np.ndarray, part: str) -> tuple[np.ndarray,
         turn = len(height)
     kept = slice(0, turn) if part == "approach" else slice(turn, None)
     return height[kept], force[kept]
+
+
+#: Of P/S, the part by which the surface sinks at the edge of the contact: of a paraboloid and of a worn pyramid (Oliver
+#: and Pharr, J. Mater. Res. 7 (1992) 1564).
+SINK = 0.75
+_OF_INDENTS = {"h": ("m", "nm"), "P": ("N", "mN"), "S": ("N/m", "mN/nm"), "A": ("m^2", "nm^2")}
+_NM = 1e-9
+_Columns = dict[str, tuple[Any, str]]
+
+
+def without_indents(columns: _Columns, area: Any, where: str) -> _Columns:
+    """The columns a and dP_dD of a table with the column S; all others as they are. A point without contact is NaN.
+
+    Raises StudyError: a column is missing, or has another unit, or there is no area function.
+    """
+    if "S" not in columns:
+        if area is not None:
+            raise StudyError([f"{where}: area goes with the columns h, P and S: leave it out"])
+        return columns
+    if "A" in columns and area is not None:
+        raise StudyError([f"{where}: there is a column A: leave out area"])
+    needed = ("S", "A") if "A" in columns else ("S", "h", "P")
+    if missing := [name for name in needed if name not in columns]:
+        raise StudyError([f"{where}: beside S there must be h and P, or A; there is no {' and no '.join(missing)}"])
+    if "A" not in columns and area is None:
+        needs = "S, h and P need the area function of the tip: rc.curves(..., area=[24.5]), or a column A"
+        raise StudyError([f"{where}: {needs}"])
+    if strange := [name for name in columns if name not in _OF_INDENTS]:
+        raise StudyError([f"{where}: {shown(strange[0])} does not go with S: leave it out"])
+    si = {name: _in_si(name, *columns[name], where) for name in needed}
+    with np.errstate(invalid="ignore", divide="ignore"):
+        A = si["A"] if "A" in si else _area(area, si["h"] - SINK * si["P"] / si["S"], where)
+        touches = (A > 0) & (si["S"] > 0)
+        radius = np.where(touches, np.sqrt(A / np.pi), np.nan)
+    return {"a": (radius, "m"), "dP_dD": (np.where(touches, si["S"], np.nan), "N/m")}
+
+
+def _in_si(name: str, values: Any, unit: str, where: str) -> np.ndarray:
+    si, such = _OF_INDENTS[name]
+    try:
+        if not unit:
+            raise ValueError(f"{name} has no unit, such as {such}")
+        return np.ma.filled(np.ma.asarray(values, float), np.nan) * quantity(name, f"1 {unit}", si).value
+    except (TypeError, ValueError) as error:
+        raise StudyError([f"{where}: {error}" if name in str(error) else f"{where}: {name}: {error}"]) from None
+
+
+def _area(area: Any, hc: np.ndarray, where: str) -> np.ndarray:
+    """A(hc), m². A depth hc that is not above 0 has none."""
+    hc = np.where(hc > 0, hc, np.nan)
+    if callable(area):
+        return np.asarray(area(hc), float)
+    try:
+        coefficients = np.atleast_1d(np.asarray(area, float))
+    except (TypeError, ValueError):
+        coefficients = np.empty(0)
+    if coefficients.ndim != 1 or not coefficients.size or not np.isfinite(coefficients).all():
+        raise StudyError([f"{where}: area = {shown(area)}: must be numbers C0, C1 ... or a function of hc"])
+    powers = [2.0, *(0.5**k for k in range(len(coefficients) - 1))]
+    return _NM**2 * sum(C * (hc / _NM) ** power for C, power in zip(coefficients, powers, strict=True))

@@ -30,9 +30,9 @@ ROOMS = {
         *("schemes", "smooth", "ways", "models", "solve", "sensitivity", "fields", "yields"),
     ),
     "study": (
-        *("terminal", "arrays", "specimen", "inputs", "pages", "rules", "data", "derivatives"),
+        *("terminal", "arrays", "samples", "specimen", "inputs", "pages", "rules", "data", "derivatives"),
         *("in_words", "files", "store", "work", "lazy", "solving", "fields", "inverse", "adhesion"),
-        *("scan_laws", "yields", "figures", "api", "catalogue", "explorer", "commands", "__main__"),
+        *("creep", "scan_laws", "yields", "figures", "api", "catalogue", "explorer", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.

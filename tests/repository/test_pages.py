@@ -161,6 +161,8 @@ RUN = (
     "README.md",
     *(f"docs/{name}.md" for name in ("accuracy", "python", "shapes", "adhesion", "stacks", "fit", "afm")),
     "docs/other_programs.md",
+    "docs/time.md",
+    "docs/sobol.md",
 )
 
 

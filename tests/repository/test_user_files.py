@@ -38,6 +38,7 @@ OWN = {
     "solver/laws/lattice.py": "a table of the package",
     "solver/numerics/special.py": "a table of the package",
     "study/explorer/page.py": "scripts of the package",
+    "study/commands/beginning.py": "a template of the package, and a file that it makes",
     "study/inputs/places.py": "the book in the package",
     "study/inputs/vocabulary.py": "tables of the package",
     "study/pages.py": "pages of the package",

@@ -6,10 +6,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..derivatives import QUANTITIES, relative_spreads, sensitivities
-from ..inputs.definition import StudyError
-from .labels import stated, symbol, wrapped
-from .registry import Columns
+from ...derivatives import QUANTITIES, relative_spreads, sensitivities
+from ...inputs.definition import StudyError
+from ..labels import stated, symbol, wrapped
+from ..registry import Columns
 
 ORDINATE = "input"
 """The y of `study.plot` that asks for these bars."""

@@ -6,11 +6,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..data.dataset import decode
-from ..inputs.definition import StudyError
-from ..specimen.quantities import readable
-from .labels import axis_label, multiple
-from .registry import Columns, joined
+from ...data.dataset import decode
+from ...inputs.definition import StudyError
+from ...specimen.quantities import readable
+from ..labels import axis_label, multiple
+from ..registry import Columns, joined
 
 MOST = 4  # curves in a figure
 

@@ -1,0 +1,1 @@
+"""What `plot` draws besides curves: fits, bars of the inputs, and maps."""

@@ -1,0 +1,122 @@
+"""Tables of numbers as a user asks for them: these columns, in these units, beside the body without its layer."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..data.derived import QUANTITIES
+from ..data.frames import frames
+from ..inputs.definition import StudyError
+from ..inputs.lexicon import lexicon_in
+from ..inputs.vocabulary import FIRST_LAYER, suggest
+from ..specimen.quantities import quantity
+from ..terminal import shown
+from .text import OF_ASPERITIES, SHOWN
+
+COLUMNS = (*SHOWN, "status")
+"""Columns where none are asked for."""
+DIGITS = 4  # of a number in a terminal
+_OF_LAYERS = {*FIRST_LAYER.values(), "cn", "ct", "profile", "base", "asperities_on", "n_bottom", "nu_bottom"}
+
+
+def selected(dataset: xr.Dataset, names: list[str] | tuple[str, ...] | None) -> xr.Dataset:
+    """The results, inputs and derived quantities of these names, in this order, beside the dimensions; None: all.
+
+    Raises StudyError: a name that is none of these.
+    """
+    if not names:
+        return dataset
+    known = [*map(str, dataset.variables), *QUANTITIES]
+    if wrong := [f"--columns {shown(name)} is no column{suggest(name, known)}" for name in names if name not in known]:
+        raise StudyError(wrong)
+    derived = {name: QUANTITIES[name](dataset) for name in names if name not in dataset.variables}
+    whole = dataset.assign(derived).reset_coords()
+    dims = list(dataset["status"].dims)
+    order = [name for name in names if name not in dims]
+    table = whole[[*order, *["status"] * ("status" not in order)]]
+    return table.drop_vars([name for name in table.coords if name not in (*dims, "x")])
+
+
+def in_units(dataset: xr.Dataset, units: list[str] | None) -> xr.Dataset:
+    """The dataset with each quantity in that of the units that is of its kind; all others stay as they are.
+
+    Raises StudyError: a unit that is none, or in which no quantity is.
+    """
+    wrong = []
+    for unit in units or ():
+        changed = {}
+        for name, array in dataset.variables.items():
+            if factor := _size(unit, array.attrs.get("units", "1")):
+                numbers = array.data / factor
+                changed[name] = array.dims, numbers, array.attrs | {"units": unit}
+        wrong += [f"--units {shown(unit)} is the unit of no column"] * (not changed)
+        dataset = dataset.assign(changed)
+    if wrong:
+        raise StudyError(wrong)
+    return dataset
+
+
+def _size(unit: str, si: str) -> float:
+    """How many of the SI unit a unit is; 0 if it is of another kind."""
+    if si == "1":
+        return 0.0
+    try:
+        return quantity("", f"1 {unit}", si).value
+    except ValueError:
+        return 0.0
+
+
+def without_layer(parameters: dict[str, Any]) -> dict[str, Any]:
+    """The inputs of the same contact on the body without layers. StudyError: it has none already."""
+    left = {name: value for name, value in parameters.items() if name not in _OF_LAYERS and name[:7] != "layers."}
+    if parameters.get("base") == "half_space" or len(left) == len(parameters):
+        raise StudyError(["--beside bare: there is no layer to leave out"])
+    return left | {"base": "half_space"}
+
+
+def table_of(contacts: xr.Dataset, names: list[str] | None, units: list[str] | None, bare: xr.Dataset | None) -> str:
+    """The lines of the table, a line for each contact.
+
+    names : of the columns behind those of the dimensions; None: the results that `summary` has
+    bare : the contacts on the body without layers, whose results stand behind, called NAME bare
+
+    Raises StudyError: a name or unit that is none, or a profile, which has no place in a line.
+    """
+    names = names or _usual(contacts)
+    table = selected(contacts, names)
+    if profiles := [name for name in names if name in table and "x" in table[name].dims]:
+        raise StudyError([f"--columns {profiles[0]} is a profile along x, which has no place in a line"])
+    if bare is not None:
+        results = [name for name in names if name not in bare.coords]
+        beside = selected(bare, results)
+        table = table.assign({f"{name} bare": beside[name] for name in results})
+    return _lines(rows_of(in_units(table, units), names)["contacts"])
+
+
+def rows_of(table: xr.Dataset, names: list[str] | None) -> dict[str, Any]:
+    """The frames of a table, without the status where other columns are asked for."""
+    return {
+        kind: rows if not names or "status" in names else rows.drop(columns="status", errors="ignore")
+        for kind, rows in frames(table).items()
+    }
+
+
+def _usual(contacts: xr.Dataset) -> list[str]:
+    smooth = np.isin(contacts["micro"], list(lexicon_in(contacts).smooth_laws())).all()
+    return [name for name in COLUMNS if name in contacts and not (smooth and name in OF_ASPERITIES)]
+
+
+def _lines(rows: Any) -> str:
+    texts = [list(map(str, rows.columns)), *([_text(value) for value in row] for row in rows.itertuples(index=False))]
+    widths = [max(map(len, cells)) for cells in zip(*texts, strict=True)]
+    return "\n".join("  ".join(f"{t:{w}}" for t, w in zip(row, widths, strict=True)).rstrip() for row in texts)
+
+
+def _text(value: Any) -> str:
+    """A number with four digits, as people write it."""
+    if not isinstance(value, (float, np.floating)):
+        return str(value)
+    return "-" if np.isnan(value) else f"{value:.{DIGITS}g}"

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from solver.bases import is_bare
+
 from ..data.derived import QUANTITIES
 from ..data.frames import frames
 from ..inputs.definition import StudyError
@@ -72,7 +74,7 @@ def _size(unit: str, si: str) -> float:
 def without_layer(parameters: dict[str, Any]) -> dict[str, Any]:
     """The inputs of the same contact on the body without layers. StudyError: it has none already."""
     left = {name: value for name, value in parameters.items() if name not in _OF_LAYERS and name[:7] != "layers."}
-    if parameters.get("base") == "half_space" or len(left) == len(parameters):
+    if is_bare(parameters.get("base", "layered")) or len(left) == len(parameters):
         raise StudyError(["--beside bare: there is no layer to leave out"])
     return left | {"base": "half_space"}
 

@@ -121,10 +121,10 @@ def test_a_large_file_of_another_program_has_indexes_and_is_not_read(tmp_path):
 def test_anything_else_that_fails_is_said_in_a_line(tmp_path, monkeypatch, capsys):
     _written(tmp_path / "a.nc", _characters)
 
-    def fails(*_):
+    def fails(*_, **__):
         raise RuntimeError("what it is")
 
-    monkeypatch.setattr("study.commands.drawing.drawn", fails)
+    monkeypatch.setattr("study.commands.drawing.shaped", fails)
     assert main(["plot", str(tmp_path / "a.nc"), "--x", "P", "--y", "y"]) == 1
     said = f"{tmp_path / 'a.nc'}: cannot be drawn: RuntimeError: what it is; -v before the command shows where\n"
     assert capsys.readouterr().err == said

@@ -11,7 +11,6 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.fft import dctn, idctn
 
 __all__ = ["periodic_rows"]
 
@@ -144,5 +143,7 @@ def pressed(depths, response, mean, start, mirrored=False):
 def waves_times(field, factors, mirrored):
     """A field (N, M) whose waves, of :func:`response_of`, have been multiplied by factors."""
     if mirrored:
+        from scipy.fft import dctn, idctn  # imports scipy.special, half of the time of `import solver`
+
         return idctn(dctn(field) * factors)
     return np.fft.irfft2(np.fft.rfft2(field) * factors, s=field.shape)

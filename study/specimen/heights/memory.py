@@ -33,3 +33,16 @@ def variance(values: np.ndarray) -> float:
     values -= values.mean()
     values *= values
     return float(values.mean())
+
+
+def kurtosis(z: np.ndarray) -> float:
+    """Sku, the fourth moment of the finite heights about their mean over the square of the second; nan of a plane."""
+    middle, squares, fourths, count = mean(z), 0.0, 0.0, 0
+    for rows in row_blocks(z):
+        heights = present(z[rows]) - middle
+        heights *= heights
+        squares += float(heights.sum())
+        heights *= heights
+        fourths += float(heights.sum())
+        count += len(heights)
+    return fourths * count / squares**2 if squares else math.nan

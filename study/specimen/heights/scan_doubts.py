@@ -9,7 +9,7 @@ from ...terminal import rounded
 from . import scan_peaks
 from .form import taken_by_polynomial
 from .measured_asperities import length
-from .memory import mean
+from .memory import kurtosis, mean
 from .row_jumps import jumps
 
 #: Least distance of asperities in points of the scan. Those of white noise are three points apart, one in nine points.
@@ -129,10 +129,10 @@ def _of_spikes(z: np.ndarray, steps: tuple, asperities: scan_peaks.Asperities) -
 
 
 def _of_kurtosis(z: np.ndarray) -> Iterator[str]:
-    kurtosis = float(np.nanmean((z - np.nanmean(z)) ** 4) / np.nanvar(z) ** 2)
-    if kurtosis > PEAKED:
+    Sku = kurtosis(z)
+    if Sku > PEAKED:
         yield (
-            f"Sku = {rounded(kurtosis)}, the kurtosis of the heights, is above {PEAKED:g}; a Gaussian surface has 3: a "
+            f"Sku = {rounded(Sku)}, the kurtosis of the heights, is above {PEAKED:g}; a Gaussian surface has 3: a "
             "few points stand far out. If they are real, p_max of the contact is larger than the law of heights says, "
             "by boundary elements 1.7 to 13 times on scans with spikes, and 20 % at most on Gaussian ones; if they are "
             "errors of the instrument, read the scan with despike=5"

@@ -236,18 +236,18 @@ def which_layer_first(panels, contacts: xr.Dataset) -> Columns:
     for axes, (values, colours) in zip(panels, maps, strict=True):
         look = each | {"cmap": ListedColormap(colours), "vmin": 0, "vmax": len(colours) - 1}
         between = _between(values, (h1, h2), fine)
+        axes.set(xscale="log", yscale="log", xlabel="thickness of the DLC, µm", ylabel="thickness of the chromium, µm")
+        axes.set(xlim=(h1[0], h1[-1]), ylim=(h2[0], h2[-1]))  # before the labels, which are placed on the screen
         axes.pcolormesh(*fine, between.argmax(axis=0).T, **look)
         lines = axes.contour(*fine, between.max(axis=0).T, 5, colors="black", linewidths=0.7)
-        axes.clabel(lines, fmt="%.2f", fontsize=7)
-        axes.set(xscale="log", yscale="log", xlabel="thickness of the DLC, µm", ylabel="thickness of the chromium, µm")
-        axes.set(xlim=(h1[0], h1[-1]), ylim=(h2[0], h2[-1]))
+        axes.clabel(lines, fmt="%.2f", fontsize=7, inline_spacing=2)
         axes.set_xticks([1, 2, 5, 10], ["1", "2", "5", "10"])
         axes.set_yticks([0.5, 1, 2, 5, 10], ["0.5", "1", "2", "5", "10"])
     bent = panels[1].contour(*fine, _between(bending, (h1, h2), fine)[0].T, 4, colors=GREY, linestyles="--")
     bent.set(linewidths=0.7)
-    panels[1].clabel(bent, fmt="%.2g", fontsize=7)
-    panels[0].set_title("(a) closest to its strength", loc="left", fontsize=9)
-    panels[1].set_title("(b) interface with the larger shear, GPa", loc="left", fontsize=9)
+    panels[1].clabel(bent, fmt="%.2g", fontsize=7, inline_spacing=2)
+    panels[0].set_title("(a) closest to its strength; stress/strength", loc="left", fontsize=9)
+    panels[1].set_title("(b) larger shear; dashed: tension of the DLC, GPa", loc="left", fontsize=9)
     met = [row[:2] for i, row in enumerate(_OF_STACK) if (part.argmax(axis=0) == i).any()]
     met += [row for i, row in enumerate(_INTERFACES) if (shear.argmax(axis=0) == i).any()]
     handles = [Line2D([], [], color=colour, linewidth=5, alpha=0.5, label=words) for words, colour in met]

@@ -28,7 +28,7 @@ _NEAR, _TERMS = 3, 60
 #: Waves above u = Gh = CUT feel the layer alone: they leave out 1e-11 of p_max, and less of p and A (CELL.md: 17).
 CUT = 19.0
 #: From this pitch over h on the waves of the lattice are summed up to _WIDTHS widths D of the split alone, and an
-#: integral stands for the others: its difference from the sum decays as a Gaussian (tests/laws/cell/test_sums.py).
+#: integral stands for the others: its difference from the sum decays as a Gaussian (tests/laws/cell/test_rows.py).
 SPLIT, _MIDDLE, _WIDTHS = 30.0, 6.0, 12.0
 #: Points on each panel of the integral, and the widest panel: in units of h, over the largest radius, and over D.
 _POINTS, _PANEL = 16, (0.6, 4.0, 1.0)

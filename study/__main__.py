@@ -53,7 +53,6 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("--json", action="store_true", help="as numbers, for a program")
     sub.add_argument("--stresses", type=folder, metavar="FILE", help="draw its stresses too: .png, .pdf or .svg")
     add_columns(sub)
-    sub.add_argument("--beside", choices=("bare",), help="the body without its layer too, in columns of its own")
     sub.epilog = (
         'such as R="5 mm" punch="steel 52100" h="2 um" layer="DLC a-C:H" body="steel 52100" P="10 N" micro=smooth'
     )

@@ -32,7 +32,7 @@ _RTOL = 1e-8
 #: (tools/errors/stress_errors.py).
 _LEAST = 1e-10
 #: The stresses in a graded layer change by at most this times as much as the load with the number of sublayers
-#: (tests/fields/test_contacts_on_stacks.py).
+#: (tests/stacks/test_stresses_of_stacks.py).
 _OF_GRADED = 3.0
 #: Numbers in an array of the integrals of several cases.
 _AT_ONCE = 4_000_000

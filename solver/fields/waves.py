@@ -15,7 +15,7 @@ from ..numerics.quadrature import gauss_legendre
 
 #: A panel of _POINTS Gauss points holds at most so many radians of p^ J_m, and is no longer than its distance from 0,
 #: over which the state is smooth however stiff the layer is. Half of the radians change no stress by more than 1e-15 of
-#: the largest (tests/fields/test_waves.py).
+#: the largest.
 _POINTS, _RADIANS = 20, 20.0
 #: The first panel ends at this times min(1/a, 1/h), over n of stiff layers, which bend over 1/n of that.
 FIRST = 1e-4

@@ -21,7 +21,7 @@ THIN = 1.0
 _SERIES, _TERMS = 0.8, 10
 
 
-class Kind(Codes):
+class StatePart(Codes):
     """Where a state is, and whether that of a half-space of the layer's material is left out of it: the difference is
     formed without cancellation, and decays like a wave that was at the interface."""
 
@@ -178,14 +178,14 @@ def thick_waves(bodies, X, S, T):
 def wave_state(kind, bodies, X, x, load, thin):
     """State (u, w, S, T) under a unit wave.
 
-    kind : :class:`Kind`; bodies : :class:`Bodies`; X, x : kh and kz; all broadcast
+    kind : :class:`StatePart`; bodies : :class:`Bodies`; X, x : kh and kz; all broadcast
     load : (S, T) at the surface, (-1, 0) or (0, 1)
     thin : bool, whether X is below about 1 (:data:`THIN`)
     """
-    if kind == Kind.BODY:
-        _, _, S, T = wave_state(Kind.LAYER, bodies, X, X, load, thin)
+    if kind == StatePart.BODY:
+        _, _, S, T = wave_state(StatePart.LAYER, bodies, X, X, load, thin)
         return decaying(x - X, bodies.nu2, S, np.where(bodies.bonded, T, 0.0))
-    nu, less = bodies.nu1, kind == Kind.DIFFERENCE
+    nu, less = bodies.nu1, kind == StatePart.DIFFERENCE
     if thin:
         v = carried(x, nu, thin_surface(bodies, X, *load))
         return tuple(a - b for a, b in zip(v, decaying(x, nu, *load), strict=True)) if less else v
@@ -200,11 +200,11 @@ def antiplane(kind, bodies, X, x):
     alpha, bonded = bodies.alpha, bodies.bonded
     returned, passed = np.where(bonded, (alpha - 1) / (alpha + 1), 1.0), np.where(bonded, 2 / (alpha + 1), 0.0)
     around = passed * np.exp(-2 * X) - np.expm1(-2 * X)  # 1 - returned e^(-2X)
-    if kind == Kind.BODY:
+    if kind == StatePart.BODY:
         Q = np.where(alpha > 0, passed, 0.0) * np.exp(-x) / around
         return Q, -2 * Q
     up = returned * np.exp(x - 2 * X)
-    down = returned * np.exp(-2 * X - x) if kind == Kind.DIFFERENCE else np.exp(-x)
+    down = returned * np.exp(-2 * X - x) if kind == StatePart.DIFFERENCE else np.exp(-x)
     return (down - up) / around, -2 * (down + up) / around
 
 
@@ -237,6 +237,6 @@ class LayerWaves(NamedTuple):
         return antiplane(*self._at(region, z, less))
 
     def _at(self, region, z, less):
-        kind = Kind.BODY if region else Kind.DIFFERENCE if less else Kind.LAYER
+        kind = StatePart.BODY if region else StatePart.DIFFERENCE if less else StatePart.LAYER
         bodies = Bodies(*(v[:, None, None] for v in self.bodies))
         return kind, bodies, self.k * self.h[:, None, None], self.k * z[..., None]

@@ -102,8 +102,9 @@ def half_space_rows(nodes, s_out, breaks=WHOLE):
 
     With x_< and x_> the smaller and the larger of x, x', K(μ)/(x + x') is K(x_</x_>)/x_> (Landen): so the only
     singularity of the integrand is log|s - s'| (a root at the centre). Panels farther from it than their length have a
-    plain Gauss rule. The others have subpanels that shrink towards it, on each of its sides (:mod:`.pieces`). The
-    complementary parameter 1 - (x_</x_>)² is formed from the distance to the singularity: no digits are lost near it.
+    plain Gauss rule. The others have subpanels that shrink towards it, on each of its sides
+    (:func:`.quadrature.pieces`). The complementary parameter 1 - (x_</x_>)² is formed from the distance to the
+    singularity: no digits are lost near it.
     Polynomial pressures are right to 1e-14 (tests/numerics/test_operator.py).
 
     Contacts on several panels ask for so many values of K that importing scipy's pays.

@@ -62,7 +62,7 @@ def _polynomial(coefficients, x):
 
 def radau_points(n: int) -> np.ndarray:
     """The Gauss-Radau nodes except the last one, (n - 1,) in (-1, 1): the roots of a Jacobi polynomial. Those of meshes
-    of the ladder stand in radau.csv, which tools/references/make_radau.py writes."""
+    of the ladder stand in radau.csv, which tools/make_radau.py writes."""
     points = _of_ladder().get(n)
     return import_module("scipy.special").roots_jacobi(n - 1, 1.0, 0.0)[0] if points is None else points
 

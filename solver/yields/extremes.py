@@ -57,7 +57,7 @@ _FARTHEST = 10.0
 _NEAR_AXIS = 0.8
 
 
-class Task(NamedTuple):
+class Climb(NamedTuple):
     """The function of a case of a batch, a name of :data:`VALUES`, and the point of the coarse grid of a region from
     which it is followed upwards."""
 
@@ -70,7 +70,7 @@ class Task(NamedTuple):
     column: int
 
 
-class Grid(NamedTuple):
+class SearchGrid(NamedTuple):
     """The coarse grid of a region: u (U,) and v (B, V), bounds of both (B, 2), and whether it is the body.
 
     The radius is u, or on the surface, `root`, sqrt(1 - u |u|), in which stresses are smooth up to the edge; v is the
@@ -106,7 +106,7 @@ def together(batches, names=EXTREMES):
             for name, kinds in wanted.items():
                 function, here = EXTREMES[name][0], [kind for kind in kinds if kind in grids]
                 for at in _starts(i, VALUES[function], here, coarse, grids, largest[i]):
-                    task = Task(function, number, i, *at)
+                    task = Climb(function, number, i, *at)
                     if task not in tasks:
                         tasks[task] = []
                         boxes.append(_box(grids[task.region], task))
@@ -159,7 +159,7 @@ def farthest_of(loaded):
 
 
 def regions(loaded):
-    """Name -> :class:`Grid` of each region that the cases have."""
+    """Name -> :class:`SearchGrid` of each region that the cases have."""
     h, B = loaded.h, len(loaded.h)
     octave = 2.0 ** np.floor(np.log2(h[0]))
     stiff = 1.0 if loaded.bare else max(1.0, np.cbrt(loaded.layers.n.max()))
@@ -179,20 +179,20 @@ def regions(loaded):
     from_axis = np.stack([0 * far, far], axis=1)
     outer = -np.sqrt(wide[wide >= 1] ** 2 - 1)[::-1]
     made = {
-        "inside": Grid(inner, surface, none + [0.0, 1.0], none, loaded.bare, True),
-        "outside": Grid(outer, surface, -from_axis[:, ::-1], none, loaded.bare, True),
+        "inside": SearchGrid(inner, surface, none + [0.0, 1.0], none, loaded.bare, True),
+        "outside": SearchGrid(outer, surface, -from_axis[:, ::-1], none, loaded.bare, True),
     }
     if loaded.bare:
         depths = np.tile(np.unique(np.concatenate([_DEPTHS, [1.5, 2.5], deep[deep > 0]])), (B, 1))
-        return made | {"body": Grid(radii, depths, from_axis, from_axis, True)}
+        return made | {"body": SearchGrid(radii, depths, from_axis, from_axis, True)}
     near = np.concatenate([_DEPTHS, deep[deep > 0]])
     depths = np.unique(np.concatenate([near[2 * octave > near], octave * _OF_OCTAVE]))
-    made["layer"] = Grid(radii, np.tile(depths, (B, 1)), from_axis, np.stack([0 * h, h], axis=1), False)
-    made["above"] = Grid(wide, h[:, None], from_axis, np.stack([h, h], axis=1), False)
+    made["layer"] = SearchGrid(radii, np.tile(depths, (B, 1)), from_axis, np.stack([0 * h, h], axis=1), False)
+    made["above"] = SearchGrid(wide, h[:, None], from_axis, np.stack([h, h], axis=1), False)
     if np.all(loaded.layers.n > 0):
         bounds = np.stack([h, h + far], axis=1)
         across, below = _of_body(radii, lengths)
-        made["body"] = Grid(across, h[:, None] + below, from_axis, bounds, True)
+        made["body"] = SearchGrid(across, h[:, None] + below, from_axis, bounds, True)
     return made
 
 

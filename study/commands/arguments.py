@@ -46,10 +46,11 @@ def add_engine(sub: argparse.ArgumentParser) -> None:
 
 
 def add_columns(sub: argparse.ArgumentParser) -> None:
-    """Options of a table of numbers: which columns, and in which units."""
+    """Options of a table of numbers: which columns, in which units, and beside what."""
     option = sub.add_argument("--columns", type=words, metavar="NAME,...", help="these alone, such as h,P,a,p_max")
     option.completer = partial(proposed, "--x")
     sub.add_argument("--units", type=words, metavar="UNIT,...", help="numbers in these, such as um,N,MPa; else in SI")
+    sub.add_argument("--beside", choices=("bare",), help="the body without its layer too, in columns of its own")
 
 
 def words(text: str) -> list[str]:

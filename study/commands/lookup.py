@@ -10,11 +10,13 @@ from .. import pages
 from ..inputs.definition import StudyError
 from ..scan_laws import roughness
 from ..specimen import materials
-from ..specimen.quantities import quantity
+from ..specimen.quantities import multiple, quantity
 from ..specimen.scan import meant
 from ..terminal import answer, program, shown
 from . import signals
 from .arguments import SWITCH, assignment
+
+_DIGITS = 7  # of a number in the words for `point`: more than any scan is exact to
 
 
 def items(options) -> list:
@@ -82,8 +84,19 @@ def _asperities(path: str, words: list[str]) -> int:
     numbers = asperities.parameters(heights)
     if asperities.cutoff is not None:
         return answer(asperities)
-    words = [f'{name}="{value}"' for name, value in numbers.items()]
-    return answer(asperities, f"\n{program()} point ... {' '.join(words)}")
+    words = " ".join(f"{name}={_as_written(value)}" for name, value in numbers.items())
+    return answer(asperities, f"\n{program()} point ... {words}")
+
+
+def _as_written(value: float | str) -> str:
+    """A value as people write it to `point`: a number of seven digits, in the largest unit with 0.1 of it or more."""
+    if isinstance(value, float):
+        return f"{value:.{_DIGITS}g}"
+    number, _, unit = value.partition(" ")
+    if not unit:
+        return f'"{value}"'
+    word, size = multiple(10 * float(number), unit)
+    return f'"{float(number) / size:.{_DIGITS}g} {word.replace("²", "^2").replace("µ", "u")}"'
 
 
 def _arguments(texts: list[str], kinds: "Kinds") -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 import io
 import os
+import warnings
 from importlib.util import find_spec
 from math import isfinite, isnan
 from pathlib import Path
@@ -13,9 +14,10 @@ from ..api import load
 from ..figures.formats import guarded, write
 from ..files.access import Unusable
 from ..files.results_file import open_results
-from ..in_words.chosen_columns import in_units, rows_of, selected
+from ..in_words.chosen_columns import beside_bare, in_units, inputs_without_layer, rows_of, selected, usual
 from ..inputs.definition import StudyError
 from ..inputs.places import study_file
+from ..solving import solve
 from ..terminal import answer
 from .computing import completed
 
@@ -55,7 +57,11 @@ def write_rows(options, name: str) -> int:
         return dataset
     if "status" not in dataset:
         raise StudyError([f"{name}: this dataset is not one of contacts: it has no status"])
-    dataset = in_units(selected(dataset, options.columns), options.units)
+    table = selected(dataset, options.columns)
+    if options.beside:
+        names = options.columns or usual(dataset)
+        table = beside_bare(table, _bare(dataset, names), names)
+    dataset = in_units(table, options.units)
     tables, stem = rows_of(dataset, options.columns), Path(options.folder) / Path(name).stem
     if options.format == "csv":
         names = {kind: stem.with_name(f"{stem.name}{f'_{kind}' * (kind != 'contacts')}.csv") for kind in tables}
@@ -67,6 +73,15 @@ def write_rows(options, name: str) -> int:
             raise StudyError([f"{name}: {rows}; a sheet of .xlsx has at most {MOST_ROWS}: leave out --format xlsx"])
     answer(write(stem.with_suffix(".xlsx"), _workbook(tables)))
     return 0
+
+
+def _bare(dataset: Dataset, names: list[str]) -> Dataset:
+    """The contacts on the body without layers, with the profiles among the names. StudyError: there is no layer."""
+    profiles = [name for name in names if name in dataset and "x" in dataset[name].dims]
+    points = {"x": dataset["x"].values} if profiles else {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of each contact `validity` says it
+        return solve(**inputs_without_layer(dataset), profiles=profiles or False, **points)
 
 
 def _guarded(table: Any) -> Any:

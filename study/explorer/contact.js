@@ -210,7 +210,7 @@ const Contact = ((Core, Numbers, DATA) => {
   };
 
   /** One row for each assumption that is looked at: {name, state "good" | "near" | "beyond", size: words}. The masks are
-      those of study/data/assumptions.py; near: beyond half of a limit. `q`: results without units. */
+      those of study/rules/assumptions.py; near: beyond half of a limit. `q`: results without units. */
   function lights({ inputs, case_, ring }, q) {
     const { p, unit } = case_, L = DATA.limits, E1 = p.layered ? p.n || 1 : 1, rows = [];
     const light = (name, title, ratio, size) => rows.push({ name, title, size, state: ratio > 1 ? "beyond" : ratio > 0.5 ? "near" : "good" });

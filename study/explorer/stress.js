@@ -59,7 +59,7 @@ const Stress = ((Core) => {
     return { k: Float64Array.from(k), w: Float64Array.from(w) };
   }
 
-  /* ---- waves of layer and body; solver/fields/transfer.py. A state is [u, w, S, T] ---- */
+  /* ---- waves of layer and body; solver/kernels/transfer.py. A state is [u, w, S, T] ---- */
 
   function decaying(x, nu, S, T) {
     const decay = Math.exp(-x), shift = x * (S - T);

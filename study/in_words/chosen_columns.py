@@ -9,19 +9,22 @@ import xarray as xr
 
 from solver.bases import is_bare
 
+from ..data.contacts import Contacts
 from ..data.derived import QUANTITIES
 from ..data.frames import frames
 from ..inputs.definition import StudyError
 from ..inputs.lexicon import lexicon_in
-from ..inputs.vocabulary import FIRST_LAYER, suggest
+from ..inputs.vocabulary import CONTROLS, FIRST_LAYER, NUMERICS, scene_of, suggest
 from ..specimen.quantities import quantity
 from ..terminal import shown
 from .text import OF_ASPERITIES, SHOWN
 
 COLUMNS = (*SHOWN, "status")
 """Columns where none are asked for."""
+_BARE = "--beside bare"
 DIGITS = 4  # of a number in a terminal
 _OF_LAYERS = {*FIRST_LAYER.values(), "cn", "ct", "profile", "base", "asperities_on", "n_bottom", "nu_bottom"}
+_OF_LAYERS |= {"sublayers"}
 
 
 def selected(dataset: xr.Dataset, names: list[str] | tuple[str, ...] | None) -> xr.Dataset:
@@ -75,8 +78,48 @@ def without_layer(parameters: dict[str, Any]) -> dict[str, Any]:
     """The inputs of the same contact on the body without layers. StudyError: it has none already."""
     left = {name: value for name, value in parameters.items() if name not in _OF_LAYERS and name[:7] != "layers."}
     if is_bare(parameters.get("base", "layered")) or len(left) == len(parameters):
-        raise StudyError(["--beside bare: there is no layer to leave out"])
+        raise StudyError([f"{_BARE}: there is no layer to leave out"])
     return left | {"base": "half_space"}
+
+
+def inputs_without_layer(dataset: xr.Dataset) -> dict[str, Any]:
+    """The inputs of `study.solve` for the contacts of results on the body without layers, as arrays over the same axes.
+
+    Raises StudyError: there is no layer, or the dataset has lost an input.
+    """
+    Contacts.of(dataset, _BARE)  # refuses what cannot be solved again, laws and tips that the program does not have
+    lexicon, coords = lexicon_in(dataset), [str(name) for name in dataset.coords]
+    there = dict.fromkeys((*CONTROLS, *scene_of(coords), *lexicon.parameters_of(coords)))
+    names = [name for name in there if name in coords and name not in _follow(dataset)]
+    if not (dataset["base"] != "half_space").any():
+        raise StudyError([f"{_BARE}: there is no layer to leave out"])
+    inputs = without_layer({name: _as_input(dataset[name]) for name in names if name != "base"} | {"base": "layered"})
+    settings = {name: dataset.attrs[name] for name in NUMERICS if name in dataset.attrs}
+    return inputs | {name: value for name, value in settings.items() if value != lexicon.parameter(name).default}
+
+
+def _follow(dataset: xr.Dataset) -> set[str]:
+    """The inputs that follow from others in SI units: the ratio of moduli, the radius of two bodies, a mere scale."""
+    scaled = dataset.attrs.get("scale", "R") != "R" or "R1" in dataset.coords or "R2" in dataset.coords
+    return {*["m"] * ("E_punch" in dataset.coords), *["R"] * scaled}
+
+
+def _as_input(array: xr.DataArray) -> Any:
+    """A coordinate as `study.solve` takes it: words of one value as a text, numbers with their unit."""
+    if not array.dims and array.dtype.kind in "UO":
+        return str(array.values)
+    kept = {"units": array.attrs["units"]} if "units" in array.attrs else {}
+    values = array.values.astype(str) if array.dtype.kind == "O" else array.values
+    return xr.DataArray(
+        values, {dim: array[dim].values for dim in array.dims if dim in array.coords}, array.dims, attrs=kept
+    )
+
+
+def beside_bare(table: xr.Dataset, bare: xr.Dataset, names: list[str]) -> xr.Dataset:
+    """The table with the results of these names of the body without layers behind its own, called NAME bare."""
+    results = [name for name in names if name not in bare.coords]
+    beside = selected(bare, results)
+    return table.assign({f"{name} bare": beside[name] for name in results})
 
 
 def table_of(contacts: xr.Dataset, names: list[str] | None, units: list[str] | None, bare: xr.Dataset | None) -> str:
@@ -87,14 +130,12 @@ def table_of(contacts: xr.Dataset, names: list[str] | None, units: list[str] | N
 
     Raises StudyError: a name or unit that is none, or a profile, which has no place in a line.
     """
-    names = names or _usual(contacts)
+    names = names or usual(contacts)
     table = selected(contacts, names)
     if profiles := [name for name in names if name in table and "x" in table[name].dims]:
         raise StudyError([f"--columns {profiles[0]} is a profile along x, which has no place in a line"])
     if bare is not None:
-        results = [name for name in names if name not in bare.coords]
-        beside = selected(bare, results)
-        table = table.assign({f"{name} bare": beside[name] for name in results})
+        table = beside_bare(table, bare, names)
     return _lines(rows_of(in_units(table, units), names)["contacts"])
 
 
@@ -106,7 +147,8 @@ def rows_of(table: xr.Dataset, names: list[str] | None) -> dict[str, Any]:
     }
 
 
-def _usual(contacts: xr.Dataset) -> list[str]:
+def usual(contacts: xr.Dataset) -> list[str]:
+    """The columns of contacts where none are asked for."""
     smooth = np.isin(contacts["micro"], list(lexicon_in(contacts).smooth_laws())).all()
     return [name for name in COLUMNS if name in contacts and not (smooth and name in OF_ASPERITIES)]
 

@@ -2,8 +2,11 @@
 
 import math
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
+
+from solver.numerics.profiles import PREFIX
 
 from .checks import (
     dimensions_that_differ,
@@ -84,6 +87,8 @@ class Draft:
             except ValueError as error:
                 self.errors.append(f"{name}: {error}")
                 return np.empty(len(raw))
+        if name.endswith(".profile") and any(self._is_without_file(word) for word in raw):
+            return np.empty(len(raw))
         raw = shapes.as_written(raw) if name in shapes.WORDS else raw
         endless = INFINITE.get(name, ())
         raw = [math.inf if isinstance(value, str) and value.lower() in endless else value for value in raw]
@@ -93,6 +98,10 @@ class Draft:
         if distinct and len(self.errors) == before:
             self.errors += equal_values(name, array.tolist())
         return array
+
+    def _is_without_file(self, word: Any) -> bool:
+        """Whether a word is a table of a profile that could not be read: the request has said why."""
+        return isinstance(word, str) and word.startswith(PREFIX) and word not in self.lexicon.known.profiles
 
     def _named(self, name: str, raw: list) -> list:
         """The values of `micro` or `shape` as names that the lexicon has. Raises ValueError for what cannot be used."""

@@ -19,7 +19,7 @@ A[p] then errs: by up to 2.4 % at a pitch of 2 h, by up to 11 % at 3 h (`make va
 NOT_THIN = 0.1  # largest model error of a thin layer: `make validity` prints and draws where it reaches these 10 %
 MERGING = 0.4
 """Largest λ(0) of spots that do not merge: the disc cell then overestimates A[p] by 10 % against a square lattice of
-asperities and by 11 % against a hexagonal one, λ and p_max err by 3 % (tests/laws/test_micro_lattice.py)."""
+asperities and by 11 % against a hexagonal one, λ and p_max err by 3 % (tests/laws/lattice/test_micro_lattice.py)."""
 STEEP = 0.2
 """Largest a/R: Tabor's representative strain 0.2 a/R (The Hardness of Metals, 1951) is then 4 %, and the sphere is at
 r = a by (a/R)²/4 = 1 % deeper than the paraboloid r²/2R. Of two bodies of known radii R1 and R2 it is also the largest

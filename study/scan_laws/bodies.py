@@ -19,7 +19,7 @@ _MODULUS = "1 GPa"
 
 
 @dataclass(frozen=True)
-class Body:
+class PressedBody:
     """What a scan presses on.
 
     Attributes
@@ -34,10 +34,10 @@ class Body:
     inputs: dict[str, Any] | None = None
 
 
-def body_of(on: Mapping[str, Any] | None, caller: str) -> Body:
+def body_of(on: Mapping[str, Any] | None, caller: str) -> PressedBody:
     """The body of inputs of a layer, as `study.solve` takes them; None: a half-space of E1*. Raises StudyError."""
     if on is None:
-        return Body()
+        return PressedBody()
     if not isinstance(on, Mapping):
         raise StudyError([f"{caller}: on = {on!r}: must be a dictionary of inputs of a layer, such as h, n, nu1"])
     wrong = sorted({*on} & {"R", "P", "a", "D", "micro", "w_adhesion", "shape"})
@@ -47,7 +47,7 @@ def body_of(on: Mapping[str, Any] | None, caller: str) -> Body:
     inputs = _USUAL | moduli | {name: value for name, value in on.items() if value is not None}
     inputs.setdefault("base", "stack" if "layers" in on else "layered")
     if is_bare(inputs["base"]):
-        return Body()
+        return PressedBody()
     inputs["base"] = named(inputs["base"]).item()
     try:
         definition = from_call(inputs, [], False, {"output": {"profiles": False}})
@@ -67,7 +67,7 @@ def body_of(on: Mapping[str, Any] | None, caller: str) -> Body:
     told = {name: grid[name] for name in grid if _tells(name)}
     lengths = [name for name in told if scene.lexicon.rows[name].powers == (0, 1)]
     told |= {name: told[name] * float(scene.R) for name in lengths}
-    return Body(lambda k: (solid.kernel.whole((k * h)[None])[0] + m) / (1 + m), m, told)
+    return PressedBody(lambda k: (solid.kernel.whole((k * h)[None])[0] + m) / (1 + m), m, told)
 
 
 def _tells(name: str) -> bool:

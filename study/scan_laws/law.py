@@ -15,7 +15,7 @@ from solver.laws import Law, own_table
 from ..specimen.foreign import plain
 from ..terminal import rounded
 from ..work.progress import Progress, screen_of
-from .bodies import Body, body_of
+from .bodies import PressedBody, body_of
 from .patch import Patch, Pressing, patch_of
 
 __all__ = ["ScanLaw", "law"]
@@ -198,7 +198,7 @@ def _wanted(pressures: Any) -> np.ndarray:
     return values
 
 
-def _first(patch: Patch, body: Body, name: str) -> float:
+def _first(patch: Patch, body: PressedBody, name: str) -> float:
     """The pressure at which about _LEAST of the points touch, over the modulus that is felt."""
     pressing = Pressing(patch, body.kernel)
     p, fewest = _LEAST * patch.slope / _STIFF, max(_LEAST, _POINTS / patch.z.size)
@@ -210,7 +210,7 @@ def _first(patch: Patch, body: Body, name: str) -> float:
     return p
 
 
-def _errors(patch: Patch, body: Body, table: np.ndarray, name: str) -> dict[str, float]:
+def _errors(patch: Patch, body: PressedBody, table: np.ndarray, name: str) -> dict[str, float]:
     """What half the pixel and another patch would change, the largest over some rows with λ from _COUNTS on."""
     if min(patch.z.shape) < 2 * _SMALLEST:
         return {}

@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 import pytest
+import xarray as xr
 from numpy.testing import assert_allclose
 
 import study
@@ -271,6 +272,14 @@ BAD = {
 def test_layers_that_are_no_list_in_a_file():
     with pytest.raises(study.StudyError, match="layers = 3: must be a list of layers"):
         from_tables({"model": {"a": 0.05, "micro": "smooth", "layers": 3}}, "x", "", "x")
+
+
+@pytest.mark.parametrize("words", [["table:no.csv", "linear"], xr.DataArray(["linear", "table:no.csv"], dims="kind")])
+def test_profiles_without_their_file_have_one_message(words):
+    layers = [{"h": 0.1, "n": [1.0, 2.0], "profile": "linear"}]
+    with pytest.raises(study.StudyError) as caught:
+        study.solve(a=0.05, micro="smooth", layers=layers, **{"layers.1.profile": words})
+    assert len(caught.value.messages) == 1 and "table:no.csv: cannot be read" in str(caught.value)
 
 
 @pytest.mark.parametrize("kind", BAD)

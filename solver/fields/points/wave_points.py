@@ -11,7 +11,7 @@ import numpy as np
 from ...kernels.transfer import (
     THIN,
     Bodies,
-    Kind,
+    StatePart,
     antiplane,
     carried,
     decaying,
@@ -40,7 +40,7 @@ _AT_ONCE = 60_000
 JET = 6
 
 
-class Waves(NamedTuple):
+class OctaveWaves(NamedTuple):
     """The waves of B cases of one octave of h.
 
     bodies : :class:`~solver.kernels.transfer.Bodies` (B, 1); h : (B,)
@@ -71,8 +71,8 @@ class _Constants(NamedTuple):
 
 
 def waves_of(layers, h, pressure, radius, least, tractions):
-    """:class:`Waves` that reach radii up to `radius` and are felt at depths from `least` h on, of the `tractions`:
-    those that are felt everywhere, and the short ones next to the edge, None if there are none."""
+    """:class:`OctaveWaves` that reach radii up to `radius` and are felt at depths from `least` h on, of the
+    `tractions`: those that are felt everywhere, and the short ones next to the edge, None if there are none."""
     octave = 2.0 ** np.floor(np.log2(h.min()))
     last = _END / (least * octave)
     first = FIRST * min(1.0, 0.5 / octave) / max(1.0, layers.n.max())
@@ -93,7 +93,7 @@ def waves_of(layers, h, pressure, radius, least, tractions):
 def _waves(layers, h, k, p, f, tractions):
     bodies = Bodies(*(np.broadcast_to(v, len(h))[:, None] for v in Bodies.of(layers)))
     thin = int((np.sqrt(h.min() * h.max()) * k < THIN).sum())
-    return Waves(bodies, h, k, thin, p, f, {load: _constants(bodies, h, k, thin, p, load) for load in tractions})
+    return OctaveWaves(bodies, h, k, thin, p, f, {load: _constants(bodies, h, k, thin, p, load) for load in tractions})
 
 
 def _constants(bodies, h, k, thin, p, load):
@@ -113,10 +113,10 @@ def sums(waves, integrands, load, orders, kind, case, r, z):
 
     integrands : ``integrands(v, nu, Q, across)`` of the integrands, linear
     orders : of their Bessel functions
-    kind : :class:`~solver.kernels.transfer.Kind` of all points
+    kind : :class:`~solver.kernels.transfer.StatePart` of all points
     """
     made = np.empty((JET, len(orders), len(r)))
-    reach = {Kind.BODY: z, Kind.LAYER: z, Kind.DIFFERENCE: 2 * waves.h[case] - z}[kind]
+    reach = {StatePart.BODY: z, StatePart.LAYER: z, StatePart.DIFFERENCE: 2 * waves.h[case] - z}[kind]
     order = np.argsort(-reach)
     ends = np.searchsorted(waves.k, _END / reach[order])
     start = 0
@@ -133,7 +133,7 @@ def sums(waves, integrands, load, orders, kind, case, r, z):
 
 
 def _of_some(waves, integrands, load, orders, kind, case, r, z, end):
-    k, nu = waves.k[:end], (waves.bodies.nu2 if kind == Kind.BODY else waves.bodies.nu1)[case]
+    k, nu = waves.k[:end], (waves.bodies.nu2 if kind == StatePart.BODY else waves.bodies.nu1)[case]
     v, Q, across = _state(waves, load, kind, case, z, end)
     first = [k * values for values in derivative(v, nu)]
     second = [k * values for values in derivative(first, nu)]
@@ -188,19 +188,19 @@ def _state(waves, load, kind, case, z, end):
     k, h, bodies, made = waves.k[:end], waves.h[case, None], waves.bodies, waves.loads[load]
     X, x, middle = k * h, k * z[:, None], min(waves.thin, end)
     nu1, p = bodies.nu1[case], waves.p[case, :end]
-    if kind == Kind.BODY:
+    if kind == StatePart.BODY:
         v = decaying(x - X, bodies.nu2[case], *(part[case, :end] for part in made.base))
     else:
         low, high, thick = slice(None, middle), slice(middle, end), slice(0, end - middle)
         parts = []
         if middle:
             state = carried(x[:, low], nu1, [part[case, :middle] for part in made.surface])
-            if kind == Kind.DIFFERENCE:
+            if kind == StatePart.DIFFERENCE:
                 less = decaying(x[:, low], nu1, *(s * p[:, low] for s in load))
                 state = [a - b for a, b in zip(state, less, strict=True)]
             parts.append(state)
         if end > middle:
-            down = made.down_less if kind == Kind.DIFFERENCE else made.down
+            down = made.down_less if kind == StatePart.DIFFERENCE else made.down
             falls = decaying(x[:, high], nu1, *(part[case, thick] for part in down))
             rises = growing((X - x)[:, high], nu1, *(part[case, thick] for part in made.up))
             parts.append([a + b for a, b in zip(falls, rises, strict=True)])

@@ -17,7 +17,7 @@ from ..pressure import Pressure
 
 #: A graded layer of which nothing else is said is cut into so many uniform ones in each octave of the depth; the first
 #: one in so many octaves. With twice as many, 5 octaves, stresses change by what `error` says
-#: (tests/fields/test_contacts_on_stacks.py).
+#: (tests/stacks/test_stresses_of_stacks.py).
 SUBLAYERS, _OCTAVES = 8, 4
 
 

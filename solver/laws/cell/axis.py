@@ -13,7 +13,7 @@ erfc((k - k0)/D)/2. So it needs few waves however near the surface.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...kernels.transfer import Bodies, Kind, radial_sum, wave_state
+from ...kernels.transfer import Bodies, StatePart, radial_sum, wave_state
 from ...kernels.two_layers import TwoLayers
 from ...numerics import special
 from ...numerics.quadrature import gauss_legendre, lagrange
@@ -93,7 +93,7 @@ def axis_stresses(cell: Cell, spot: CellSpots, layers: TwoLayers, z: np.ndarray,
     k, c = lattice_waves(lattice, _CUT * cell.pitch, b)
     amplitudes, X = c * transform(spot, k), k * h
     nu = float(layers.nu1[0] if side == 0 else layers.nu2[0])
-    kind = Kind.DIFFERENCE if side == 0 else Kind.BODY
+    kind = StatePart.DIFFERENCE if side == 0 else StatePart.BODY
     sz, sr = np.zeros(len(z)), np.zeros(len(z))
     for thin in (True, False):
         some = np.flatnonzero((X < _THIN) == thin)

@@ -15,7 +15,7 @@ It is linear in p. In units of the disc cell, with c = b/Bbar = sin θ, v = cos 
 
 in which G, P, Q, B, F and D are smooth functions of b/h, all 0 without a layer. With a load that is the mean it is the
 disc cell of the family. Were the load of others its own, resolved cells of random heights would have A and λ up to 70 %
-off; so they are within 8 % (tests/laws/cell/test_summits.py).
+off; so they are within 8 % (tests/laws/heights/test_heights_on_body.py).
 """
 
 from typing import NamedTuple

@@ -17,7 +17,7 @@ import numpy as np
 from ...numerics import special
 from ...numerics.quadrature import gauss_legendre
 
-__all__ = ["LATTICES", "Waves", "lattice_waves", "lone_waves", "neighbours", "waves"]
+__all__ = ["LATTICES", "CellWaves", "lattice_waves", "lone_waves", "neighbours", "waves"]
 
 #: Distance d of neighbours over l.
 LATTICES = {"square": 1.0, "hex": (4 / 3) ** 0.25}
@@ -28,7 +28,7 @@ _NEAR, _TERMS = 3, 60
 #: Waves above u = Gh = CUT feel the layer alone: they leave out 1e-11 of p_max, and less of p and A (CELL.md: 17).
 CUT = 19.0
 #: From this pitch over h on the waves of the lattice are summed up to _WIDTHS widths D of the split alone, and an
-#: integral stands for the others: its difference from the sum decays as a Gaussian (tests/laws/cell/test_sums.py).
+#: integral stands for the others: its difference from the sum decays as a Gaussian (tests/laws/cell/test_rows.py).
 SPLIT, _MIDDLE, _WIDTHS = 30.0, 6.0, 12.0
 #: Points on each panel of the integral, and the widest panel: in units of h, over the largest radius, and over D.
 _POINTS, _PANEL = 16, (0.6, 4.0, 1.0)
@@ -36,7 +36,7 @@ _POINTS, _PANEL = 16, (0.6, 4.0, 1.0)
 _HALVINGS = 24
 
 
-class Waves(NamedTuple):
+class CellWaves(NamedTuple):
     """Waves k (W,), in 1/l, and weights c (W,): the layer adds K(x) = sum c (L(kh) - 1) cos kx."""
 
     k: np.ndarray
@@ -82,25 +82,25 @@ def neighbours(lattice, x):
 
 @lru_cache(maxsize=32)
 def waves(lattice, pitch, reach):
-    """:class:`Waves` of a lattice on a layer of h = l/`pitch`, for x up to twice the radius `reach` (in l).
+    """:class:`CellWaves` of a lattice on a layer of h = l/`pitch`, for x up to twice the radius `reach` (in l).
 
     Up to the pitch SPLIT they are those of the lattice. Beyond, their number would grow as its square: there they are
     weighted by w(k) = erfc((k - k0)/D)/2, and an integral over k with the weight 1 - w stands for the rest.
     """
     k, c = _split(lattice, CUT * pitch, 2 * reach, pitch < SPLIT)
-    return Waves(k, c / k)
+    return CellWaves(k, c / k)
 
 
 @lru_cache(maxsize=32)
 def lone_waves(pitch, reach):
-    """:class:`Waves` of one spot alone on a layer of h = l/`pitch`: sum c f(k) is the integral over all k up to CUT, of
-    an f that changes as L does and as cos kx up to x = 2 `reach`."""
+    """:class:`CellWaves` of one spot alone on a layer of h = l/`pitch`: sum c f(k) is the integral over all k up to
+    CUT, of an f that changes as L does and as cos kx up to x = 2 `reach`."""
     widest = min(_PANEL[0], _PANEL[1] / (reach * pitch))
     even = np.linspace(widest, CUT, max(2, int(np.ceil((CUT - widest) / widest)) + 1))
     edges = np.concatenate([[0.0], widest * 0.5 ** np.arange(_HALVINGS, 0, -1.0), even])
     nodes, weights = gauss_legendre(_POINTS)
     width = np.diff(edges)[:, None]
-    return Waves((edges[:-1, None] + width * nodes).ravel() * pitch, (width * weights).ravel() * pitch)
+    return CellWaves((edges[:-1, None] + width * nodes).ravel() * pitch, (width * weights).ravel() * pitch)
 
 
 @lru_cache(maxsize=32)

@@ -11,7 +11,7 @@ from ...fields.half_space import on_surface
 from ...fields.points import half_space_points
 from ...fields.points.edge_waves import last_octave
 from ...fields.points.wave_points import of_normal, of_sliding, sums, waves_of
-from ...kernels.transfer import Kind
+from ...kernels.transfer import StatePart
 
 #: Above this part of the layer the half-space is a closed form, to which waves add the difference: they end sooner.
 NEAR = 0.8
@@ -75,7 +75,11 @@ class Jets:
         whole = np.zeros((6, len(orders), len(r)))
         reach = np.searchsorted(_REACHES, 1 + r)
         near = on_top | self._is_near(case, v)
-        kinds = np.full(len(r), int(Kind.BODY)) if body else np.where(near, int(Kind.DIFFERENCE), int(Kind.LAYER))
+        kinds = (
+            np.full(len(r), int(StatePart.BODY))
+            if body
+            else np.where(near, int(StatePart.DIFFERENCE), int(StatePart.LAYER))
+        )
         for far in np.unique(reach):
             long, short = self._reaching(int(far))
             for kind in np.unique(kinds[reach == far]):
@@ -84,7 +88,7 @@ class Jets:
                     if waves is short:
                         some = some[last_octave(r[some]) >= 0] if short is not None else some[:0]
                     if len(some):
-                        here = Kind(kind), case[some], r[some], v[some]
+                        here = StatePart(kind), case[some], r[some], v[some]
                         whole[..., some] += sums(waves, integrands, traction, orders, *here)
         return whole
 

@@ -107,7 +107,7 @@ def _at_tip(made, case, radius):
         made[name][:, case, 0] = np.inf, radius, 0.0
 
 
-class Grid(NamedTuple):
+class StackGrid(NamedTuple):
     """The coarse grid of a region: u (U,), v (V,), their bounds, the number of the layer, or N, and the stresses there
     (4, S, V, U). The radius is u, or on the surface, `root`, sqrt(1 - u |u|), in which stresses are smooth up to the
     edge; v is the depth."""
@@ -193,24 +193,24 @@ def _grids(case, place, j, lengths):
     tops = np.append(0.0, case.ends)
     surface = np.zeros(1)
     if place == "surface" or place == "layer" and j == 0:
-        inner = Grid(np.linspace(0, 1, 12), surface, ((0.0, 1.0), (0.0, 0.0)), 0, True)
+        inner = StackGrid(np.linspace(0, 1, 12), surface, ((0.0, 1.0), (0.0, 0.0)), 0, True)
         wide = radii[radii >= 1]
-        outer = Grid(-np.sqrt(wide**2 - 1)[::-1], surface, ((-far, 0.0), (0.0, 0.0)), 0, True)
+        outer = StackGrid(-np.sqrt(wide**2 - 1)[::-1], surface, ((-far, 0.0), (0.0, 0.0)), 0, True)
         if place == "surface":
             return [inner, outer]
     if place == "lower":
-        return [Grid(radii, tops[j + 1 : j + 2], ((0.0, far), (tops[j + 1],) * 2), j)]
+        return [StackGrid(radii, tops[j + 1 : j + 2], ((0.0, far), (tops[j + 1],) * 2), j)]
     if place == "body":
         if case.rigid:
             return []
         depths = tops[-1] + _unlike(np.outer(lengths, _BELOW).ravel())
-        return [Grid(radii, depths, ((0.0, far), (tops[-1], tops[-1] + far)), len(tops) - 1)]
+        return [StackGrid(radii, depths, ((0.0, far), (tops[-1], tops[-1] + far)), len(tops) - 1)]
     h = tops[j + 1] - tops[j]
     of_lengths = np.outer(lengths, _OF_LENGTH).ravel()
     depths = tops[j] + _unlike(np.concatenate([h * _OF_LAYER, of_lengths[of_lengths < h]]))
     depths = depths[depths > 0]
-    inside = Grid(radii, depths, ((0.0, far), (tops[j], tops[j + 1])), j)
-    lower = Grid(radii, tops[j + 1 : j + 2], ((0.0, far), (tops[j + 1],) * 2), j)
+    inside = StackGrid(radii, depths, ((0.0, far), (tops[j], tops[j + 1])), j)
+    lower = StackGrid(radii, tops[j + 1 : j + 2], ((0.0, far), (tops[j + 1],) * 2), j)
     return [inside, lower, *((inner, outer) if j == 0 else ())]
 
 

@@ -1,6 +1,7 @@
 """Tables of `point` and `table` in the columns and units asked for, and beside the body without its layer."""
 
 import csv
+import warnings
 from pathlib import Path
 
 import pytest
@@ -8,6 +9,7 @@ from numpy.testing import assert_allclose
 
 import study
 from study.__main__ import main
+from study.in_words.chosen_columns import inputs_without_layer
 
 DLC = {"R": "5 mm", "punch": "steel 52100", "layer": "DLC a-C:H", "bonding": "bonded", "body": "steel 52100"}
 DLC |= {"micro": "smooth"}
@@ -94,3 +96,66 @@ def test_rows_of_a_study(capsys):
     assert [float(row[0]) for row in rows] == pytest.approx([1000, 2000])
     with open("tables/mine_profiles.csv", encoding="utf-8") as file:
         assert next(csv.reader(file)) == ["P (mN)", "x", "p (Pa)"]
+
+
+def rows_in(path: str) -> list[dict[str, str]]:
+    with open(path, encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_rows_of_a_study_beside_the_bare_body(capsys):
+    model = "\n".join(
+        f'{name} = "{value}"' for name, value in (DLC | {"R1": "5 mm", "R2": "flat"}).items() if name != "R"
+    )
+    Path("mine.toml").write_text(
+        f'[model]\n{model}\n[axes]\nP = ["1 N", "2 N"]\nh = ["2 um", "4 um"]\n', encoding="utf-8"
+    )
+    asked = ["--columns", "a,An,p", "--units", "mN,nm", "--beside", "bare"]
+    assert main(["table", "mine.toml", "--run", *asked]) == 0
+    rows, profiles = rows_in("tables/mine.csv"), rows_in("tables/mine_profiles.csv")
+    assert [*rows[0]] == ["P (mN)", "h (nm)", "a (nm)", "An (m^2)", "a bare (nm)", "An bare (m^2)"]
+    bare = study.solve(
+        R="5 mm", punch="steel 52100", body="steel 52100", base="half_space", micro="smooth", P=["1 N", "2 N"]
+    )
+    for row in rows:
+        contact = bare.sel(P=float(row["P (mN)"]) / 1e3)
+        assert_allclose(float(row["a bare (nm)"]), contact.a * 1e9, rtol=1e-12)
+        assert_allclose(float(row["An bare (m^2)"]), study.derived.nominal_area(contact), rtol=1e-12)
+    assert_allclose(float(profiles[0]["p bare (Pa)"]), bare.p[0, 0], rtol=1e-9)
+    assert main(["table", "results/mine.nc", *asked]) == 0
+    assert rows_in("tables/mine.csv") == rows
+
+
+@pytest.mark.parametrize(
+    "inputs",
+    [
+        {"P": [1e-5, 2e-5], "h": 0.1, "n": 2.0, "micro": "smooth", "m": 0.1},
+        {"punch": "rigid", "R": "5 mm", "layer": "PTFE", "h": "1 mm", "bonding": "bonded", "body": "PEEK", "P": ["1 N"],
+         "Nbar": "0.1 1/um^2", "Ra": "2 um", "rtol": 1e-7},
+        {"shape": "cone", "half_angle": 70.0, "E1": "5 GPa", "nu1": 0.3, "h": "2 um", "bonding": "bonded",
+         "body": "steel 52100", "P": ["1 N"], "micro": "smooth"},
+        {"cases": [{"P": 1e-5, "h": 0.1}, {"P": 3e-5, "h": 0.2}], "n": 2.0, "micro": "smooth"},
+        {"P": [1e-5], "layers": [{"h": 0.1, "n": 2.0, "bonding": "frictionless"}, {"h": 0.2, "n": [3.0, 1.0],
+         "profile": "linear"}], "micro": "smooth", "nu2": 0.4},
+    ],
+)  # fmt: skip
+def test_results_have_what_the_bare_body_needs(inputs):
+    layers = {"h", "n", "layers", "layer", "bonding", "E1", "nu1"}
+    bare = {name: value for name, value in inputs.items() if name not in layers}
+    if "cases" in bare:
+        bare["cases"] = [{"P": case["P"]} for case in bare["cases"]]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        expected = study.solve(**bare, base="half_space")
+        dataset = study.solve(**inputs)
+        contacts = study.solve(**inputs_without_layer(dataset))
+    assert_allclose(contacts.a.values.ravel(), expected.a.values.ravel(), rtol=1e-12)
+    assert contacts.a.dims == expected.a.dims and (contacts.status == 0).all()
+
+
+def test_results_without_a_layer_have_no_bare_body(capsys):
+    Path("mine.toml").write_text(
+        '[model]\nmicro = "smooth"\nbase = "half_space"\n[axes]\nP = [1e-5]\n', encoding="utf-8"
+    )
+    assert main(["table", "mine.toml", "--run", "--beside", "bare"]) == 2
+    assert "--beside bare: there is no layer to leave out" in capsys.readouterr().err

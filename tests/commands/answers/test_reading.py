@@ -11,6 +11,7 @@ from conftest import ROOT
 from study import materials, pages, roughness
 from study.__main__ import main
 from study.commands import lookup
+from study.specimen.quantities import quantity
 
 SOURCES = [path for folder in ("roughcoat", "solver", "study") for path in (ROOT / folder).rglob("*") if path.is_file()]
 PAGE = re.compile(r"docs/(\w+)\.md(?:, ([A-Z][\w -]*[\w]))?")
@@ -80,7 +81,20 @@ def test_a_scan_is_measured_as_python_does(scan, capsys):
     sentences, _, words = text.rpartition("\n\n")
     assert sentences == str(expected)
     numbers = dict(word.split("=") for word in shlex.split(words)[4:] if "=" in word)
-    assert numbers == {name: str(value) for name, value in expected.parameters("normal").items()}
+    exact = {"Nbar": expected.Nbar, "Ra": expected.Ra, "sigma": expected.sigma_summits, "cut": expected.cut}
+    assert numbers.pop("micro") == "normal_heights"
+    units = {"Nbar": "1/m^2", "Ra": "m", "sigma": "m", "cut": "1"}
+    values = {name: quantity(name, number, units[name]).value for name, number in numbers.items()}
+    assert values == pytest.approx(exact, rel=1e-6)
+
+
+def test_numbers_of_a_scan_are_as_people_write_them(scan, capsys):
+    words = shlex.split(said(capsys, "scan", scan, "unit=um").rpartition("\n\n")[2])
+    numbers = {name: value for name, _, value in (word.partition("=") for word in words if "=" in word)}
+    for name, units in (("Nbar", "1/um^2|1/mm^2"), ("Ra", "um|mm"), ("sigma", "um|nm")):
+        number, unit = numbers[name].split(" ")
+        assert unit in units.split("|") and len(number.strip("0.").replace(".", "")) <= 7 and "e" not in number
+    assert numbers["cut"] == "3" or len(numbers["cut"]) <= 8
 
 
 def test_what_a_scan_prints_is_what_point_takes(scan, capsys):

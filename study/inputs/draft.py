@@ -6,8 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from solver.numerics.profiles import PREFIX
-
 from .checks import (
     dimensions_that_differ,
     equal_cases,
@@ -101,7 +99,7 @@ class Draft:
 
     def _is_without_file(self, word: Any) -> bool:
         """Whether a word is a table of a profile that could not be read: the request has said why."""
-        return isinstance(word, str) and word.startswith(PREFIX) and word not in self.lexicon.known.profiles
+        return isinstance(word, str) and word.startswith(shapes.table.PREFIX) and word not in self.lexicon.known.profiles
 
     def _named(self, name: str, raw: list) -> list:
         """The values of `micro` or `shape` as names that the lexicon has. Raises ValueError for what cannot be used."""

@@ -99,7 +99,8 @@ class Draft:
 
     def _is_without_file(self, word: Any) -> bool:
         """Whether a word is a table of a profile that could not be read: the request has said why."""
-        return isinstance(word, str) and word.startswith(shapes.table.PREFIX) and word not in self.lexicon.known.profiles
+        is_table = isinstance(word, str) and word.startswith(shapes.table.PREFIX)
+        return is_table and word not in self.lexicon.known.profiles
 
     def _named(self, name: str, raw: list) -> list:
         """The values of `micro` or `shape` as names that the lexicon has. Raises ValueError for what cannot be used."""

@@ -182,3 +182,18 @@ def test_below_a_spot():
         assert_allclose(cut[name], wanted[name], rtol=1e-6, err_msg=name)
     loads = [study.first_yield(layers=p, **rough).P_Ya for p in pieces]
     assert_allclose(*loads, rtol=1e-5)
+
+
+def test_a_ridge_that_rises_to_both_interfaces_of_a_layer():
+    """The third layer's largest tension is at its upper side, 1e-4 above that at its lower side; from the radii of the
+    coarse grid it rises downwards alone."""
+    layers = [
+        {"h": 0.03041613654859139, "n": 14.906675366903118, "nu": 0.45252754739641143, "bonding": "bonded"},
+        {"h": 0.01252007144059987, "n": 0.21605180235547639, "nu": 0.1750607630376496, "bonding": "frictionless"},
+        {"h": 0.01183742070253141, "n": 0.2601781051437097, "nu": 0.44478218873662334, "bonding": "frictionless"},
+    ]
+    contact = study.solve(a=0.05, base="stack", layers=layers, nu2=0.3, micro="smooth")
+    top = (layers[0]["h"] + layers[1]["h"]) / 0.05
+    along = study.stresses(contact, r=np.linspace(3.6, 3.9, 31), z=[top + 1e-9]).s1.max()
+    largest = study.extremes(contact).s1_layer[2]
+    assert_allclose(largest, along, rtol=5e-6)

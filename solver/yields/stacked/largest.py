@@ -211,7 +211,9 @@ def _grids(case, place, j, lengths):
     depths = depths[depths > 0]
     inside = StackGrid(radii, depths, ((0.0, far), (tops[j], tops[j + 1])), j)
     lower = StackGrid(radii, tops[j + 1 : j + 2], ((0.0, far), (tops[j + 1],) * 2), j)
-    return [inside, lower, *((inner, outer) if j == 0 else ())]
+    # At an interface stresses may rise towards it from some radii alone, which the grid inside can miss.
+    upper = StackGrid(radii, tops[j : j + 1], ((0.0, far), (tops[j],) * 2), j)
+    return [inside, lower, *((inner, outer) if j == 0 else (upper,))]
 
 
 def _unlike(values):

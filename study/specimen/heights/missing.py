@@ -43,7 +43,9 @@ def treated(z: np.ndarray, missing: str, name: str, spikes: int = 0) -> tuple[np
     gaps = (
         f"{count} of {z.size} heights are not numbers (NaN), the first in {_place(absent)}: {_percent(share)} missing"
     )
-    of_spikes = f"despike took out {spikes} points, which count as missing"
+    of_spikes = (
+        f"despike took out {spikes} {'point, which counts' if spikes == 1 else 'points, which count'} as missing"
+    )
     gaps += f" ({of_spikes})" * bool(spikes)
     out = 'missing="skip" takes the statistics of the points that are there, or crop the scan to a part without gaps'
     if missing == "refuse":

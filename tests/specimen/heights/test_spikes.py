@@ -42,6 +42,8 @@ def test_a_slope_is_no_spike_and_coarse_steps_are_none():
     steps[20, 20] = 500.0
     scan = roughness.height_map(steps, dx=1, unit="um", height_unit="nm", despike=20, missing="skip")
     assert np.argwhere(np.isnan(scan.z)).tolist() == [[20, 20]]
+    filled = roughness.height_map(steps, dx=1, unit="um", height_unit="nm", despike=20)
+    assert filled.notes[0] == "despike took out 1 point, which counts as missing"
 
 
 def test_spikes_of_a_profile_and_beside_missing_points():

@@ -13,11 +13,16 @@ def amplitudes(waves, row, z):
     return radial_sum(v, waves.nu[:, row.region, None, None]), -u, S, T, u, w
 
 
+def stress_parts(E, F, nu):
+    """sr + st, sr - st, sz, trz of half-spaces, of the integrals E_m and F_m of :func:`~.half_space.integrals`."""
+    return [F[0] - (1 + 2 * nu) * E[0], (1 - 2 * nu) * E[2] - F[2], -(E[0] + F[0]), -F[1]]
+
+
 def in_closed_form(pressure, r, z, nu, displacements=True):
     """The same (6 or 4, B, Z, R) of half-spaces of Poisson ratios nu (B,), at radii r (R,) and depths z (Z,) in a."""
     nu, depth = nu[:, None, None], z[:, None]
     E, F, D = integrals(pressure, r, z, displacements=displacements)
-    parts = [F[0] - (1 + 2 * nu) * E[0], (1 - 2 * nu) * E[2] - F[2], -(E[0] + F[0]), -F[1]]
+    parts = stress_parts(E, F, nu)
     if displacements:
         parts += [depth * E[1] - (1 - 2 * nu) * D[1], 2 * (1 - nu) * D[0] + depth * E[0]]
     whole = np.stack(parts)

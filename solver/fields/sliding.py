@@ -19,6 +19,18 @@ def amplitudes(waves, row, z):
     return M, both, -less, S, T + Q, T - Q, w, both, less
 
 
+def stress_parts(E, F, nu):
+    """The six integrals of stresses in half-spaces, of E_m and F_m of :func:`~.half_space.integrals`."""
+    return [
+        F[1] - 2 * (1 + nu) * E[1],
+        F[1] - 2 * (2 - nu) * E[1],
+        -F[3] - 2 * nu * E[3],
+        -F[1],
+        2 * E[0] - F[0],
+        -F[2],
+    ]
+
+
 def in_closed_form(pressure, r, z, nu, displacements=True):
     """The same (9 or 6, B, Z, R) of half-spaces of Poisson ratios nu (B,), at radii r (R,) and depths z (Z,) in a."""
     nu, depth = nu[:, None, None], z[:, None]
@@ -27,14 +39,7 @@ def in_closed_form(pressure, r, z, nu, displacements=True):
     if surface.any():
         E[0][:, surface] = pressure.at(r)[:, None]
         E[1::2, :, surface] = on_surface(pressure, r)[:, :, None]
-    parts = [
-        F[1] - 2 * (1 + nu) * E[1],
-        F[1] - 2 * (2 - nu) * E[1],
-        -F[3] - 2 * nu * E[3],
-        -F[1],
-        2 * E[0] - F[0],
-        -F[2],
-    ]
+    parts = stress_parts(E, F, nu)
     if displacements:
         parts += [
             depth * E[1] + (1 - 2 * nu) * D[1],

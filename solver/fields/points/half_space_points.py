@@ -9,6 +9,7 @@ and each derivative by z or r is an integral with one k more: of e^(-kz), and of
 
 import numpy as np
 
+from .. import normal, sliding
 from ..half_space import Nodes, halvings_at
 
 #: Points that are computed together: some 500 nodes each, of 25 complex numbers.
@@ -19,22 +20,13 @@ def normal_below(pressure, case, nu, r, z):
     """sr + st, sr - st, sz, trz by pressure, with derivatives (JET, 4, P), at points (P,) with z > 0 of the cases
     `case` of a :class:`~..pressure.Pressure`, of half-spaces of Poisson ratios nu (P,)."""
     E, F = _potentials(pressure, case, r, z, 2)
-    parts = F[0] - (1 + 2 * nu) * E[0], (1 - 2 * nu) * E[2] - F[2], -(E[0] + F[0]), -F[1]
-    return np.stack(parts, axis=1)
+    return np.stack(normal.stress_parts(E, F, nu), axis=1)
 
 
 def sliding_below(pressure, case, nu, r, z):
     """The six integrals of stresses by sliding (JET, 6, P) there."""
     E, F = _potentials(pressure, case, r, z, 3)
-    parts = [
-        F[1] - 2 * (1 + nu) * E[1],
-        F[1] - 2 * (2 - nu) * E[1],
-        -F[3] - 2 * nu * E[3],
-        -F[1],
-        2 * E[0] - F[0],
-        -F[2],
-    ]
-    return np.stack(parts, axis=1)
+    return np.stack(sliding.stress_parts(E, F, nu), axis=1)
 
 
 def _potentials(pressure, case, r, z, most):

@@ -91,7 +91,7 @@ def inputs_without_layer(dataset: xr.Dataset) -> dict[str, Any]:
     lexicon, coords = lexicon_in(dataset), [str(name) for name in dataset.coords]
     there = dict.fromkeys((*CONTROLS, *scene_of(coords), *lexicon.parameters_of(coords)))
     names = [name for name in there if name in coords and name not in _follow(dataset)]
-    if not (dataset["base"] != "half_space").any():
+    if is_bare(dataset["base"]).all():
         raise StudyError([f"{_BARE}: there is no layer to leave out"])
     inputs = without_layer({name: _as_input(dataset[name]) for name in names if name != "base"} | {"base": "layered"})
     settings = {name: dataset.attrs[name] for name in NUMERICS if name in dataset.attrs}

@@ -8,7 +8,7 @@ import pytest
 from conftest import ROOT
 
 from solver import Model, Status
-from solver.kernels.transfer import Kind
+from solver.kernels.transfer import StatePart
 from solver.rough.answer import Verdict
 from study.inverse.fits.block import FitStatus
 
@@ -18,7 +18,7 @@ def test_all_codes_are_of_this_kind():
     assert [path.name for path in files if "IntEnum" in path.read_text(encoding="utf-8")] == ["status.py"]
 
 
-@pytest.mark.parametrize("kind", [Status, Model, Verdict, Kind, FitStatus], ids=lambda kind: kind.__name__)
+@pytest.mark.parametrize("kind", [Status, Model, Verdict, StatePart, FitStatus], ids=lambda kind: kind.__name__)
 @pytest.mark.parametrize("use", [np.equal, np.bitwise_and, np.add, np.full_like])
 def test_no_function_of_enum_is_called(kind, use):
     """A function of Python, before which a signal would be heard."""

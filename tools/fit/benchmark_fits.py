@@ -10,6 +10,7 @@ import os
 import tempfile
 import tracemalloc
 import warnings
+from datetime import date
 from importlib.util import find_spec
 from pathlib import Path
 from time import process_time
@@ -125,4 +126,4 @@ def table(rows: list[dict]) -> str:
 if __name__ == "__main__":
     os.environ |= {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL")}
     warnings.simplefilter("ignore")
-    print(table(fits()), table(scans()), sep="\n\n")
+    print(f"These two tables are of {date.today()}.", table(fits()), table(scans()), sep="\n\n")

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..numerics import special
+from ..numerics.kept import Kept
 from ..numerics.quadrature import gauss_legendre
 from ..parameters import Parameter
 from . import disc_cell, spread
@@ -30,8 +31,8 @@ from .law import Bound, Curve, Law, where_positive
 
 #: For σ/A* below this the power law of small pressures (`edge`) is that of equal heights.
 _ALIKE = 0.03
-#: Most tables that are kept, 2 KNOTS numbers each, and how many are made at a time.
-_KEPT, _AT_ONCE = 4096, 64
+#: Bytes of the tables that are kept, some 4,000 of normal heights, and how many are made at a time.
+_MOST_BYTES, _AT_ONCE = 6.5e7, 64
 #: Largest relative error of A, λ and p_max by the tables (tests/laws/heights/test_heights.py). λ has it; A has 5e-6,
 #: and with uniform heights 3e-5. STEPPED is that of histograms, whose steps make corners in the curves (A has 1e-4);
 #: their tables have _FINE times as many knots.
@@ -116,7 +117,7 @@ def _uniform(x, cut):
     return np.ones_like(x) / (2 * cut)
 
 
-_TABLES: dict[tuple, np.ndarray] = {}
+_kept = Kept(_MOST_BYTES)
 
 
 def _tables(density, field, sigma, cut):
@@ -125,20 +126,19 @@ def _tables(density, field, sigma, cut):
     # as complex numbers, pairs are sorted in a tenth of the time
     pairs, group = np.unique(np.concatenate([sigma, cut], axis=1).view(complex)[:, 0], return_inverse=True)
     keys = [(density, field, pair.real, pair.imag) for pair in pairs.tolist()]
-    rows = {key: _TABLES.get(key) for key in keys}
-    missing, fine = [key for key, row in rows.items() if row is None], density.fine
-    at_once = _AT_ONCE // fine**2  # fine tables are larger, and of more pieces
-    for begin in range(0, len(missing), at_once):
-        some = missing[begin : begin + at_once]
-        s, c = np.array([key[2:] for key in some]).T[:, :, None]
+    tables = _kept.several(keys, lambda missing: _computed(density, field, missing))
+    return np.array(tables).reshape(len(keys), 2, spread.KNOTS * density.fine), group.ravel()
+
+
+def _computed(density, field, keys):
+    """The tables of these keys, some at a time: fine ones are larger, and of more pieces."""
+    tables, at_once = [], _AT_ONCE // density.fine**2
+    for begin in range(0, len(keys), at_once):
+        s, c = np.array([key[2:] for key in keys[begin : begin + at_once]]).T[:, :, None]
         at = partial(density.at, cut=c[..., None, None])
-        new = spread.tables(density.edges(c), at, field, s, _relief(density, s, c), fine)
-        rows.update(zip(some, np.moveaxis(new, 1, 0), strict=True))
-    if missing:
-        if len(_TABLES) + len(missing) > _KEPT:
-            _TABLES.clear()
-        _TABLES.update((key, rows[key]) for key in missing)
-    return np.array([rows[key] for key in keys]).reshape(len(keys), 2, spread.KNOTS * fine), group.ravel()
+        several = spread.tables(density.edges(c), at, field, s, _relief(density, s, c), density.fine)
+        tables += [table.copy() for table in np.moveaxis(several, 1, 0)]
+    return tables
 
 
 def _relief(density, sigma, cut):
@@ -242,13 +242,13 @@ class _Body(NamedTuple):
         else:
             triples, first, group = np.unique(numbers, axis=0, return_index=True, return_inverse=True)
         keys = [(self.density, "body", *triple) for triple in triples.tolist()]
-        found = [_TABLES.get(key) for key in keys]
-        for i, (key, row) in enumerate(zip(keys, first, strict=True)):
-            if found[i] is None:
-                if len(_TABLES) >= _KEPT:
-                    _TABLES.clear()
-                found[i] = _TABLES[key] = self._table(triples[i], rows[row], summits[row])
-        return np.array(found).reshape(len(keys), 2, spread.KNOTS * self.density.fine), group.ravel()
+
+        def computed(missing):
+            at = [keys.index(key) for key in missing]
+            return [self._table(triples[i], rows[first[i]], summits[first[i]]) for i in at]
+
+        tables = _kept.several(keys, computed)
+        return np.array(tables).reshape(len(keys), 2, spread.KNOTS * self.density.fine), group.ravel()
 
     def _table(self, numbers, row, summit):
         sigma, cut = numbers[:2, None, None]

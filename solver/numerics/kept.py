@@ -54,18 +54,29 @@ class Kept:
 
     def get(self, key, make):
         """The value of `key`, from ``make()`` if it is not kept: an array, or a tuple or list of such values."""
+        return self.several([key], lambda _: [make()])[0]
+
+    def several(self, keys, make):
+        """The values of different `keys`, in their order; ``make(missing)`` returns those of the keys that are not
+        kept."""
         with self._lock:
-            if key in self._values:
+            values = {key: self._values[key] for key in keys if key in self._values}
+            for key in values:
                 self._values.move_to_end(key)
-                return self._values[key]
-        made = make()
-        with self._lock:
-            if key not in self._values:  # else another thread has made it meanwhile
-                self._values[key] = made
-                self._count(made, 1)
-            while self.nbytes > self.most and len(self._values) > 1:
-                self._count(self._values.popitem(last=False)[1], -1)
-        return made
+        missing = [key for key in keys if key not in values]
+        if missing:
+            values.update(zip(missing, make(missing), strict=True))
+            with self._lock:
+                for key in missing:
+                    self._keep(key, values[key])
+        return [values[key] for key in keys]
+
+    def _keep(self, key, value):
+        if key not in self._values:  # else another thread has made it meanwhile
+            self._values[key] = value
+            self._count(value, 1)
+        while self.nbytes > self.most and len(self._values) > 1:
+            self._count(self._values.popitem(last=False)[1], -1)
 
     def values(self):
         """All that are kept, the latest used last."""

@@ -25,6 +25,20 @@ def test_the_oldest_go_and_those_in_use_stay():
     assert made[-1] == 1 and [value[0] for value in kept.values()] == [4, 0, 1]
 
 
+def test_several_are_made_at_once_if_they_are_not_kept():
+    kept, made = Kept(1000.0), []
+
+    def make(missing):
+        made.append(missing)
+        return [array(number) for number in missing]
+
+    kept.several([1, 2], make)
+    assert [value[0] for value in kept.several([2, 3, 1, 4], make)] == [2, 3, 1, 4]
+    kept.several([4, 1], make)
+    assert made == [[1, 2], [3, 4]] and kept.nbytes == 320
+    assert [value[0] for value in kept.values()] == [2, 3, 4, 1]
+
+
 def test_one_that_is_larger_than_all_is_kept_alone():
     kept = Kept(1.0)
     first = kept.get("first", lambda: array(1))

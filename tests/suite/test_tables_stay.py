@@ -16,7 +16,6 @@ from solver.known import default
 
 #: Caches of pure functions: bounded, and locked or written in one step.
 CACHES = {
-    "solver.laws.heights._TABLES",
     "study.inverse.fits.tasks._tables",
 }
 

@@ -1,8 +1,8 @@
 """The state of layer and body under a wave of unit traction: docs/stress_fields.md, Transfer.
 
 The traction on the surface is J0(kr) (normal, S) or J1(kr) (tangential, T). In each body it causes a state
-v = (u, w, S, T), a function of x = kz: u and w are the displacements along r and z times 2 G k, S and T the stresses sz
-and trz. They are amplitudes of J1, J0, J0 and J1. In a body dv/dx = A v, whose solutions are e^(-x) and e^x times
+v = (u, w, S, T), a function of x = kz: u and w are the displacements along r and z times 2 G k, S and T the stresses
+sz and trz. They are amplitudes of J1, J0, J0 and J1. In a body dv/dx = A v, whose solutions are e^(-x) and e^x times
 polynomials of degree one. Nothing is divided by 1 - 2 nu. Where X = kh is below about 1, the state is integrated from
 the surface down, and nothing cancels. Where X is larger, the state is the sum of a wave that decays from the surface
 and one that decays from the interface, and nothing overflows.
@@ -15,8 +15,8 @@ import numpy as np
 
 from ..status import Codes
 
-#: The layer is thin for waves with X = kh below this. With 0.5 and with 1.5 the states are as near to those of 113 bits.
-#: So cases whose h differ by a factor of 2 may have one limit in k.
+#: The layer is thin for waves with X = kh below this. With 0.5 and with 1.5 the states are as near to those of 113
+#: bits. So cases whose h differ by a factor of 2 may have one limit in k.
 THIN = 1.0
 #: Below _SERIES, x cosh x - sinh x is the sum of its first _TERMS powers: the difference loses digits.
 _SERIES, _TERMS = 0.8, 10

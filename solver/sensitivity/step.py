@@ -21,7 +21,7 @@ from ..numerics import batch
 from ..numerics.linalg import solve_stack
 from ..numerics.mesh import panel_mesh
 from ..rough.equation import Evaluation, Unknowns, evaluate, jacobian
-from ..rough.panels import ends_of, followed
+from ..rough.panels import ends_of, stretch
 from ..rough.results import quantities
 from .inputs import STEP
 
@@ -149,7 +149,7 @@ def _meshes(ev, cases, eta):
     for block in blocks:
         ends = ends_of(cases.shape.take([block]), float(np.exp(eta[block])))
         follows = len(ends) == len(before) and ends != before
-        stretched = panel_mesh(mesh.order, followed(mesh.breaks, before, ends)) if follows else mesh
+        stretched = panel_mesh(mesh.order, stretch(mesh.breaks, before, ends)) if follows else mesh
         meshes.setdefault(stretched, []).append(block)
     return meshes
 

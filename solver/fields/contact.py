@@ -13,7 +13,7 @@ from ..numerics.ladder import STACK
 from ..numerics.threads import one_blas_thread
 from ..rough.answer import answer
 from ..scaling import as_cases, dimensionless
-from ..sensitivity.same_mesh import found_again, meshes, stacks
+from ..sensitivity.same_mesh import meshes, solve_again, stacks
 from ..sensitivity.solved_cases import solved_cases
 from ..shapes import is_flat, shaped
 from ..solve import solve
@@ -149,7 +149,7 @@ def _of_paraboloids(scaled, solution, a, with_errors):
     now = solved_cases(at_a, again.model_used)
     for rows, nodes in stacks(now.written, meshes(again, at_a), a, STACK):
         some = now.take(rows)
-        iterated = found_again(as_cases(some.written), nodes, a[rows], some.written.rtol)
+        iterated = solve_again(as_cases(some.written), nodes, a[rows], some.written.rtol)
         q, p_star = iterated.at.curve.q, iterated.at.cases.law.p_star * some.E2
         # panels may be others than those of the solution: their own error counts
         off = answer(iterated, np.zeros(0)).solution.profile_error if with_errors else 0.0

@@ -20,7 +20,7 @@ def estimate(problem):
 
     They are NaN for cases that the solver refuses, for flat punches, and for micro laws that are not of this package.
     At given loads, a is right to a factor of 2 in 97 % of 300 random contacts
-    (tests/physical/words/test_far_outside.py). """
+    (tests/physical/words/test_far_outside.py)."""
     base = np.where(is_stack(problem.base), "stack", "layered")
     scaled = dimensionless(problem.but(base=base, asperities_on="half_space"))
     usable, estimates = ~refused(problem, scaled), {name: np.full(len(problem), np.nan) for name in _QUANTITIES}

@@ -35,8 +35,8 @@ def shaped_pressures(scaled, a, D):
         part, at = scaled.take(index), a[index]
         shape, body = shape_of(part), BODIES[str(part.base[0])](part)
         response, even = respond(shape, body, at), shape.even
-        sticks = -np.sqrt(2 * np.pi * at * part.w_adhesion / body.E)
-        A = D[index] / response.flat_D if has_radius(shape).all() else sticks
+        A_jkr = -np.sqrt(2 * np.pi * at * part.w_adhesion / body.E)
+        A = D[index] / response.flat_D if has_radius(shape).all() else A_jkr
         several = np.flatnonzero(~even)
         for rows in (np.flatnonzero(even), *several[:, None]):
             if len(rows):

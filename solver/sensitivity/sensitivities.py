@@ -110,8 +110,8 @@ def _near_0(problem, value, name, slopes):
     unit."""
     of_E2, of_R = SIGNED[name]
     straight = slopes * (problem.E2**of_E2 * problem.R**of_R)[:, None]
-    sticks, size = (problem.w_adhesion > 0)[:, None], np.abs(value)[:, None]
-    return sticks & ((np.abs(straight) > _NEAR_0 * size) | (size == 0) & np.isfinite(straight)), straight
+    adheres, size = (problem.w_adhesion > 0)[:, None], np.abs(value)[:, None]
+    return adheres & ((np.abs(straight) > _NEAR_0 * size) | (size == 0) & np.isfinite(straight)), straight
 
 
 def _acts(problem, name):

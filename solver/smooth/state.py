@@ -142,19 +142,19 @@ def answer(part, shape, state, counts, x, ring=None, scales=NOT_STICKING):
     p = pressures_of(shape, response, A, radii)
     if ring is not None:
         p = p + ring(radii)
-    p_x, p0, looked_at = np.split(p, [len(x), len(x) + 1], axis=1)
+    p_x, p0, p_probes = np.split(p, [len(x), len(x) + 1], axis=1)
     p0 = p0[:, 0]
     moved, error = _error(part.control, state, scales)
     of_p = np.abs(pressure_changes(response, A, LOOKED_AT))
     along = np.where(moved > 0, np.abs(flat_pressure(response) * state.dD) * moved, 0.0)
-    largest = np.max(np.where(np.isfinite(looked_at), np.abs(looked_at), 0.0), axis=1)
+    largest = np.max(np.where(np.isfinite(p_probes), np.abs(p_probes), 0.0), axis=1)
     over = np.where(state.a > shape.least(), state.a - shape.least(), state.a)
     rounding = _OF_PRESSURE * np.sqrt(state.a / over)  # larger near a corner
     off = np.nan_to_num(
         np.where(response.P > 0, response.P_error / response.P, response.flat_P_error / response.flat_P)
     )
     # the error of the waves acts all over the contact, except in the pull of the edge, which is exact
-    of_waves = off * np.where(A == 0, largest, np.abs(looked_at[:, : 2 * _INNER]).max(axis=1))
+    of_waves = off * np.where(A == 0, largest, np.abs(p_probes[:, : 2 * _INNER]).max(axis=1))
     terms = np.abs(p0) + np.abs(A) * response.E / (np.pi * state.a)  # the parts of the shape and of the edge
     of_p0 = np.where(shape.even, 1.0, _SLOW) * of_p[:, :_INNER].max(axis=1) + rounding * terms + along + of_waves
     error = error + np.where(np.isfinite(p0), _over(of_p0, p0, scales.p0), 0.0)
@@ -164,7 +164,7 @@ def answer(part, shape, state, counts, x, ring=None, scales=NOT_STICKING):
         *p_x.shape, **numbers, p0=p0, p_max=p0, Ar_An=1.0, A0=0.0, dP_dD=state.stiffness, residual=0.0,
         error=error, profile_error=between, p=p_x, lam=1.0, iterations=counts, nodes=np.nan_to_num(response.size),
     )  # fmt: skip
-    return solution, seen(looked_at, of_p)
+    return solution, seen(p_probes, of_p)
 
 
 def _error(control, state, scales):

@@ -1,7 +1,7 @@
 """Batched solver of the contact of a rough sphere with a coated body (Goryacheva & Yakovenko 2024).
 
-``solve(Problem.of(...), x)`` gives a `Solution`: arrays of cases in, arrays out. The equations, symbols, statuses and
-limits are in docs/model.md. It needs numpy, scipy, and threadpoolctl, which keeps BLAS on one thread.
+``solve(Problem.of(...), x)`` returns a `Solution`: arrays of cases in, arrays out. The equations, symbols, statuses and
+limits are in docs/model.md. The package needs numpy, scipy, and threadpoolctl, which keeps BLAS on one thread.
 """
 
 from . import closed_forms, fields
@@ -16,7 +16,7 @@ from .solution import Model, Solution
 from .solve import solve
 from .status import Status
 
-#: Changes whenever the numbers may change: part of the digest of every study.
+#: It changes whenever the numbers may change, and is part of the digest of every study.
 NUMERICS_VERSION = "25"
 
 __all__ = [

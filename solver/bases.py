@@ -1,4 +1,4 @@
-"""The bases, by their names: what lies under the punch, and by which equation. No other file compares these words.
+"""The bases, by their names: the body under the punch, and its equation. No other file compares these words.
 
 Each function takes the word of a base, or an array of words of any kind (of numpy, of xarray), and returns a bool, or
 an array of bool of the same kind and shape.
@@ -12,10 +12,10 @@ import numpy as np
 class Base(NamedTuple):
     """One base.
 
-    layers : how many there are on the half-space: "none", "one", or "stack", any number
-    springs : whether the layers yield like springs on the half-space, Eq. (3)
-    exact : the name of the base that has the same layers without that simplification
-    chosen : whether the equation of each case is the cheapest that is accurate enough
+    layers : number of layers on the half-space: "none", "one", or "stack" for any number
+    springs : whether the layers act like springs on the half-space, Eq. (3)
+    exact : the name of the base with the same layers and without that simplification
+    chosen : whether the solver chooses for each case the cheapest equation that is accurate enough
     """
 
     layers: str
@@ -34,8 +34,8 @@ TABLE = {
     "thin_stack": Base("stack", True, "stack"),
 }
 BASES = tuple(TABLE)
-#: Those with a layer, those with a stack of layers, those with springs, and those on which asperities can feel what
-#: lies below the surface; of these the chosen ones then take the exact layer.
+#: The bases with a layer; with a stack of layers; with springs; and those on which asperities can feel the coated body.
+#: Among the last, a base that leaves the equation to the solver then has that of the exact layer.
 WITH_LAYERS = tuple(name for name, row in TABLE.items() if row.layers != "none")
 STACKS = tuple(name for name, row in TABLE.items() if row.layers == "stack")
 SPRINGS = tuple(name for name, row in TABLE.items() if row.springs)
@@ -61,17 +61,17 @@ def is_bare(base: Any) -> Any:
 
 
 def on_springs(base: Any) -> Any:
-    """Whether one layer or a stack yields like springs, Eq. (3)."""
+    """Whether one layer or a stack acts like springs, Eq. (3)."""
     return _among(base, SPRINGS)
 
 
 def is_thin_layer(base: Any) -> Any:
-    """Whether one layer yields like springs."""
+    """Whether one layer acts like springs."""
     return _among(base, _ONE_ON_SPRINGS)
 
 
 def is_stack(base: Any) -> Any:
-    """Whether there is a stack of layers, exact or like springs."""
+    """Whether there is a stack of layers, exact or as springs."""
     return _among(base, STACKS)
 
 
@@ -86,21 +86,22 @@ def is_exact(base: Any) -> Any:
 
 
 def may_be_layered(base: Any) -> Any:
-    """Whether the equation is that of one exact layer, or may come to be."""
+    """Whether the equation is that of one exact layer, or may become that."""
     return _among(base, _MAY_BE_LAYERED)
 
 
 def is_chosen(base: Any) -> Any:
-    """Whether the equation is still to be chosen for each case."""
+    """Whether the solver still has to choose the equation of each case."""
     return _among(base, _CHOSEN)
 
 
 def exact_of(base: Any) -> np.ndarray:
-    """The bases that have the same layers by the exact equation; an array of words."""
+    """The bases with the same layers and the exact equation; an array of words."""
     words = np.asarray(base)
     return np.select([words == name for name in TABLE], [row.exact for row in TABLE.values()], words)
 
 
 def named(base: Any) -> np.ndarray:
-    """The bases, with the exact one in place of those that are still to be chosen; an array of words."""
+    """The bases, with the exact base in place of each whose equation the solver still has to choose; an array of
+    words."""
     return np.where(is_chosen(base), exact_of(base), base)

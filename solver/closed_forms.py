@@ -1,7 +1,7 @@
 """Closed-form solutions of smooth contacts, for users, for first guesses and for tests.
 
-All arguments are in one consistent set of units (m, Pa and N, say) and so are the answers; with R = E = 1, the default,
-they are dimensionless like those of :func:`solver.solve`. Arrays broadcast.
+All arguments are in one consistent set of units (m, Pa and N, for example), and so are the answers. With R = E = 1, the
+default, they are dimensionless like those of :func:`solver.solve`. Arrays broadcast.
 
 Johnson, Contact Mechanics (1985), ch. 4 (Hertz) and 5.8 (elastic layers); Popov, Heß & Willert, Handbook of Contact
 Mechanics (2019).
@@ -35,7 +35,7 @@ def hertz(
     R: float | np.ndarray = 1.0,
     E: float | np.ndarray = 1.0,
 ) -> SmoothContact:
-    """Smooth sphere on a homogeneous half-space: P, a, D and p(0) from any one of them.
+    """Smooth sphere on a homogeneous half-space: P, a, D and p(0) from any one of these.
 
     P = 4 E a³/(3 R), D = a²/R, p0 = 2 E a/(pi R): Johnson (1985), Eqs (4.22) to (4.24).
 
@@ -93,8 +93,8 @@ def hertz_pressure(x: ArrayLike, p0: float | np.ndarray) -> np.ndarray:
 def yield_pressure(nu: ArrayLike) -> np.ndarray:
     """Pressure in the centre of a sphere on a half-space at which the half-space first yields, over its yield strength.
 
-    It yields on the axis, at the depth y a, where 1/q = max |1.5/(1 + y²) - (1 + nu) (1 - y arctan(1/y))|, by von Mises
-    as by Tresca: Johnson (1985), Eqs (3.45) and 6.1.
+    It yields on the axis, at the depth y a, where 1/q = max |1.5/(1 + y²) - (1 + nu) (1 - y arctan(1/y))|. The criteria
+    of von Mises and Tresca agree there: Johnson (1985), Eqs (3.45) and 6.1.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def yield_pressure(nu: ArrayLike) -> np.ndarray:
     [1.299305, 1.612797, 1.877239]
     """
     nu = np.asarray(nu, dtype=float)
-    y = 0.5236 * (1 + nu) / (1 + 0.37 * (1 + nu))  # the place to 3 %, so that three steps are exact to rounding
+    y = 0.5236 * (1 + nu) / (1 + 0.37 * (1 + nu))  # right to 3 %: after three steps only rounding is left
     for _ in range(3):
         slope = (1 + nu) * (np.arctan2(1.0, y) - y / (1 + y * y)) - 3 * y / (1 + y * y) ** 2
         y = y + slope / ((2 * (1 + nu) + 3) / (1 + y * y) ** 2 - 12 * y * y / (1 + y * y) ** 3)
@@ -130,8 +130,8 @@ def thin_layer_on_rigid_base(
 ) -> SmoothContact:
     """Smooth sphere on a thin layer on a rigid base: P, a, D and p(0) from any one of the first three.
 
-    The layer is a foundation of springs: each place gives way by C p(r) under its own pressure. That is the leading
-    order for a layer much thinner than the contact, h << a, and Eq. (3) of the model for n -> 0.
+    The layer is a foundation of springs: the displacement at each place is C p(r), with the pressure there. That is the
+    leading order for a layer much thinner than the contact, h << a, and Eq. (3) of the model for n -> 0.
 
     P = pi a⁴/(4 R C), D = a²/(2 R), p0 = a²/(2 R C); the pressure is p0 (1 - (r/a)²): Johnson (1985), 5.8.
     C = 2 A2 h/E, with A2 of Eq. (2) at n = 0: 1/2 without friction, (1 - 2 nu1)/(2 (1 - nu1)²) bonded.
@@ -140,9 +140,9 @@ def thin_layer_on_rigid_base(
     ----------
     P, a, D : load, contact radius, indentation depth, > 0; exactly one of them
     h : thickness of the layer, > 0
-    nu1 : Poisson ratio of the layer in (-1, 0.5), used when bonded. At 0.5 a bonded layer is no foundation of springs:
-        P and p0 are infinite at given a or D, and NaN at given P
-    bonded : perfect bond of layer and base, or a frictionless interface
+    nu1 : Poisson ratio of the layer in (-1, 0.5), which counts only with a bond. At 0.5 a bonded layer is not a
+        foundation of springs: P and p0 are infinite at given a or D, and NaN at given P
+    bonded : True: perfect bond of layer and base; False: frictionless interface
     R, E : radius of the sphere, and reduced modulus E1* of the layer, > 0
 
     Returns

@@ -1,7 +1,8 @@
-"""A list of layers as one name for each number of a layer, in problems, calls and study files alike.
+"""A list of layers as flat parameters, with one name for each number of a layer, for problems, calls and study files.
 
-The first layer, at the surface, is the one of a case with one layer: h, n, nu1 and bonding are its numbers, and n = 0
-is a rigid base here too. What it has besides, and all of the others, is called layers.2.h, counted from 1.
+The first layer, at the surface, has the names of a case with one layer, h, n, nu1 and bonding; n = 0 is a rigid base
+here too. Its other numbers, and all numbers of the other layers, have names like layers.2.h, where the layers are
+counted from 1.
 """
 
 from collections.abc import Callable, Collection, Mapping
@@ -17,21 +18,21 @@ from .parameters import FIRST, LAYER, MOST, NAME_OF_LAYER, full_name, numbers_of
 __all__ = ["LAYER", "MOST", "expanded", "full_name", "numbers_of", "row"]
 
 RIGID = "rigid_base"
-#: A base -> what it is called when there are layers.
+#: Base -> its name if there is a list of layers.
 _BASES = {"auto": "stack", "thin_layer": "thin_stack"}
 
 
 @dataclass(frozen=True)
 class LayerWords:
-    """What a list of layers may say, and how messages quote it.
+    """The keys that a list of layers may have, and the wording of messages about it.
 
-    keys : that a layer may have
+    keys : the keys that a layer may have
     first : key of the first layer -> its name in a case with one layer
-    beside : names that are refused beside a list of layers
+    beside : names that are refused together with a list of layers
     rigid : inputs by which a base is rigid without `rigid_base`
-    example : of a list, for a message
-    shown : a value as a message quotes it
-    hint : the end of a message about a key that no layer has
+    example : an example of a list, for a message
+    shown : function from a value to its text in a message
+    hint : function from an unknown key to the end of the message about it
     arrays : whether a number may be an array, with a value for each case
     """
 
@@ -45,16 +46,16 @@ class LayerWords:
     arrays: bool
 
     def name(self, number: int, key: str) -> str:
-        """The name of a number of a layer: "nu1" of (1, "nu")."""
+        """The name of a number of a layer: (1, "nu") gives "nu1"."""
         return full_name(number, key, self.first)
 
     def short(self, name: Any) -> Any:
-        """The name that results have: "h" of "layers.1.h", all others as they are."""
+        """The name in results: "h" for "layers.1.h", any other name as it is."""
         key = name.removeprefix("layers.1.") if isinstance(name, str) else name
         return name if key == name else self.name(1, key)
 
     def list_of(self, layers: Any) -> tuple[dict[str, Any], list[str]]:
-        """The numbers of a list of layers by their names, and messages about what is wrong with the list."""
+        """The numbers of a list of layers by their names, and messages about mistakes in the list."""
         is_list = hasattr(layers, "__len__") and not isinstance(layers, (str, Mapping)) and len(layers)
         if not is_list or not all(isinstance(layer, Mapping) for layer in layers):
             return {}, [f"layers = {self.shown(layers)}: must be a list of layers, {self.example}"]
@@ -84,11 +85,11 @@ class LayerWords:
         elsewhere: Collection[str] = (),
         listed: tuple[dict[str, Any], list[str]] | None = None,
     ) -> dict[str, Any]:
-        """Parameters with one name for each number of a layer, and the base of a stack.
+        """Parameters with one name for each number of a layer, and with the base of a stack.
 
-        errors : messages are appended here
-        elsewhere : names of parameters that stand elsewhere, and so in place of what the list of layers says
-        listed : the list of layers as `list_of` has it, where that is there already
+        errors : messages are appended to this list
+        elsewhere : names of parameters that are given elsewhere, and replace those of the list of layers
+        listed : the answer of `list_of`, if the caller has it already
         """
         if not any(map(is_of_layers, (*parameters, *elsewhere))):
             return parameters
@@ -114,17 +115,17 @@ class LayerWords:
         return others | stack | {"sublayers": others.get("sublayers", 0)}
 
     def twice(self, names: Collection[str]) -> list[str]:
-        """Messages about numbers of the first layer that are among the `names` under both of theirs."""
+        """Messages about numbers of the first layer that are among the `names` under both of their names."""
         both = [(self.short(name), name) for name in names if self.short(name) != name]
         return [f"{name} is {short}, which is given too: leave out one" for short, name in both if short in names]
 
     def beside_list(self, names: Collection[str]) -> list[str]:
-        """A message about the first of the `names` that a list of layers takes the place of."""
+        """A list with a message about the first of the `names` that is refused together with a list of layers."""
         wrong = [name for name in self.beside if name in names]
         return [f"{name} is given beside layers: each of the layers has its own" for name in wrong[:1]]
 
     def _on_base(self, rigid: Any, numbers: dict[str, Any], errors: list[str]) -> dict[str, float]:
-        """n = 0 on a rigid base, which must be one for all cases; {} on another."""
+        """{"n": 0.0} on a rigid base, which must be the same for all cases; {} on any other base."""
         if not isinstance(rigid, (bool, np.bool_)):
             errors.append(f"{RIGID} = {self.shown(rigid)}: must be true or false")
         if not isinstance(rigid, (bool, np.bool_)) or not rigid:
@@ -139,14 +140,14 @@ class LayerWords:
 
 
 def is_of_layers(name: Any) -> bool:
-    """Whether the name of a parameter says that there is a stack of layers."""
+    """Whether the name of a parameter implies a stack of layers."""
     return isinstance(name, str) and (name in ("layers", RIGID, "sublayers") or name.startswith("layers."))
 
 
 def base_of_layers(base: Any, errors: list[str]) -> Any:
-    """What a base, or each of a list of bases, is called when there are layers.
+    """The name of a base, or of each in a list of bases, if there is a list of layers.
 
-    errors : a message about the base of one layer is appended here
+    errors : a message about a base with one layer is appended to this list
     """
     several = base if isinstance(base, (list, tuple)) else [base]
     if any(isinstance(word, str) and is_exact(word) and not is_stack(word) for word in several):
@@ -169,20 +170,20 @@ _WORDS = LayerWords(
 
 
 def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
-    """Parameters of a problem with a list `layers` in one name for each number.
+    """The parameters of a problem, with one name for each number in the list `layers`.
 
     Parameters
     ----------
-    parameters : of :meth:`solver.problem.Problem.of`. `layers` is a list of mappings, the layer at the surface first:
-        h, n = E_j*/E2*, nu = 0.3, `bonding` of the interface below, "frictionless", "bonded" or {"cn": ..., "ct": ...}.
-        Of a graded layer n is a pair, top and bottom, nu may be one, and `profile` is "exponential" or "linear"; or,
-        without n, "table:FILE.csv", a :class:`~solver.numerics.profiles.Profile`. With `rigid_base` n is E_j*/E1*. A
-        parameter like "layers.2.h" takes the place of what the list says
+    parameters : those of :meth:`solver.problem.Problem.of`. `layers` is a list of mappings, the layer at the surface
+        first: h; n = E_j*/E2*; nu = 0.3; and `bonding` of the interface below, "frictionless", "bonded" or
+        {"cn": ..., "ct": ...}. A graded layer has a pair, [top, bottom], for n, perhaps one for nu, and the `profile`
+        "exponential" or "linear"; or, without n, "table:FILE.csv", a :class:`~solver.numerics.profiles.Profile`. With
+        `rigid_base` n is E_j*/E1*. A parameter like "layers.2.h" replaces the number in the list
 
     Returns
     -------
-    dict : the parameters without `layers` and `rigid_base`. `base` becomes "stack" where it is left out or "auto", and
-        "thin_stack" where it is "thin_layer"
+    dict : the parameters without `layers` and `rigid_base`. `base` becomes "stack" if it is not given or "auto", and
+        "thin_stack" if it is "thin_layer"
 
     Raises
     ------
@@ -208,20 +209,20 @@ def expanded(parameters: dict[str, Any]) -> dict[str, Any]:
 
 
 def fields_of(layer: Mapping, number: int) -> dict[str, Any]:
-    """A layer of a list with its springs, and top and bottom of a graded one, as keys of their own.
+    """A layer of a list, in which springs, and the top and bottom of a graded layer, have keys of their own.
 
     Parameters
     ----------
     layer : as in :func:`expanded`
-    number : of the layer, for messages
+    number : number of the layer, for messages
 
     Returns
     -------
-    dict : key of `LAYER`, or another one of `layer` that has no meaning here -> value
+    dict : key of `LAYER`, or any other key of `layer`, which has no meaning here -> value
 
     Raises
     ------
-    ValueError : a key of springs, or a pair, that is not right
+    ValueError : a wrong key of springs, or a wrong pair
     """
     fields = dict(layer)
     where = f"layers.{number}"
@@ -235,9 +236,9 @@ def fields_of(layer: Mapping, number: int) -> dict[str, Any]:
         fields |= {"bonding": "bonded", **springs}
     profile = fields.get("profile", "uniform")
     if isinstance(profile, str) and profile.startswith(profiles.PREFIX):
-        own = [field for field in ("n", "E1", "material") if field in fields]
-        if own:
-            raise ValueError(f"{where}.{own[0]} is given beside a table of E*/E2*: the table says it")
+        moduli = [field for field in ("n", "E1", "material") if field in fields]
+        if moduli:
+            raise ValueError(f"{where}.{moduli[0]} is given beside a table of E*/E2*: the table says it")
         return fields | {"n": float(profiles.read(profile).n[0])}
     graded = profile != "uniform"
     for field in ("n", "nu", "E1") if graded else ():

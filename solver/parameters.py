@@ -1,4 +1,5 @@
-"""What describes a case: the one table of bounds, defaults and choices, and of which cases need and use a parameter."""
+"""The parameters of a case: the table of their bounds, defaults and choices, and of the cases that need and use
+them."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -11,14 +12,14 @@ from .bases import BASES, STACKS, WITH_LAYERS
 from .numerics import profiles
 
 BONDINGS = ("frictionless", "bonded")
-#: How the model error of a thin layer asked for by name is estimated: free of cost, or by solving the exact layer.
+#: How the model error of a thin layer is estimated: at no cost, or by solving the exact layer.
 MODEL_CHECKS = ("closed_form", "first_order")
-#: How attraction acts, and which of two states is meant that have the same load or depth.
+#: How attraction acts; and which of two states with the same load or depth the answer is.
 ADHESIONS, BRANCHES = ("jkr", "dmt", "maugis"), ("stable", "unstable")
-#: What asperities press on: the coated body itself, a half-space of the layer's material, or the body where their pitch
-#: is above the thickness of the layer.
+#: The body on which asperities press: "layer", the coated body itself; "half_space", one of the layer's material;
+#: "auto", the coated body if their pitch is above the thickness of the layer.
 ASPERITIES_ON = ("auto", "layer", "half_space")
-#: The condition that every case meets, of `needed_by` and `used_by` below.
+#: The condition, for `needed_by` and `used_by` below, that every case meets.
 EVERY = ("", ())
 
 
@@ -27,20 +28,20 @@ class Parameter(NamedTuple):
 
     Attributes
     ----------
-    default : its value where it is not given; None: it has none, and must be given if a case needs it.
+    default : the value if it is not given; None: it has no default, and must be given if a case needs it.
     choices : the words that a text may be; () for a number.
     whole : whether the number is an integer.
-    interval : the numbers allowed, in units R = E2* = 1 and mathematical notation. Within it the solver is tested
+    interval : the allowed numbers, in units R = E2* = 1 and mathematical notation. Within it the solver is tested
         (tools/fuzz/fuzz_solver.py): each case is solved, or has a status.
-    also : single values allowed outside the interval.
-    needed_by : (name of another parameter, some of its choices), a condition: the cases that meet it need this
-        parameter. Several such pairs one after the other: the cases that meet one of them. For these it is checked, and
-        must be given if it has no default. EVERY: all need it.
-    used_by : a second condition: the answer depends on the parameter in those cases only that meet both.
-    powers : (i, j), its unit is E2*^i R^j.
-    instead : of a parameter without a default, the name of another one that serves where it is not given; "": a case
-        can do without both. None: it must be given.
-    symbol, long_name : what tables and figures call a parameter that a registered law declares.
+    also : single values that are allowed outside the interval.
+    needed_by : a condition, (name of another parameter, some of its choices): the cases that meet it need this
+        parameter. Several such pairs may follow one another: then a case must meet one of them. In these cases the
+        parameter is checked, and must be given if it has no default. EVERY: all cases need it.
+    used_by : a second condition: the answer depends on the parameter only in cases that meet both.
+    powers : (i, j); the unit is E2*^i R^j.
+    instead : for a parameter without a default, the name of another one that can replace it; "": a case can do without
+        it. None: it must be given.
+    symbol, long_name : the symbol and the name, in tables and figures, of a parameter that a registered law declares.
     """
 
     default: float | int | str | None = None
@@ -57,10 +58,10 @@ class Parameter(NamedTuple):
 
 
 class NamedRows(dict):
-    """Rows by name, which nothing changes.
+    """Rows by name, which cannot be changed.
 
-    further : a function: the row of a name that follows from the name itself, such as "layers.2.h", or None. Such a row
-        can be looked up, and is not among the rows that are listed
+    further : function from a name to a row that follows from the name itself, as for "layers.2.h", or None. Such a row
+        can be looked up, but is not among the rows that are listed
     """
 
     def __init__(self, rows, further=lambda name: None):
@@ -90,16 +91,16 @@ class NamedRows(dict):
 #: The conditions that a case has a layer, and that it is bonded.
 LAYERED = ("base", WITH_LAYERS)
 BONDED = ("bonding", ("bonded",))
-#: The condition that what lies under the punch is a stack of layers; and that Poisson ratios change something.
+#: The conditions that a case has a stack of layers, and that Poisson ratios change something.
 STACKED = ("base", STACKS)
 COUPLED = (*BONDED, *STACKED)
 
 #: A condition that no case meets.
 NEVER = ("base", ())
-#: A yield strength, which may be left out: it is compared with the answer and changes none.
+#: A yield strength. It is optional: it is compared with the answers, and does not change them.
 STRENGTH = Parameter(interval="[1e-15, 1e15]", powers=(1, 0), used_by=NEVER, instead="")
 
-#: What controls a case: one of these is given.
+#: The controls, one of which is given.
 CONTROL = {
     "P": Parameter(interval="[1e-24, 1e3]", powers=(1, 2)),
     "a": Parameter(interval="[1e-9, 1e3]", powers=(0, 1)),
@@ -107,9 +108,10 @@ CONTROL = {
 }
 
 #: The parameters that no law and no shape declares; their meanings and units are in :class:`~solver.problem.Problem`.
-#: :class:`~solver.known.Known` has the whole table: with the parameters of its laws and shapes, the choices of `micro`,
-#: `shape` and `scheme`, and the rows of the layers of a stack, "layers.2.h", which follow from their names: `row`.
-#: Keys of cases leave defaults out (study/inputs/identity.py): whoever changes a default changes `NUMERICS_VERSION`.
+#: :class:`~solver.known.Known` has the whole table. It includes the parameters of laws and shapes, the choices of
+#: `micro`, `shape` and `scheme`, and the rows of layers of a stack, such as "layers.2.h", which follow from their names
+#: (`row`). Keys of cases leave defaults out (study/inputs/identity.py): a change of a default needs a new
+#: `NUMERICS_VERSION`.
 COMMON = NamedRows(
     {
         "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED, powers=(0, 1)),
@@ -145,11 +147,11 @@ COMMON = NamedRows(
 
 #: Most layers of a stack.
 MOST = 16
-#: Into how many uniform layers each graded one is cut, at the surface in each octave of the depth; 0 : into more and
-#: more, until the answers do not change.
+#: Number of uniform sublayers of a graded layer in each octave of the depth; 0: more and more, until the answers no
+#: longer change.
 _SUBLAYERS = Parameter(0, whole=True, interval="[1, 512]", also=(0,), needed_by=STACKED)
-#: What a layer has -> its row in the table of parameters. cn, ct : compliance of the interface below it, across and
-#: along it, length over pressure; 0 is a perfect bond, and without friction ct has no effect. Y : yield strength.
+#: Key of a layer -> its row in the table of parameters. cn, ct : compliance of the interface below the layer, across
+#: and along it, length over pressure; 0 is a perfect bond, and without friction ct has no effect. Y : yield strength.
 LAYER = {
     "h": Parameter(interval="[1e-12, 1e6]", powers=(0, 1)),
     "n": Parameter(interval="[1e-9, 1e9]"),
@@ -162,7 +164,7 @@ LAYER = {
     "nu_bottom": Parameter(interval="(-1, 0.5]", instead=""),
     "Y": STRENGTH,
 }
-#: Names of the first layer that are those of a case with one layer.
+#: Key of the first layer -> its name in a case with one layer.
 FIRST = {"h": "h", "n": "n", "nu": "nu1", "bonding": "bonding", "Y": "Y1"}
 NAME_OF_LAYER = re.compile(rf"layers\.([1-9]\d?)\.({'|'.join(LAYER)})")
 
@@ -172,7 +174,7 @@ def full_name(number: int, field: str, first: Mapping[str, str] = FIRST) -> str:
 
     Parameters
     ----------
-    number : of the layer, 1 at the surface
+    number : number of the layer, 1 at the surface
     field : a key of `LAYER`
     first : key of the first layer -> its name in a case with one layer
 
@@ -189,7 +191,7 @@ def full_name(number: int, field: str, first: Mapping[str, str] = FIRST) -> str:
 
 
 def numbers_of(names) -> int:
-    """The number of layers of a stack, of the `names` of its parameters; 0 if there is no name of a layer."""
+    """The number of layers of a stack, by the `names` of its parameters; 0 if none of them is that of a layer."""
     names = [name for name in names if isinstance(name, str) and name.startswith(("layers.", "sublayers"))]
     matches = (NAME_OF_LAYER.fullmatch(name) for name in names)
     return max((int(match[1]) for match in matches if match), default=int(bool(names)))
@@ -200,12 +202,12 @@ def row(name: object, tables: Iterable[str] = ()) -> Parameter | None:
 
     Parameters
     ----------
-    name : of the parameter
-    tables : words "table:FILE" of the profiles that are read
+    name : name of the parameter
+    tables : words "table:FILE" of the profiles that have been read
 
     Returns
     -------
-    solver.parameters.Parameter, or None if it is no name of a layer, or that of the first one in a case with one layer
+    solver.parameters.Parameter, or None if the name is not that of a layer, or is a name of a case with one layer
     """
     if not isinstance(name, str) or not name.startswith(("layers.", "sublayers")):
         return None
@@ -220,7 +222,7 @@ def _row(number: int, field: str) -> Parameter:
     return LAYER[field]._replace(needed_by=STACKED, used_by=used)
 
 
-#: Name of each parameter of a layer that is no parameter of a case with one layer -> its row.
+#: Name -> row, for each parameter of a layer that is not a parameter of a case with one layer.
 _ROWS = {
     name: _row(number, field)
     for number in range(1, MOST + 1)
@@ -230,12 +232,12 @@ _ROWS = {
 
 
 def is_ratio(name):
-    """Whether a parameter is a Poisson ratio, which may be 0: derivatives are by it, not by its logarithm."""
+    """Whether a parameter is a Poisson ratio, which may be 0: derivatives are by the ratio, not by its logarithm."""
     return name in ("nu1", "nu2") or name.startswith("layers.") and name.endswith((".nu", ".nu_bottom"))
 
 
 def one_of(values, words):
-    """(...) bool: the values that are one of a few words or numbers. `numpy.isin` sorts, which takes longer."""
+    """(...) bool: whether each value is one of a few words or numbers. `numpy.isin` sorts, which takes longer."""
     values = np.asarray(values)
     met = np.zeros(values.shape, dtype=bool)
     for word in words:
@@ -244,7 +246,7 @@ def one_of(values, words):
 
 
 def among(condition, values):
-    """(...) bool: the cases that meet a condition such as `needed_by`. `values(name)` gives the texts of a parameter,
+    """(...) bool: the cases that meet a condition such as `needed_by`. `values(name)` returns the texts of a parameter
     in an array of any shape."""
     if condition == EVERY:
         return np.True_
@@ -255,19 +257,19 @@ def among(condition, values):
 
 
 def uses(parameter, values):
-    """(...) bool: the cases whose answer depends on a :class:`Parameter`; `values` as above."""
+    """(...) bool: the cases whose answer depends on a :class:`Parameter`; `values` as in :func:`among`."""
     return among(parameter.needed_by, values) & among(parameter.used_by, values)
 
 
 @lru_cache(maxsize=64)
 def ends(interval):
-    """Low and high end of an interval in mathematical notation, and whether each belongs to it."""
+    """Lower and upper end of an interval in mathematical notation, and whether each belongs to it."""
     low, high = (float(end) for end in interval[1:-1].split(", "))
     return low, high, interval[0] == "[", interval[-1] == "]"
 
 
 def allowed(parameter, values):
-    """(...) bool: `values` that the `interval` and `also` of a parameter allow; NaN never is."""
+    """(...) bool: whether the `interval` and `also` of a parameter allow each of the `values`; NaN is never allowed."""
     low, high, with_low, with_high = ends(parameter.interval)
     values = np.asarray(values)
     above = values >= low if with_low else values > low

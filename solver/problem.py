@@ -1,4 +1,4 @@
-"""What is asked: arrays over a batch of cases."""
+"""The problem: arrays over a batch of cases."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,73 +13,73 @@ from .known import Known, default, names_of
 from .laws import Law
 from .parameters import COMMON, CONTROL, Parameter, allowed, among, one_of
 
-#: A pitch that differs from h by less than rounding is not above it, whatever the units.
+#: A pitch that exceeds h only by rounding is not above it, whatever the units: Nbar h² must be below this.
 _ABOVE = 1 - 1e-9
-#: Largest |P| or |D| under adhesion, in units R = E2* = 1: that of the bounds in solver/parameters.py.
+#: Largest |P| or |D| under adhesion, in units R = E2* = 1: the upper bound of P and D in solver/parameters.py.
 _PULL = 1e3
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A batch of B cases: `value` and each of the `parameters`, which are attributes too, are arrays (B,). Made by
-    :meth:`of`.
+    """A batch of B cases. `value` and each of the `parameters`, which are attributes too, are arrays (B,). :meth:`of`
+    makes a batch.
 
     Lengths are in the unit of `R`, moduli in that of `E2`, loads in that of E2 R², `Nbar` in that of R⁻²; with R = E2 =
-    1 these are the units of the paper. The bounds are in solver/parameters.py. What has a default below may be left
-    out; the rest must be given where a case needs it. Registered laws have parameters besides.
+    1 these are the units of the paper. The bounds are in solver/parameters.py. Parameters with a default below are
+    optional; the others must be given if a case needs them. Registered laws have further parameters.
 
     Attributes
     ----------
     control, value : the quantity that is given, "P", "a" or "D", and its value: load, radius of the nominal contact
         area or indentation depth
-    h, n : thickness of the layer, and ratio of the reduced moduli E1*/E2*; needed by every base but "half_space".
-        n = 0 is a rigid base. Its E2* is infinite, so E1* is the unit of moduli in its place, and `E2` means E1*
+    h, n : thickness of the layer, and ratio of the reduced moduli E1*/E2*; needed by every base except "half_space".
+        n = 0 is a rigid base. Its E2* is infinite, so that E1* is the unit of moduli, and `E2` means E1*
     m = 0 : ratio of the reduced moduli E1*/E3* of layer and punch (E2*/E3* without a layer); 0 is a rigid punch. The
         displacements of both bodies add; D is the approach of their distant points
-    nu1, nu2 = 0.3 : Poisson ratios of layer and half-space. Without friction between them these change nothing
+    nu1, nu2 = 0.3 : Poisson ratios of layer and half-space. If the interface is frictionless, they change nothing
     Y1, Y2, Y_punch : yield strengths of layer, half-space and punch, if they are known; they change no answer
-    bonding = "frictionless" : the interface between layer and half-space, or "bonded"
-    Nbar, Ra : asperities per unit area, and their radius; needed by the micro laws that declare them, of this package's
-        all but "smooth"
-    base = "layered" : with the exact layer; "half_space", that alone; "thin_layer", with the thin layer of Eq. (3);
-        "auto", the cheapest that is accurate enough
+    bonding = "frictionless" : the interface between layer and half-space; or "bonded"
+    Nbar, Ra : asperities per unit area, and their radius; needed by the micro laws that declare them, which are all of
+        this package except "smooth"
+    base = "layered" : the exact layer on a half-space; "half_space", without a layer; "thin_layer", the thin layer of
+        Eq. (3); "auto", the cheapest of these that is accurate enough
     accuracy = 0.01 : allowed relative model error of the base "auto"
-    model_check = "closed_form" : `model_error` of the base "thin_layer" is estimated free of cost; "first_order", by
-        solving the exact layer from there, on a coarse mesh
+    model_check = "closed_form" : `model_error` of the base "thin_layer" is estimated at no cost; "first_order", by
+        solving the exact layer, from the solution, on a coarse mesh
     micro = "disc_cell" : the law of Eqs (6) and (7); "smooth", no asperities; "power_law", A = B Ra (p/E1*)^beta (E2*
         without a layer); "square_lattice", "hex_lattice"; "normal_heights", "uniform_heights"; "elastic_plastic", the
         first with asperities that yield while the load rises; or the name of a registered law, or a
         `solver.Law` itself
-    asperities_on = "auto" : what asperities press on: "layer", the coated body itself; "half_space", one of the layer's
-        material; "auto", the coated body where their pitch 1/sqrt(Nbar) is above h. Thin layers, "power_law" and tables
-        have the half-space alone
-    hardness, yield_strength : of the softer of asperity and what it presses on, of "elastic_plastic". One of both is
-        enough: the hardness is then 2.84 times the yield strength
-    B, beta : coefficient, without unit, and exponent, of the "power_law"
-    sigma, cut = 4 : standard deviation of random heights; and of the "normal_heights" the largest above their mean,
+    asperities_on = "auto" : the body on which asperities press: "layer", the coated body itself; "half_space", one of
+        the layer's material; "auto", the coated body if their pitch 1/sqrt(Nbar) is above h. On thin layers, and with
+        "power_law" and tables, it is always the half-space
+    hardness, yield_strength : for "elastic_plastic", those of the softer of two bodies, the asperity and the body under
+        it. One of them is enough: the hardness is then 2.84 times the yield strength
+    B, beta : coefficient, without unit, and exponent of the "power_law"
+    sigma, cut = 4 : standard deviation of random heights; and for "normal_heights" the largest height above their mean,
         over sigma
     shape = "paraboloid" : r²/(2R); or "sphere", "cone", "power", "frustum", "blunt_cone", "flat", "rounded_flat",
         "berkovich", "vickers", "cube_corner", or "table:FILE.csv" of r and f; each is a file of solver/shapes
-    half_angle : of a cone, from its axis to its side, in degrees
-    flat_radius, tip_radius, edge_radius : of what is flat around the axis, of a round tip, of a round edge
+    half_angle : angle of a cone, from its axis to its side, in degrees
+    flat_radius, tip_radius, edge_radius : radius of the flat part around the axis, of a round tip, of a round edge
     tip = "paraboloid" : the round tip of a "blunt_cone"; or "sphere"
     shape_power, shape_coefficient : k and c of f/R = c (r/R)^k
-    table_unit : the length that 1 stands for in a table of a shape; R if it is left out
-    w_adhesion = 0 : work of adhesion, in the unit of E2 R, of smooth punches. The load and the depth may then be
+    table_unit : the length that 1 stands for in a table of a shape; R if it is not given
+    w_adhesion = 0 : work of adhesion of smooth punches, in the unit of E2 R. The load and the depth may then be
         negative
-    adhesion = "jkr" : attraction at the edge alone; "dmt", only outside of the contact; "maugis", of the stress
-        `sigma0` or the range `z0` = w_adhesion/(0.97 sigma0)
-    branch = "stable" : of two states of one load or depth that with the larger radius; or "unstable"
-    k_machine : stiffness of what holds the punch, in the unit of E2 R. Left out, it is 0 (a dead load) where P or a is
-        given, and infinite where D is
+    adhesion = "jkr" : attraction only at the edge; "dmt", only outside the contact; "maugis", with the stress `sigma0`
+        or the range `z0` = w_adhesion/(0.97 sigma0)
+    branch = "stable" : of two states with the same load or depth, the one with the larger radius; or "unstable"
+    k_machine : stiffness of the machine that holds the punch, in the unit of E2 R. If it is not given, it is 0 (a dead
+        load) when P or a is given, and infinite when D is
     scheme = "newton" : Newton's method; "picard", the paper's successive approximations, Eqs (8) and (10), which are
-        for asperities: a smooth case that asks for them is not solved
+        for asperities: a smooth case with this scheme is not solved
     k = 1 : relaxation of the successive approximations
-    rtol = 1e-6 : wanted relative error of a, P, D, p0, p_max, Ar_An
+    rtol = 1e-6 : largest allowed relative error of a, P, D, p0, p_max, Ar_An
     nodes = 0 : number of nodes; 0: chosen by `rtol`
     max_iterations = 0 : most steps on a mesh, or approximations at one radius; 0: the limit of the scheme
     R, E2 = 1 : radius of the punch, and reduced modulus E2* of the half-space, both > 0, in any units
-    known : what the words of the parameters stand for (solver/known)
+    known : the vocabulary of the parameters: laws, shapes and profiles by their names (solver/known)
     """
 
     control: str
@@ -93,13 +93,13 @@ class Problem:
         return f"Problem({len(self)} cases, {control}, base: {kinds[0]}, micro: {kinds[1]})"
 
     def __getstate__(self):
-        """Laws and tables that no case has stay at home, with their parameters."""
+        """Laws and tables that no case uses are not pickled, nor are their parameters."""
         known = self.known.only(self.parameters)
-        kept = {name: values for name, values in self.parameters.items() if name in known.parameters}
-        return {"control": self.control, "value": self.value, "parameters": kept, "known": known}
+        parameters = {name: values for name, values in self.parameters.items() if name in known.parameters}
+        return {"control": self.control, "value": self.value, "parameters": parameters, "known": known}
 
     def __getattr__(self, name):
-        """A parameter; NaN of one that is known, and that this batch was made without."""
+        """A parameter; NaN if the vocabulary has it, and this batch was made without it."""
         if name in (parameters := self.__dict__.get("parameters", {})):
             return parameters[name]
         if "known" not in self.__dict__ or name not in self.known.parameters:
@@ -118,14 +118,14 @@ class Problem:
     ) -> "Problem":
         """Broadcast scalars and (B,) arrays to a batch.
 
-        What is not given has its default, or is NaN where no case needs it. A number out of bounds, NaN, and the scheme
-        "picard" of a smooth case are no errors: that case gets ``Status.INVALID_INPUT``.
+        A parameter that is not given has its default, or is NaN if no case needs it. A number out of bounds, NaN, and
+        the scheme "picard" for a smooth case raise no error: that case gets ``Status.INVALID_INPUT``.
 
         Parameters
         ----------
         P, a, D : load, radius of the nominal contact area, indentation depth; exactly one of them
-        known : laws, shapes and tables of profiles by the names that the parameters use; left out, what this package
-            has and the program has registered. Laws that are given as objects, and tables, are known besides
+        known : laws, shapes and tables of profiles by the names that the parameters use; None: those of this package
+            and those that the program has registered. Laws that are given as objects, and tables, are added
         parameters : as in the docstring of the class
 
         Returns
@@ -135,8 +135,8 @@ class Problem:
         Raises
         ------
         TypeError : a parameter does not exist
-        ValueError : not exactly one control, a parameter missing that some case needs, shapes that do not broadcast to
-            (B,), a text outside its choices
+        ValueError : not exactly one control; a parameter is missing that some case needs; shapes do not broadcast to
+            (B,); a text is not one of its choices
 
         Examples
         --------
@@ -201,7 +201,7 @@ class Problem:
 
     @property
     def nu(self) -> np.ndarray:
-        """Poisson's ratio of what the asperities press on, the layer or the body without one; (B,)."""
+        """Poisson's ratio (B,) of the layer, on which the asperities press, or of the body if there is no layer."""
         return np.where(is_bare(self.base), self.nu2, self.nu1)
 
     def rough(self) -> np.ndarray:
@@ -209,12 +209,12 @@ class Problem:
 
         Returns
         -------
-        numpy.ndarray : (B,) bool: the case has asperities
+        numpy.ndarray : (B,) bool, whether the case has asperities
         """
         return np.all([self.micro != name for name, law in self.known.laws.items() if not law.rough], axis=0)
 
     def can_feel(self) -> np.ndarray:
-        """Which cases have asperities that can feel what lies below the surface.
+        """Which cases have asperities that can feel the coated body.
 
         Returns
         -------
@@ -223,7 +223,7 @@ class Problem:
         return can_feel(self.base, self.micro, self.known.laws)
 
     def feels_layer(self) -> np.ndarray:
-        """Which cases have asperities that feel what lies below the surface.
+        """Which cases have asperities that feel the coated body.
 
         Returns
         -------
@@ -241,34 +241,34 @@ class Problem:
         return (self.w_adhesion > 0) & (self.control != "a")
 
     def without_scheme(self) -> np.ndarray:
-        """Which cases ask for a scheme that they cannot have.
+        """Which cases have a scheme that cannot solve them.
 
         Returns
         -------
-        numpy.ndarray : (B,) bool: the case is smooth and asks for successive approximations, which are for asperities
+        numpy.ndarray : (B,) bool: the case is smooth and its scheme is "picard", which is for asperities
         """
         return (self.scheme == "picard") & ~self.rough()
 
     def invalid(self) -> np.ndarray:
-        """Which cases have a number that they cannot have. The bounds are those of a problem in units R = E2* = 1.
+        """Which cases have an invalid number. The bounds are those of a problem in units R = E2* = 1.
 
         Returns
         -------
         numpy.ndarray : (B,) bool: a number that the case needs is not finite or out of bounds, or those of its micro
-            law do not go together; or `asperities_on` is "layer" where they cannot feel it
+            law do not go together; or `asperities_on` is "layer", but the asperities cannot feel it
         """
         bad = ~(allowed(CONTROL[self.control], self.value) | self.may_pull() & (np.abs(self.value) <= _PULL))
         bad |= (self.asperities_on == "layer") & ~self.can_feel()
-        having = {}
-        for name, own in self.known.table(layers.numbers_of(self.parameters)).items():
-            if own.interval:
-                if own.needed_by not in having:
-                    having[own.needed_by] = among(own.needed_by, lambda name: getattr(self, name))
-                if not having[own.needed_by].any():
+        needing = {}
+        for name, row in self.known.table(layers.numbers_of(self.parameters)).items():
+            if row.interval:
+                if row.needed_by not in needing:
+                    needing[row.needed_by] = among(row.needed_by, lambda name: getattr(self, name))
+                if not needing[row.needed_by].any():
                     continue
                 values = getattr(self, name)
-                left_out = np.isnan(values) & (own.instead is not None)
-                bad |= having[own.needed_by] & ~(allowed(own, values) | left_out)
+                left_out = np.isnan(values) & (row.instead is not None)
+                bad |= needing[row.needed_by] & ~(allowed(row, values) | left_out)
         for law in self.known.laws.values():
             index = np.flatnonzero(self.micro == law.name) if law.allows else ()
             if law.allows and len(index):
@@ -281,7 +281,7 @@ def far_apart(Nbar: ArrayLike, h: ArrayLike) -> np.ndarray:
 
     Parameters
     ----------
-    Nbar, h : of any one unit of length; they broadcast. NaN: it is not
+    Nbar, h : in the same unit of length, any; they broadcast. NaN gives False
 
     Returns
     -------
@@ -292,12 +292,12 @@ def far_apart(Nbar: ArrayLike, h: ArrayLike) -> np.ndarray:
 
 
 def can_feel(base: ArrayLike, micro: ArrayLike, laws: Mapping[str, Law]) -> np.ndarray:
-    """Whether asperities can feel what lies below the surface.
+    """Whether asperities can feel the coated body.
 
     Parameters
     ----------
     base, micro : words; they broadcast
-    laws : name -> law of the words of `micro`
+    laws : name -> law, for the words of `micro`
 
     Returns
     -------
@@ -314,13 +314,13 @@ def feels(
     h: ArrayLike,
     laws: Mapping[str, Law],
 ) -> np.ndarray:
-    """Whether asperities feel what lies below the surface.
+    """Whether asperities feel the coated body.
 
     Parameters
     ----------
     base, micro, asperities_on : words
-    Nbar, h : of any one unit of length; all broadcast
-    laws : name -> law of the words of `micro`
+    Nbar, h : in the same unit of length, any; all arguments broadcast
+    laws : name -> law, for the words of `micro`
 
     Returns
     -------
@@ -341,14 +341,14 @@ def _array(name, value, table):
     return np.asarray(value, dtype=int if parameter.whole else float)
 
 
-def _missing(given, arrays, table):
-    """Yield a message for each parameter that is not `given` and has no default, though some case needs it."""
-    if is_stack(arrays["base"]).any() and not layers.numbers_of(given):
+def _missing(parameters, arrays, table):
+    """Yield a message for each parameter without a default that some case needs and that is not in `parameters`."""
+    if is_stack(arrays["base"]).any() and not layers.numbers_of(parameters):
         yield 'layers are missing: base = "stack" needs them'
-    for name, own in table.items():
-        if own.default is None and not {name, own.instead} & {*given} and own.instead != "":
-            selector, needing = own.needed_by
-            found = [f'"{word}"' for word in needing if word in arrays[selector]]
-            if found:
-                either = f" or {own.instead}" * bool(own.instead)
-                yield f"{name}{either} is missing: {selector} = {' or '.join(found)} needs it"
+    for name, row in table.items():
+        if row.default is None and not {name, row.instead} & {*parameters} and row.instead != "":
+            selector, needing = row.needed_by
+            words = [f'"{word}"' for word in needing if word in arrays[selector]]
+            if words:
+                either = f" or {row.instead}" * bool(row.instead)
+                yield f"{name}{either} is missing: {selector} = {' or '.join(words)} needs it"

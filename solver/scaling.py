@@ -1,4 +1,5 @@
-"""From a :class:`.problem.Problem` to the dimensionless :class:`.rough.equation.Cases`, and back to its units."""
+"""The way from a :class:`.problem.Problem` to the dimensionless :class:`.rough.equation.Cases`, and back to its
+units."""
 
 from dataclasses import replace
 
@@ -18,23 +19,23 @@ from .rough.equation import Cases
 from .solution import PULLS
 from .status import Status
 
-#: What asperities press on, of :func:`kinds_of_laws`.
+#: Codes of :func:`kinds_of_laws`: the bodies on which asperities press.
 _HALF_SPACE, _BODY, _GRADED = 0, 1, 2
-#: A graded layer that asperities feel is cut in so many sublayers in each octave of the depth, and in so many octaves
-#: that the pitch is at most _WIDEST times the thinnest: spots feel the gradient over their own size, and thinner
+#: A graded layer that asperities feel is cut into _SUBLAYERS in each octave of the depth, in at most _MOST_OCTAVES. The
+#: pitch is then at most _WIDEST times the thinnest sublayer: spots feel the gradient over their own size, and thinner
 #: sublayers take seconds (tests/stacks/test_felt.py has finer ones).
 _SUBLAYERS, _MOST_OCTAVES, _WIDEST = 4, 4, 100.0
-#: (i, j) of the unit E2*^i R^j of each quantity that has one.
+#: (i, j) of the unit E2*^i R^j of each quantity that has a unit.
 _UNITS = {"A0": (0, 1), "p0": (1, 0), "p_max": (1, 0), "p": (1, 0), "dP_dD": (1, 1)}
-_UNITS = _UNITS | {name: own.powers for name, own in CONTROL.items()}
+_UNITS = _UNITS | {name: row.powers for name, row in CONTROL.items()}
 _UNITS = _UNITS | {name: CONTROL[name.partition("_")[0]].powers for name in PULLS}
 
 
 def dimensionless(problem):
-    """The problem in units R = E2* = 1; n is 1 on the half-space alone."""
+    """The problem in units R = E2* = 1; without a layer n is 1."""
 
     def number(values, powers):
-        """The values over E2^i R^j, divided one by one: R² may overflow where the quotient does not."""
+        """The values over E2^i R^j, in single divisions: R² may overflow where the quotient does not."""
         for unit, power in zip((problem.R, problem.E2), powers[::-1], strict=True):
             for _ in range(abs(power)):
                 values = values / unit if power > 0 else values * unit
@@ -44,25 +45,25 @@ def dimensionless(problem):
     if without_units(problem):
         return replace(problem, parameters=problem.parameters | {"n": n})
     powers = {name: problem.known.parameters[name].powers for name in problem.parameters}
-    own = {name: number(problem.parameters[name], pair) for name, pair in powers.items() if any(pair)}
-    one = np.ones(len(problem))
-    own |= {"n": n, "R": one, "E2": one}
+    numbers = {name: number(problem.parameters[name], pair) for name, pair in powers.items() if any(pair)}
+    ones = np.ones(len(problem))
+    numbers |= {"n": n, "R": ones, "E2": ones}
     value = number(problem.value, CONTROL[problem.control].powers)
-    return replace(problem, value=value, parameters=problem.parameters | own)
+    return replace(problem, value=value, parameters=problem.parameters | numbers)
 
 
 def without_units(problem):
-    """Whether R and E2* are 1 of all cases: then nothing need be divided or multiplied by them."""
+    """Whether R and E2* are 1 in all cases, so that nothing need be divided or multiplied by them."""
     return bool((problem.R == 1).all() and (problem.E2 == 1).all())
 
 
 def with_rigid_punch(problem):
-    """The problem with rigid punches in place of elastic ones on half-spaces and thin layers: the same contacts.
+    """An equivalent problem, in which elastic punches on half-spaces and thin layers are replaced by rigid ones.
 
     The displacements of both bodies add. On a half-space E2* becomes E2*/(1 + m). On a thin layer A1 becomes A1 + m:
     its half-space has the modulus E1*/(n + m), asperities feel Ec = E1*/(1 + m), and springs of the same C are those of
-    a frictionless layer of thickness 2 A2 h/(1 + m). Exact layers stay as they are. So do thin layers without springs,
-    and those whose model error comes from the exact layer (`model_check` "first_order").
+    a frictionless layer of thickness 2 A2 h/(1 + m). Exact layers do not change, nor do thin layers to which Eq. (3)
+    does not apply, or whose model error comes from the exact layer (`model_check` "first_order").
     """
     m, base = problem.m, problem.base
     if not (m > 0).any():
@@ -81,8 +82,8 @@ def with_rigid_punch(problem):
 
 
 def with_a_stiff_base(problem):
-    """The problem with rigid bases, n = 0, under thin layers replaced by half-spaces that yield less than rounding; not
-    where the model error comes from the exact layer."""
+    """The problem, in which rigid bases, n = 0, under thin layers are replaced by half-spaces whose displacement is
+    below rounding. Cases whose model error comes from the exact layer do not change."""
     stiff = is_thin_layer(problem.base) & (problem.n == 0) & (problem.model_check != "first_order")
     if not stiff.any():
         return problem
@@ -90,7 +91,7 @@ def with_a_stiff_base(problem):
 
 
 def refused(problem, scaled):
-    """(B,) bool: cases that cannot be solved as they are given; `scaled` is the problem in units R = E2* = 1."""
+    """(B,) bool: cases with a number that makes them unsolvable; `scaled` is the problem in units R = E2* = 1."""
     units = [~allowed(COMMON[name], getattr(problem, name)) for name in ("R", "E2")]
     return scaled.invalid() | units[0] | units[1]
 
@@ -107,14 +108,14 @@ def without_springs(scaled):
 
 
 def as_cases(part):
-    """:class:`~solver.rough.equation.Cases` of a problem whose cases have one law, one base and one shape."""
+    """:class:`~solver.rough.equation.Cases` of a problem whose cases share the law, the base and the shape."""
     body = BODIES[str(part.base[0])](part)
     return Cases(part.control, law_of(part, body), body, part.value, shapes.shape_of(part))
 
 
 def kinds_of_laws(problem):
-    """(B,) int8: what the asperities of each case press on. _HALF_SPACE; _BODY, the body as it is; a body whose first
-    layer is graded, _GRADED and the number of octaves in which that is cut."""
+    """(B,) int8: the body on which the asperities of each case press. _HALF_SPACE; _BODY, the coated body; or, if its
+    first layer is graded, _GRADED plus the number of octaves into which that layer is cut."""
     kinds, graded = np.where(problem.feels_layer(), _BODY, _HALF_SPACE).astype(np.int8), graded_first(problem)
     if np.any(cut := graded & (kinds == _BODY)):
         part = problem.take(cut)
@@ -124,7 +125,7 @@ def kinds_of_laws(problem):
 
 
 def felt_body(part, body=None):
-    """The body that the asperities of cases feel, as :func:`law_of` has it; None where they press on a half-space."""
+    """The body that the asperities of cases feel, for :func:`law_of`; None if they press on a half-space."""
     kind = kinds_of_laws(part)[0] if len(part) else _HALF_SPACE
     if kind == _HALF_SPACE:
         return None
@@ -134,10 +135,11 @@ def felt_body(part, body=None):
 
 
 def law_of(part, body=None):
-    """The one law of the cases with their numbers, :class:`~solver.laws.Bound`: on their bodies if the asperities feel
-    these. ValueError where :func:`~solver.laws.try_out` finds a slip in a law of somebody else's.
+    """The law of the cases with their numbers, :class:`~solver.laws.Bound`; it is that on their bodies if the
+    asperities feel these. Raises ValueError if :func:`~solver.laws.try_out` detects a mistake in a user's law.
 
-    part : cases of one law on one base, and of one of :func:`kinds_of_laws`; body : theirs, if it is at hand
+    part : cases that share the law, the base, and the answer of :func:`kinds_of_laws`
+    body : their body, if the caller has it
     """
     law, felt = part.known.laws[str(part.micro[0])], felt_body(part, body)
     values = {name: getattr(part, name) for name in law.arguments}
@@ -149,15 +151,15 @@ def law_of(part, body=None):
 
 
 def of_one_law(problem):
-    """The indices (b,) of the cases that :func:`law_of` can bind together, a list."""
+    """Groups of cases that :func:`law_of` can bind together: a list of indices (b,)."""
     kinds = kinds_of_laws(problem)
     bases = np.where(kinds == _HALF_SPACE, "", problem.base)
     return alike(problem.micro, bases, kinds)
 
 
 def restore(solution, problem):
-    """The solution in the units of the problem: every way to solve ends here. A case with a number that cannot be, or
-    that its unit makes infinite, is ``Status.DIVERGED``."""
+    """The solution in the units of the problem: every way to solve ends here. A case with an impossible number, or one
+    that its unit makes infinite, gets ``Status.DIVERGED``."""
     pulls, unknown = problem.w_adhesion > 0, without_centre(problem)
     solution = solution.refused(solution.out_of_range(pulls, unknown), Status.DIVERGED)
     arrays, have_units = {}, not without_units(problem)
@@ -171,7 +173,7 @@ def restore(solution, problem):
 
 
 def without_centre(problem):
-    """(B,) bool: cases of which the pressure on the axis is not known: rough ones under a point
+    """(B,) bool: cases whose pressure on the axis is unknown: rough ones under a point
     (:func:`~solver.rough.results.pointed`)."""
     without, shaped = np.zeros(len(problem), dtype=bool), shapes.shaped(problem) & problem.rough()
     for word in np.unique(problem.shape[shaped]).tolist():

@@ -1,4 +1,4 @@
-"""What is answered: arrays over a batch of cases."""
+"""The solution: arrays over a batch of cases."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
@@ -9,31 +9,31 @@ import numpy as np
 from .parameters import one_of
 from .status import Codes, Status
 
-#: The largest relative error of these is the error of a case.
+#: The error of a case is the largest relative error of these.
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
-#: Numbers of a converged case, in units R = E2* = 1: _POSITIVE are > 0; _NUMBERS, these among them, are >= 0.
+#: Numbers of a converged case, in units R = E2* = 1: _POSITIVE are > 0; _NUMBERS, which include these, are >= 0.
 _POSITIVE = (*JUDGED, "dP_dD")
 _PROFILES = ("p", "lam")
 _NUMBERS = (*_POSITIVE, "A0", "residual", "error", "profile_error", *_PROFILES)
-#: Those that may be infinite under some shapes and where the punch sticks; and those that may be negative there.
+#: Numbers that may be infinite under some shapes and under adhesion; and numbers that may be negative under adhesion.
 _INFINITE = ("p0", "p_max", "dP_dD", "p")
 _SIGNED = (*_INFINITE, "P", "D")
-#: Those that the pressure on the axis decides.
+#: Numbers that depend on the pressure on the axis.
 _OF_CENTRE = ("p0", "p_max", "A0", *_PROFILES)
 #: Integers: codes and counts.
 _WHOLE = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes": np.int32, "stable": np.bool_}
 #: Numbers of pull-off and pull-in, 0 without adhesion.
 PULLS = ("P_off", "D_off", "a_off", "P_in", "a_in")
-#: What is not NaN, or 0 of whole numbers, where nothing is said.
+#: Defaults other than NaN, and other than 0 for whole numbers.
 _DEFAULTS = {"stable": True} | dict.fromkeys(PULLS, 0.0)
-#: Shares of an area are at most 1. A sum over 256 nodes may round to 1 + 256 eps, which is 1 + 6e-14. What is above
-#: 1 + _ROUNDING is no rounding.
+#: Shares of an area are at most 1. A sum over 256 nodes may round to 1 + 256 eps, which is 1 + 6e-14. A number above
+#: 1 + _ROUNDING is not due to rounding.
 _SHARES, _ROUNDING = ("Ar_An", "lam"), 1e-10
 
 
 class Model(Codes):
-    """What a case was solved with. A smooth model, one above the rough one, solves a smooth punch; with "auto" it then
-    adds the asperities."""
+    """The model with which a case was solved. The code of a smooth model is that of the rough one plus 1. It solves a
+    smooth punch; with "auto" the asperities are added afterwards."""
 
     NONE = 0
     HALF_SPACE = 1
@@ -52,35 +52,35 @@ class Model(Codes):
 
 @dataclass(frozen=True)
 class Solution:
-    """The answers: arrays (B,), and profiles (B, m) at the m radii asked for. Units are those of the problem, made of
-    its R and E2.
+    """The answers: arrays (B,), and profiles (B, m) at m radii. Units are those of the problem, made of its R and E2.
 
-    A case that fails raises nothing: `status` says why, and whether the last numbers are kept. A case without numbers
-    has NaN everywhere but in the quantity that was given. The bounds below are those of a converged case.
+    A case that fails raises nothing: `status` says why, and whether it has the last numbers of the iteration. A case
+    without numbers has NaN everywhere except in the quantity that was given. The bounds below are those of a converged
+    case.
 
     Attributes
     ----------
     a, P, D : > 0; radius of the nominal contact area (unit R), load (E2 R²), indentation depth (14) (R)
-    p0, p_max : > 0; nominal pressure p(0), and real pressure in the middle of the central spot (13), which is p(0) of a
-        smooth punch (E2)
-    p_spot, r_spot : where asperities feel the coated body, the largest pressure in the central spot (E2), which is
-        p_max where it is in the middle, and its radius over that of the spot, in [0, 1); else NaN
+    p0, p_max : > 0; nominal pressure p(0), and real pressure in the middle of the central spot (13), which is p(0)
+        under a smooth punch (E2)
+    p_spot, r_spot : if asperities feel the coated body, the largest pressure in the central spot (E2), which is p_max
+        if its place is the middle, and the radius of its place over that of the spot, in [0, 1); else NaN
     Ar_An : in (0, 1]; real over nominal contact area (12), 1 for a smooth punch
-    plastic_share : in [0, 1]; share of the nominal contact area whose spots have yielded, NaN of a law without yield
+    plastic_share : in [0, 1]; share of the nominal contact area whose spots have yielded; NaN for a law without yield
     A0 : >= 0; additional displacement A[p(0)] of the asperities (6) (R)
     dP_dD : > 0; contact stiffness (E2 R)
     residual : >= 0; largest residual of the discrete equation, relative to its right-hand side
     error : in [0, rtol]; estimated relative error, the largest over a, P, D, p0, p_max, Ar_An
     profile_error : >= error; estimated error of the profiles at any radius, over the largest p or λ. It may exceed rtol
-    model_error : >= 0; estimated relative error, over the same six, of the model used against the exact layer with its
-        asperities. 0 for the exact layer, and for a half-space that was asked for by name; with "auto" at most
-        `accuracy`. The error of a law that comes from a table is part of it, and may alone be above `accuracy`. Of
-        asperities farther apart than the layer is thick it is that of p_max, not of "auto" and thin layers
+    model_error : >= 0; estimated relative error of the model used, over the same six, against the exact layer with its
+        asperities. 0 for the exact layer, and for the base "half_space"; with "auto" at most `accuracy`. It includes
+        the error of a law that comes from a table, which may alone be above `accuracy`, and the effects of the coated
+        body that the law of asperities leaves out
     status, model_used : int8; a :class:`~solver.status.Status` and a :class:`Model`
-    iterations, nodes : int32; iterations in all, and nodes of the last mesh; 0 nodes: a closed form
-    stable : bool; under adhesion, a >= a_off; else True
-    P_off, D_off, a_off : load, depth and radius at which the punch is pulled off, by what holds it (`k_machine`); 0
-        without adhesion, as the next two
+    iterations, nodes : int32; total number of iterations, and nodes of the last mesh; 0 nodes: a closed form
+    stable : bool; under adhesion, whether a >= a_off; else True
+    P_off, D_off, a_off : load, depth and radius at which the machine that holds the punch (`k_machine`) pulls it off; 0
+        without adhesion, like the next two
     P_in, a_in : load and radius to which the contact jumps when the punch touches
     p : (B, m); nominal pressure at the radii (E2)
     lam : (B, m), in [0, 1]; relative contact area λ (11) at the radii, 1 inside the contact of a smooth punch
@@ -126,7 +126,7 @@ class Solution:
         Parameters
         ----------
         size, points : number of cases, B, and of radii of the profiles, m
-        values : arrays (B,), profiles (B, m), or one value for all; what is not given is NaN, counts are 0
+        values : arrays (B,), profiles (B, m), or one value for all. Others are NaN, and counts are 0
 
         Returns
         -------
@@ -148,9 +148,9 @@ class Solution:
         Parameters
         ----------
         size, points : number of cases, B, and of radii of the profiles, m
-        pieces : pairs of an index into the cases and the solution of these. If a case is in two pieces, the last one
-            counts. A last piece of all cases, in their order, is the result itself
-        values : what a case in no piece has, as of :meth:`of`
+        pieces : pairs of an index into the cases and their solution. If a case is in two pieces, the last one counts.
+            If the last piece has all cases in their order, it is the result itself
+        values : the values of cases in no piece, as in :meth:`of`
 
         Returns
         -------
@@ -183,14 +183,15 @@ class Solution:
 
         Parameters
         ----------
-        infinite : (B,) bool, the cases whose pressures may be infinite, and whose stiffness: of a shape that is pointed
-            or flat, or that sticks
-        unknown : (B,) bool, the cases whose pressure on the axis is not known: it may be NaN, as what follows from it
+        infinite : (B,) bool, the cases whose pressures and stiffness may be infinite: with pointed or flat shapes, or
+            with adhesion
+        unknown : (B,) bool, the cases whose pressure on the axis is unknown: it may be NaN, and so may the numbers that
+            depend on it
 
         Returns
         -------
-        numpy.ndarray : (B,) bool: by its status the case has numbers, but one of them, not `model_error`, is NaN or
-            infinite
+        numpy.ndarray : (B,) bool: by its status the case has numbers, but one of them other than `model_error` is NaN
+            or infinite
         """
         ended = one_of(self.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
         right = ended.copy()
@@ -202,18 +203,18 @@ class Solution:
         return ended & ~right
 
     def out_of_range(self, pulls: Any = False, unknown: Any = False) -> np.ndarray:
-        """Which cases have converged to a number that cannot be.
+        """Which cases have converged to an impossible number.
 
-        To be asked in units R = E2* = 1: in others a positive number may underflow to 0.
+        The solution must be in units R = E2* = 1: in other units a positive number may underflow to 0.
 
         Parameters
         ----------
-        pulls : (B,) bool, the cases that stick: loads, depths, pressures and the stiffness may be negative
-        unknown : (B,) bool, as of :meth:`not_finite`
+        pulls : (B,) bool, the cases with adhesion: loads, depths, pressures and the stiffness may be negative
+        unknown : (B,) bool, as in :meth:`not_finite`
 
         Returns
         -------
-        numpy.ndarray : (B,) bool: a number is negative, 0 or above 1 where it cannot be
+        numpy.ndarray : (B,) bool: some number is negative, 0 or above 1, although it cannot be
         """
         ended = self.status == Status.CONVERGED
         right = ended.copy()
@@ -232,7 +233,7 @@ class Solution:
         Parameters
         ----------
         mask : (B,) bool, these cases
-        status : that they get
+        status : their new status
 
         Returns
         -------
@@ -249,11 +250,11 @@ class Solution:
 
 
 def _is_all(index, size):
-    """Whether an index is that of all cases in their order."""
+    """Whether an index selects all cases in their order."""
     whole = isinstance(index, np.ndarray) and index.dtype.kind == "i" and len(index) == size
     return whole and np.array_equal(index, np.arange(size))
 
 
 def _of_all(right):
-    """(B,) bool: whether all of a case are True, in an array (B,) or (B, m)."""
+    """(B,) bool: whether all values of a case are True, in an array (B,) or (B, m)."""
     return right if right.ndim == 1 else right.all(axis=1)

@@ -1,4 +1,4 @@
-"""``solve(problem, x) -> Solution``: each case goes the cheapest way that solves it."""
+"""``solve(problem, x) -> Solution``: each case is solved by the cheapest way for it."""
 
 from dataclasses import replace
 
@@ -27,23 +27,23 @@ from .ways import unfit
 @one_blas_thread()
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN and a status
 def solve(problem: Problem, x: ArrayLike = (0.0, 1.0), *, extrapolate: bool = False) -> Solution:
-    """Solve a batch of cases. One that cannot be solved is a status and NaN.
+    """Solve a batch of cases. A case that cannot be solved has a status and NaN.
 
-    Smooth on a half-space is Hertz's closed form; smooth on a thin layer one linear solve; rough cases, and all on the
-    exact layer, iterate by their scheme. Successive approximations are for asperities: a smooth case with the scheme
-    "picard" is ``Status.INVALID_INPUT``. The base "auto" is the cheapest model that meets `accuracy`. That may be a
-    smooth punch, to which the asperities are added afterwards: then `scheme` has no effect.
+    A smooth punch on a half-space is Hertz's closed form; a smooth punch on a thin layer is one linear system. Rough
+    cases, and all cases on the exact layer, iterate by their scheme. Successive approximations are for asperities: a
+    smooth case with the scheme "picard" gets ``Status.INVALID_INPUT``. The base "auto" is the cheapest model that meets
+    `accuracy`. That may be a smooth punch, to which the asperities are added afterwards: then `scheme` has no effect.
 
     Parameters
     ----------
-    problem : :class:`~solver.problem.Problem`, cases of any mixture of bases, micro laws, bondings and schemes
-    x : (m,), radii r/a in [0, 1] at which the profiles p and λ are wanted
-    extrapolate : whether a contact keeps its numbers where spots that feel the coated body are so large that their law
-        has ended. Beyond, its curves are straight lines in their logarithms
+    problem : :class:`~solver.problem.Problem`, cases with any mixture of bases, micro laws, bondings and schemes
+    x : (m,), radii r/a in [0, 1] of the profiles p and λ
+    extrapolate : whether a contact has numbers even if its spots, which feel the coated body, are too large for their
+        law. Beyond its end the curves of the law are straight lines in their logarithms
 
     Returns
     -------
-    Solution : one row a case, in the order of the problem and in its units; the equations are in docs/model.md
+    Solution : one row for each case, in the order of the problem and in its units; the equations are in docs/model.md
 
     Raises
     ------
@@ -63,13 +63,13 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0), *, extrapolate: bool = Fa
     felt = problem.feels_layer()
     if not felt.any() or felt.all():
         return _solved(problem, x, extrapolate)
-    # those that feel the layer have radii of their own, and no others are to change by rounding because of these
+    # cases that feel the layer have further radii, which must not change the other cases by rounding
     parts = [(index, problem.take(index)) for index in (np.flatnonzero(~felt), np.flatnonzero(felt))]
     return Solution.join(len(problem), len(x), [(index, _solved(part, x, extrapolate)) for index, part in parts])
 
 
 def _solved(problem, x, extrapolate):
-    """:func:`solve` of cases whose asperities all feel the layer, or of none."""
+    """:func:`solve` for cases whose asperities all feel the layer, or of which none feels it."""
     yields, felt = has_yield(problem).any(), problem.feels_layer()
     radii = np.append(x, radii_of(problem, yields))
     scaled, special = dimensionless(problem), shaped(problem) | (problem.w_adhesion > 0) | felt
@@ -91,16 +91,16 @@ def _solved(problem, x, extrapolate):
     unsolved = np.where(hopeless, Status.OUTSIDE_LAW, Status.INVALID_INPUT)
     solution = Solution.join(*size, pieces, status=unsolved, model_used=model_of(problem))
     if shaped(problem).any():
-        beyond = ~invalid & beyond_table(scaled, solution)
-        solution = solution.refused(beyond, Status.OUTSIDE_LAW)
+        outside = ~invalid & beyond_table(scaled, solution)
+        solution = solution.refused(outside, Status.OUTSIDE_LAW)
     if not extrapolate and felt.any():
         solution = solution.refused(~invalid & beyond_end(problem, solution), Status.OUTSIDE_LAW)
     solution = replace(solution, model_error=solution.model_error + left_out(problem, solution))
     if yields:
         solution = replace(solution, plastic_share=plastic_share(problem, solution.lam[:, len(x) :]))
-    if not extrapolate and felt.any():  # their radii end in the centre
+    if not extrapolate and felt.any():  # the last of their radii is the centre
         p_spot, r_spot = pressure_in_spots(problem, solution, solution.lam[:, -1])
         solution = replace(solution, p_spot=p_spot, r_spot=r_spot)
     profiles = {name: getattr(solution, name)[:, : len(x)] for name in ("p", "lam")}
-    value = problem.value * 1.0  # exactly as given, also where a case is refused
+    value = problem.value * 1.0  # exactly as given, even if a case is refused
     return replace(solution, **profiles, **{problem.control: value})

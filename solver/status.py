@@ -1,12 +1,14 @@
-"""How the solution of a case ended; and whole numbers with names, which arrays hold."""
+"""The status of the solution of a case; and whole numbers with names, for arrays."""
 
 from enum import EnumType, IntEnum
 
 
 class _Quiet(EnumType):
-    """numpy looks for attributes of a number that it compares, and forgets what is raised meanwhile, also the
-    KeyboardInterrupt of a signal. Up to Python 3.11 EnumType would run Python code there, before which signals are
-    heard."""
+    """Metaclass without Python code in the look-up of attributes.
+
+    numpy looks up attributes of a number that it compares, and swallows any exception, even the KeyboardInterrupt of a
+    signal. Up to Python 3.11 EnumType runs Python code there, and signals are handled before Python code.
+    """
 
     __getattr__ = type.__getattribute__
 
@@ -16,7 +18,8 @@ class Codes(IntEnum, metaclass=_Quiet):
 
 
 class Status(Codes):
-    """Status of one case; `meaning` says it in a sentence. A case that fails is a flagged value, never an exception."""
+    """Status of one case; `meaning` explains it in a sentence. A case that fails has a status, and raises no
+    exception."""
 
     CONVERGED = 0, "the iteration closed and the estimated error is within rtol"
     ITERATION_LIMIT = 1, "the iteration did not close within its limit; the last numbers are kept"
@@ -40,11 +43,11 @@ class Status(Codes):
     meaning: str
 
     def __new__(cls, value: int, meaning: str) -> "Status":
-        """The member of a value, an int, with its meaning."""
+        """The member with a value, an int, and its meaning."""
         member = int.__new__(cls, value)
         member._value_, member.meaning = value, meaning
         return member
 
 
-#: Statuses of cases whose equations have no solution in the model. The solver has not failed there.
+#: Statuses of cases whose equations have no solution in the model. They are no failures of the solver.
 NO_SOLUTION = (Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF, Status.PULLED_OFF)

@@ -1,5 +1,5 @@
-"""The ways by which cases are solved whose base has a name: one table, of which a case takes the first row that is its
-own; and which cases have none."""
+"""The ways to solve cases whose base is named, in one table. The first row whose condition a case meets solves it; some
+cases have no way."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -20,12 +20,12 @@ from .smooth.contact import not_sticking, sticking
 class Way(NamedTuple):
     """One way to solve cases.
 
-    name : of the way
-    has : function of a problem and of which of its cases (B,) are smooth, (B,) bool: those of this way, as far as no
-        row before has them
-    alike : function of a problem, arrays (B,): cases that differ in none of these are solved together
-    solve : ``function(part, x) -> Solution`` of such cases, in units R = E2* = 1, at the radii x (m,)
-    equation : by which a solved case can be found again: "nodes", :mod:`.rough.equation`; "flat",
+    name : name of the way
+    has : ``has(problem, smooth)``, with `smooth` (B,) bool, returns (B,) bool: the cases of this way, unless an earlier
+        row has them
+    alike : ``alike(problem)`` returns arrays (B,): cases that agree in all of them are solved together
+    solve : ``solve(part, x) -> Solution`` of such cases, in units R = E2* = 1, at the radii x (m,)
+    equation : the equation that a solved case satisfies: "nodes", :mod:`.rough.equation`; "flat",
         :mod:`.rough.flat_punch`; "basis", :mod:`.smooth.galerkin`
     """
 
@@ -56,8 +56,8 @@ def _of_equation(part):
     return part.micro, part.base, part.scheme, part.shape, kinds_of_laws(part), part.max_iterations
 
 
-#: base, rough, shape, sticks -> function. Of rough cases none sticks (:func:`unfit`), and graded layers are many
-#: uniform ones here (:mod:`.models.sublayers`).
+#: The table. No rough case has adhesion (:func:`unfit`), and graded layers are already cut into uniform ones
+#: (:mod:`.models.sublayers`).
 WAYS = (
     Way("sticking", lambda p, smooth: p.w_adhesion > 0, lambda p: (p.base, p.shape, p.adhesion), sticking, "basis"),
     Way("shaped", lambda p, smooth: smooth & shaped(p), lambda p: (p.base, p.shape), not_sticking, "basis"),
@@ -69,7 +69,7 @@ WAYS = (
 
 
 def way_of(problem):
-    """(B,) int8: the place in WAYS of the way of each case."""
+    """(B,) int8: the index in WAYS of the way of each case."""
     place = np.full(len(problem), len(WAYS) - 1, dtype=np.int8)
     left, smooth = np.ones(len(problem), dtype=bool), ~problem.rough()
     for number, way in enumerate(WAYS[:-1]):
@@ -81,13 +81,13 @@ def way_of(problem):
 
 
 def by_equation(problem, equation):
-    """(B,) bool: the cases whose way has the `equation`, of :class:`Way`."""
+    """(B,) bool: the cases whose :class:`Way` has this `equation`."""
     return np.array([way.equation == equation for way in WAYS])[way_of(problem)]
 
 
 def solved(problem, solvable, x):
-    """Pairs of an index (b,) and the :class:`~solver.solution.Solution` there, of the `solvable` (B,) bool cases of a
-    problem in units R = E2* = 1; x : (m,) radii."""
+    """A list of pairs, an index (b,) and the :class:`~solver.solution.Solution` of these cases, for the cases
+    `solvable` (B,) bool of a problem in units R = E2* = 1; x : (m,) radii."""
     places, pieces = way_of(problem), []
     for number in np.unique(places[solvable]).tolist():
         way, index = WAYS[number], np.flatnonzero(solvable & (places == number))
@@ -102,8 +102,8 @@ def _at(problem, index):
 
 
 def unfit(problem):
-    """(B,) bool: cases of a problem in units R = E2* = 1 that no way has: whose shape or adhesion does not go with the
-    base, the asperities, the scheme or the control."""
+    """(B,) bool: cases of a problem in units R = E2* = 1 that no way solves, because their shape or adhesion does not
+    go with the base, the asperities, the scheme or the control."""
     other, pulls = shaped(problem), problem.w_adhesion > 0
     if not (other | pulls).any():
         return np.zeros(len(problem), dtype=bool)
@@ -118,15 +118,16 @@ def unfit(problem):
 
 
 def _no_radius(part):
-    """(B,) bool: no contact of the one shape of the cases has the radius that is given. A flat punch has its own."""
+    """(B,) bool: whether no contact has the given radius. All cases share the shape. A flat punch has its own
+    radius."""
     shape, a = shape_of(part), part.value
     poles = ~np.isfinite(shape.lifted(column(shape.most()))[:, 0])
     return (a <= shape.least()) | (a >= shape.most()) & (poles | (shape.least() == shape.most()))
 
 
 def _unfit_law(problem):
-    """(B,) bool: the law of adhesion has a number that it does not take, or lacks one; or a shape for which it does
-    not stand. A flat punch is pinned at its edge: a ring beside it begins at a gap of 0."""
+    """(B,) bool: whether the law of adhesion has a number that it does not take, or lacks one, or does not hold for the
+    shape. The contact of a flat punch ends at its edge, and the gap outside it begins at 0."""
     jkr, dmt = problem.adhesion == "jkr", problem.adhesion == "dmt"
     numbers = np.isfinite(problem.sigma0).astype(int) + np.isfinite(problem.z0)
     wrong = np.where(dmt, numbers != 0, np.where(jkr, numbers == 2, numbers != 1))

@@ -1,15 +1,16 @@
 """Films, layers far thinner than the contact: the part of the operator that only the edge of the contact feels.
 
 k is in 1/a, and cut is the largest k of the quadrature that all films share (CUT of :mod:`.wave_rule`). The constant
-n' = L(cut h/2a) is taken out of L(kh/a): it acts as n' times a half-space. The rest, L(kh/a) - n', is split by a smooth
-step χ, which falls from 1 to 0 below k = cut. χ (L - n') is integrated over k as for any layer. In (1 - χ)(L - n') the
-Bessel functions are plane waves, and the kernel is a convolution: with κ = k/cut and τ = cut |x - x'|,
+n' = L(cut h/2a) is subtracted from L(kh/a): it acts as n' times a half-space. The rest, L(kh/a) - n', is split by a
+smooth step χ, which falls from 1 to 0 below k = cut. χ (L - n') is integrated over k as for any layer. In
+(1 - χ)(L - n') the Bessel functions are plane waves, and the kernel is a convolution: with κ = k/cut and
+τ = cut |x - x'|,
 
     ∫ (L(kh/a) - n')(1 - χ) J0(kx) J0(kx') dk ≈ c(τ)/sqrt(x x'),
     c(τ) = (1/π) ∫ (L(κ cut h/a) - n')(1 - χ) cos(κτ) dκ/κ.
 
-Its relative error is of the order cut⁻². Inside the contact, where the pressure is smooth, the convolution vanishes.
-It is linear in c, so it is tabulated like the rest.
+The relative error of this approximation is of the order cut⁻². Inside the contact, where the pressure is smooth, the
+convolution vanishes. It is linear in c, and so it is tabulated like the rest.
 """
 
 from functools import lru_cache
@@ -24,26 +25,26 @@ from ..numerics.quadrature import against, gauss_legendre, pieces, radau_nodes
 
 #: Number of octaves of κ above 1, and of τ below 1.
 _OCTAVES = 24
-#: Nodes in each half-octave of κ and in each octave of τ. They are many: under a film n times stiffer than its base, an
-#: error of c becomes an error of the pressure that is more than n times as large.
+#: Nodes in each half-octave of κ and in each octave of τ. They must be many: if a film is n times stiffer than its
+#: base, an error of c becomes an error of the pressure that is more than n times as large.
 _KAPPA, _TAU = 14, 20
 #: Steepness of χ. At κ = 1/4 it differs from 1, and at κ = 1 from 0, by erfc(_STEP)/2, below 1e-6.
 _STEP = 3.4
 #: Beyond this τ the convolution is left out.
 REACH = 128.0
-#: c is smooth for τ up to this, except at 0. Beyond, it swings with the period of the step, up to REACH: a panel there
-#: needs as many points as one that contains the point where c is wanted (tests/body/test_work.py).
+#: c is smooth for τ up to this, except at 0. From there up to REACH it oscillates with the period of the step. A panel
+#: there needs as many points as a panel that contains the target (tests/body/test_work.py).
 _SMOOTH = 12.0
-#: This many cases or more get their matrices as products with one table.
+#: From this many cases on, their matrices are products with one table.
 MANY = 8
-#: The Chebyshev nodes of an octave, from 0 to 1; and the matrix (_TAU, _TAU) from values there to the coefficients of
-#: their Chebyshev series.
+#: The Chebyshev nodes of an octave, from 0 to 1; and the matrix (_TAU, _TAU) that makes the coefficients of a Chebyshev
+#: series from values at the nodes.
 _NODES = (1 - np.cos(np.pi * (np.arange(_TAU) + 0.5) / _TAU)) / 2
 _SERIES = np.linalg.inv(chebvander(2 * _NODES - 1, _TAU - 1))
 
 
 def step(kappa):
-    """χ(κ): 1 below κ = 1/4, 0 above κ = 1, to 1e-6."""
+    """χ(κ). To 1e-6 it is 1 below κ = 1/4 and 0 above κ = 1."""
     return special.erfc(_STEP * (np.log2(np.maximum(kappa, 1e-9)) + 1)) / 2
 
 
@@ -51,7 +52,7 @@ def step(kappa):
 def waves():
     """Nodes κ (G,) of the half-octaves, nodes τ (T,) of the octaves, and the matrix (T, G) of (1/π) ∫ · cos(κτ) dκ/κ.
 
-    The integral is exact where the integrand over κ is a polynomial on each half-octave (Filon's rule).
+    The integral is exact for functions that, divided by κ, are a polynomial on each half-octave (Filon's rule).
     """
     t, _ = gauss_legendre(_KAPPA)
     ends = np.append(0.0, 2.0 ** np.arange(-2, _OCTAVES + 0.25, 0.5))
@@ -71,16 +72,17 @@ def waves():
 def transform(f, end, p):
     """c (b, T) at the nodes τ, from f = (L - n')(1 - χ) (b, G) at the nodes κ. f tends to 1 - n' = -`end` (b, 1).
 
-    p (b, 1) is the thickness in a/cut. -end (1 - e^-pκ) is taken out of f, so that the rest vanishes, and
-    its transform, -end ln(1 + p²/τ²)/(2π), is added.
+    p (b, 1) is the thickness in a/cut. -end (1 - e^-pκ) is subtracted from f, so that the rest tends to 0, and its
+    transform, -end ln(1 + p²/τ²)/(2π), is added.
     """
     kappa, tau, matrix = waves()
     return (f - end * np.expm1(-p * kappa)) @ matrix.T - end / (2 * np.pi) * np.log1p((p / tau) ** 2)
 
 
 class Share(NamedTuple):
-    """The part that r pairs of a point and a panel, `row` and `panel` (r,), have in a convolution. Each pair has a rule
-    of g points: there `weight` (r, g) is the weight of c, and `columns` (r or 1, g, order) the basis of the panel."""
+    """The contribution to a convolution of r pairs of a target and a panel, `row` and `panel` (r,). Each pair has a
+    rule of g points. `weight` (r, g) is the weight of c at these points, and `columns` (r or 1, g, order) is the basis
+    of the panel there."""
 
     row: np.ndarray
     panel: np.ndarray
@@ -92,8 +94,8 @@ class Convolution(NamedTuple):
     """The convolution at m points as a linear function of c: for each c a matrix (m, n).
 
     `shape` is (m, p, order), for p panels; `shares` has each :class:`Share` that is not zero. The N points of all their
-    rules are sorted by octaves of τ. `place` (N,) is the index of a point among those of all shares, and `local` (N,)
-    its place in its octave, from -1 to 1. In both, octave i begins at ends[i].
+    rules are sorted by octaves of τ. `place` (N,) is the index of a point before they were sorted, and `local` (N,) its
+    place in its octave, from -1 to 1. In both arrays, octave i begins at ends[i].
     """
 
     shape: tuple
@@ -117,9 +119,9 @@ class Convolution(NamedTuple):
         return out.reshape(size)
 
     def whole(self):
-        """The same as a :class:`Whole`."""
+        """The same convolution as a :class:`Whole`."""
         m, panels, order = self.shape
-        from scipy.sparse import csc_array  # here, for it takes a while and few contacts are on films
+        from scipy.sparse import csc_array  # imported here: it takes a while, and few contacts are on films
 
         count, first = len(waves()[1]), np.repeat(np.arange(len(self.ends) - 1) * _TAU, np.diff(self.ends))
         back = np.argsort(self.place)
@@ -135,7 +137,7 @@ class Convolution(NamedTuple):
         return Whole((m, panels * order), out.reshape(count, -1))
 
     def _parts(self):
-        """Pairs of a share and the slice of its points among the points of all shares."""
+        """Yield each share with the slice of its points among the points of all shares."""
         end = 0
         for share in self.shares:
             begin, end = end, end + share.weight.size
@@ -143,8 +145,8 @@ class Convolution(NamedTuple):
 
 
 class Whole(NamedTuple):
-    """A :class:`Convolution` at m points for many c: `table` (T, m n) has for each node of τ, as a row, the matrix of
-    the c that is 1 at this node and 0 at the others; `shape` is (m, n)."""
+    """A :class:`Convolution` at m points for many c. `table` (T, m n) has a row for each node of τ: the matrix of the c
+    that is 1 at this node and 0 at the others. `shape` is (m, n)."""
 
     shape: tuple
     table: np.ndarray
@@ -157,7 +159,7 @@ class Whole(NamedTuple):
 def convolution(mesh, points, cut):
     """The :class:`Convolution` at `points` (m,) in s, for the basis of a mesh.
 
-    Each panel has rules of its own. A rule across the ends of panels would be right for smooth pressures only, and the
+    Each panel has rules of its own. A rule across the ends of panels would be right only for smooth pressures, and the
     discrete equation of a stiff film would have false solutions.
     """
     low, high = np.array(mesh.breaks[:-1]), np.array(mesh.breaks[1:])

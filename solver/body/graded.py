@@ -5,17 +5,18 @@ import numpy as np
 from ..bases import is_exact_stack, is_stack
 from ..layers import full_name, numbers_of
 
-#: The sublayers are thinner and thinner over this many octaves of the depth: in a graded layer at the surface, which
-#: waves of all lengths feel, and in a deeper one.
+#: Number of octaves of the depth over which the sublayers become thinner towards the top: in a graded layer at the
+#: surface, which feels waves of all lengths, and in a deeper one.
 _OCTAVES, _DEEPER = 8, 4
-#: A linear profile is not uneven where ln n changes by less than this; bisections that find a depth to rounding.
+#: A linear profile is cut like any other where ln n changes by less than _EVEN. _HALVINGS bisections give a depth to
+#: rounding.
 _EVEN, _HALVINGS = 0.1, 60
-#: Sublayers where nothing says how many.
+#: Number of sublayers in an octave where the case does not give it.
 _USUAL = 16
 
 
 def is_graded(problem):
-    """(B,) bool: the cases with a graded layer, of which the number of sublayers is not given."""
+    """(B,) bool: the cases of an exact stack with a graded layer whose number of sublayers is left to the program."""
     if not numbers_of(problem.parameters):
         return np.zeros(len(problem), dtype=bool)
     numbers = range(1, numbers_of(problem.parameters) + 1)
@@ -24,7 +25,7 @@ def is_graded(problem):
 
 
 def has_graded(problem):
-    """(B,) bool: the cases with a graded layer."""
+    """(B,) bool: the cases of a stack, exact or thin, with a graded layer."""
     if not numbers_of(problem.parameters):
         return np.zeros(len(problem), dtype=bool)
     numbers = range(1, numbers_of(problem.parameters) + 1)
@@ -34,14 +35,14 @@ def has_graded(problem):
 
 
 def graded_first(problem):
-    """(B,) bool: the stacks whose first layer is graded."""
+    """(B,) bool: the cases of an exact stack whose first layer is graded."""
     if not numbers_of(problem.parameters):
         return np.zeros(len(problem), dtype=bool)
     return (getattr(problem, full_name(1, "profile")) != "uniform") & is_exact_stack(problem.base)
 
 
 def contrast(problem):
-    """(B,): logarithm of the largest over the smallest modulus within the first layer; 0 of a uniform one."""
+    """(B,): logarithm of the largest over the smallest modulus within the first layer; 0 if it is uniform."""
     logs = np.zeros(len(problem))
     index = np.flatnonzero(graded_first(problem))
     if len(index):
@@ -55,12 +56,15 @@ def contrast(problem):
 
 
 def refined(layers, sublayers, tables, octaves=_OCTAVES):
-    """The `layers` of :func:`.stacked.layers_of` with each that is graded in some case cut into uniform ones, of the
-    modulus in their middle. sublayers : (B,), one number for all cases; tables : word -> table of a profile; octaves :
-    of the first layer.
+    """The `layers` of :func:`.stacked.layers_of`, in which each layer that is graded in some case is cut into uniform
+    sublayers. Each has the modulus in its middle.
 
-    They are the thinner the nearer they are to the top of the layer, as many in each octave of the depth: short waves
-    then find the gradient as well resolved as long ones.
+    sublayers : (B,), number of sublayers in an octave of the depth, the same for all cases
+    tables : word -> table of a profile
+    octaves : number of octaves in the first layer
+
+    The sublayers are thinner towards the top of the layer, with equally many in each octave of the depth: so the
+    gradient is as well resolved for short waves as for long ones.
     """
     graded = graded_among(layers)
     if not graded.any():
@@ -74,25 +78,27 @@ def refined(layers, sublayers, tables, octaves=_OCTAVES):
 
 
 def graded_among(layers):
-    """(N,) bool: which of the `layers` of :func:`.stacked.layers_of` are graded in some case."""
+    """(N,) bool: the `layers` of :func:`.stacked.layers_of` that are graded in some case."""
     return (layers["profile"] != "uniform").any(axis=0)
 
 
 def sublayers_of(layers, sublayers, octaves=_OCTAVES):
-    """(N,) int: into how many uniform layers :func:`refined` cuts each; arguments as there."""
+    """(N,) int: number of sublayers into which :func:`refined` cuts each layer, 1 for a uniform one; arguments as
+    there."""
     count = int(sublayers[0]) or _USUAL
     deep = np.array([octaves] + [_DEEPER] * (len(layers["h"][0]) - 1))
     return np.where(graded_among(layers), count * (deep + 1), 1)
 
 
 def at_depths(layers, j, z, tables):
-    """E_j*/E2* and the Poisson ratio (B, Z) of layer j, from 0, at depths z (B, Z) over its thickness, without cuts."""
+    """E_j*/E2* and the Poisson ratio (B, Z) of layer j, counted from 0, at depths z (B, Z) over its thickness. The
+    profile is continuous, not cut into sublayers."""
     part, profile, bottoms = _ends_of(layers, j)
     return _moduli(profile, part["n"], bottoms["n"], z, tables), _linear(part, bottoms, "nu", z)
 
 
 def _ends_of(layers, j):
-    """Layer j as it is at its top, its profile, and its modulus and Poisson ratio at the bottom."""
+    """Three parts of layer j: its numbers at the top, its profile, and its modulus and Poisson ratio at the bottom."""
     part, profile = _as_it_is(layers, j), layers["profile"][:, j : j + 1]
     bottoms = {name: layers[f"{name}_bottom"][:, j : j + 1] for name in ("n", "nu")}
     return (
@@ -107,7 +113,7 @@ def _as_it_is(layers, j):
 
 
 def _cut(layers, j, count, octaves, tables):
-    """Layer j as uniform ones."""
+    """Layer j, cut into uniform sublayers."""
     part, profile, bottoms = _ends_of(layers, j)
     ends = _depths(profile, part["n"], bottoms["n"], cuts(count, octaves))
     middle, last = (ends[:, 1:] + ends[:, :-1]) / 2, np.arange(ends.shape[1] - 1) == ends.shape[1] - 2
@@ -118,7 +124,7 @@ def _cut(layers, j, count, octaves, tables):
 
 
 def _moduli(profile, top, bottom, z, tables):
-    """E*/E2* (B, N) at depths z over the thickness. A table is taken over its first modulus."""
+    """E*/E2* (B, N) at depths z over the thickness. A table is scaled so that its first modulus is `top`."""
     n = np.where(profile == "exponential", top * (bottom / top) ** z, top + (bottom - top) * z)
     for word in set(profile.ravel().tolist()) & set(tables):
         rows, table = profile[:, 0] == word, tables[word]
@@ -131,8 +137,9 @@ def _linear(part, bottoms, name, z):
 
 
 def _depths(profile, top, bottom, ends):
-    """The ends (B, N + 1) of the sublayers over the thickness. In a linear profile they divide the mean of the depth
-    and of the change of ln n evenly: so n changes by a small part of itself in each sublayer, also where n is small."""
+    """The ends (B, N + 1) of the sublayers over the thickness. In a linear profile they are not `ends` of the depth
+    itself: they are `ends` of the mean of the depth and of the relative change of ln n. So n changes by a small part of
+    itself in each sublayer, even where n is small."""
     ratio = np.log(bottom / top)
     uneven = np.flatnonzero((profile[:, 0] == "linear") & (np.abs(ratio[:, 0]) > _EVEN))
     depths = np.repeat(ends[None], len(top), axis=0)
@@ -149,6 +156,7 @@ def _depths(profile, top, bottom, ends):
 
 
 def cuts(count, octaves):
-    """The ends (N + 1,) of sublayers over the thickness: `count` in each octave, and as many in the rest above."""
+    """The ends (N + 1,) of sublayers over the thickness: `count` in each octave of the depth, and as many above them,
+    in the rest next to the surface."""
     first = 2.0**-octaves
     return np.append(np.linspace(0.0, first, count + 1)[:-1], np.geomspace(first, 1.0, octaves * count + 1))

@@ -14,21 +14,21 @@ from ..numerics import batch
 from ..numerics.mesh import Mesh
 from .operator import fitted_nodes
 
-#: Below the rtol _FINE a case on springs begins on at least _SECOND nodes, the second coarsest mesh: on the coarsest,
-#: few random cases met their rtol.
+#: For an rtol below _FINE a case on springs begins on at least _SECOND nodes, the second coarsest mesh: on the coarsest
+#: mesh few random cases met their rtol.
 _FINE, _SECOND = 3e-5, 8
 #: Work of one Newton step of a lone case, in the unit of :meth:`~solver.body.operator.Body.work`.
 _STEP = 150
-#: n of a base that stands for a rigid one under the thin layer: the equation divides by the half-space's part X, which
-#: must not be 0. With this n, X is below 1e-20 of the springs' part Y for every h and a within the bounds, and n³ does
-#: not underflow.
+#: The n that stands for a rigid base under the thin layer: the equation divides by the part X of the half-space, which
+#: must not be 0. With this n, X is below 1e-20 of the part Y of the springs for every h and a within the bounds, and n³
+#: does not underflow.
 STIFF = 1e-50
 
 
 @batch.of_cases
 class HalfSpaceOperator(NamedTuple):
-    """The :class:`~solver.body.operator.Operator` of a half-space on a mesh. It is one for all cases and radii: each
-    sub-batch is the operator itself, and its slopes are 0."""
+    """The :class:`~solver.body.operator.Operator` of a half-space on a mesh. It is the same for all cases and radii:
+    each sub-batch is the operator itself, and its slopes are 0."""
 
     mesh: Mesh
 
@@ -56,8 +56,8 @@ class HalfSpaceOperator(NamedTuple):
 
 @batch.of_cases
 class HalfSpace(NamedTuple):
-    """The :class:`~solver.body.operator.Body` of modulus E (B,), in E2*, with springs of compliance C (B,), or 0. Its
-    operator is exact to rounding."""
+    """The :class:`~solver.body.operator.Body` that is a half-space of modulus E (B,), in E2*, with springs of
+    compliance C (B,); C = 0 stands for no springs. Its operator is exact to rounding."""
 
     E: np.ndarray
     C: np.ndarray
@@ -77,7 +77,7 @@ class HalfSpace(NamedTuple):
         return np.zeros_like(self.E)
 
     def unseen(self, a, s1):
-        """A half-space has no length, and so no short waves. Smooth contacts on springs have a bound of
+        """A half-space has no length of its own, and so no short waves. Smooth contacts on springs have the bound of
         :mod:`..smooth.paraboloids`."""
         return np.zeros_like(a)
 

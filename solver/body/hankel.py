@@ -3,11 +3,11 @@
     K q = H[q] + (π/2) Λ[q], both less their values at the edge,
     Λ_ij = ∫₀^∞ (L(kh/a) - 1) J0(k x_i) φ_j(k) dk,   φ_j(k) = ∫₀¹ l_j J0(kx) x dx,
 
-with k in units of 1/a, and l_j the Lagrange polynomials of the mesh. H carries the whole singularity. L - 1
-decays like e^(-2u), so Λ is smooth for every h/a. Numbers of k and the mesh alone are tabulated for each octave of
-h/a (:mod:`.tables`); the matrices of a batch are one product with that table, and the derivatives by ln a come from u
-dL/du. Where two octaves meet they agree to the error of the quadrature. Layers below the first octave are films. They
-all share one quadrature, which ends at k = CUT; waves beyond it are in :mod:`.film`. The kernels are in
+with k in units of 1/a, and l_j the Lagrange polynomials of the mesh. H carries the whole singularity. L - 1 decays like
+e^(-2u), so Λ is smooth for every h/a. The factors that depend only on k and the mesh are tabulated for each octave of
+h/a (:mod:`.tables`). The matrices of a batch are one product with that table, and the derivatives by ln a come from
+u dL/du. Where two octaves meet, they agree to the error of the quadrature. Layers with h/a below the first octave are
+films. They all share one quadrature, which ends at k = CUT; :mod:`.film` adds the waves beyond it. The kernels are in
 :mod:`..kernels`.
 """
 
@@ -23,33 +23,35 @@ from .operator import fitted_nodes
 from .part import parts_of
 from .wave_rule import CUT, FILM, place_of
 
-#: A layer thinner than this times the radius yields nearly as the thin layer does.
+#: A layer thinner than this times the radius is displaced nearly as the thin layer is.
 _THIN = 0.02
-#: Work of a lone case in the unit of :meth:`.operator.Body.work`, for films and for thicker layers. A new mesh takes
-#: _MESH for each node of a film, or for each entry of the matrix of a thicker layer. A Newton step takes _STEP, and
-#: _ENTRY for each entry. They are ratios of processor times, to a factor of two: BUDGET needs no more.
+#: Work of a lone case in the unit of :meth:`.operator.Body.work`; each pair is for films and for thicker layers. A new
+#: mesh takes _MESH for each node of a film, or for each entry of the matrix of a thicker layer. A Newton step takes
+#: _STEP, and _ENTRY for each entry. They are ratios of processor times, right to a factor of two: BUDGET needs no more.
 _MESH, _STEP, _ENTRY = (1000.0, 2.0), (4000.0, 600.0), (0.3, 0.1)
-#: Rounding, 1e-14 for each node, is divided by L at this k, the first of films, the second of thicker layers. Where a
-#: rigid base hardly lets the layer yield to a wave, L is a small difference of large terms, of more terms in films.
-#: With k = 10 the depth of a film of nu1 = 1/2 on a rigid base is 30 times as far off as its error bar (test_rounding
-#: of tests/body/test_rigid_base.py).
+#: The rounding error, 1e-14 for each node, is divided by L at this k; the first is for films, the second for thicker
+#: layers. A layer on a rigid base hardly gives way to a long wave: there L is a small difference of large terms, and of
+#: more terms in films. With k = 10 the depth of a film of nu1 = 1/2 on a rigid base is 30 times as far off as its error
+#: bar says (test_rounding of tests/body/test_rigid_base.py).
 _ROUNDED = (2.5, 4.0)
-#: The kernel is rounded to _PLATE parts of its largest value, n. Short waves yield n times less, and so the pressure is
-#: rounded to n times that. A plate that nearly lifts off has a p(0) a hundred times below the largest pressure: without
-#: this p(0) is up to a hundred times as far off as its error bar (tests/rough/errors/test_plates.py).
+#: The kernel has a rounding error of _PLATE times its largest value, n. The displacement by short waves is n times
+#: smaller, and so the pressure has a relative rounding error of n _PLATE. In a plate that nearly lifts off, p(0) is a
+#: hundred times below the largest pressure: without this term p(0) is up to a hundred times as far off as its error bar
+#: says (tests/rough/errors/test_plates.py).
 _PLATE = 3 * np.finfo(float).eps
-#: Waves u = kh above _SHORT feel the layer alone. The integral of :meth:`Hankel.unseen` up to there has _POINTS points,
-#: evenly in ln u (test_the_estimate_encloses_films_that_no_mesh_sees of tests/rough/errors/test_accuracy.py).
+#: Waves with u = kh above _SHORT feel only the layer. Up to there the integral of :meth:`Hankel.unseen` has _POINTS
+#: points, evenly spaced in ln u (test_the_estimate_encloses_films_that_no_mesh_sees of
+#: tests/rough/errors/test_accuracy.py).
 _SHORT, _POINTS = 45.0, 64
 
 
 @batch.of_cases
 class Hankel(NamedTuple):
-    """The :class:`~solver.body.operator.Body` of B cases with a kernel; arrays (B,): thickness h of the layer at the
-    surface in R, and m = E1*/E3*.
+    """The :class:`~solver.body.operator.Body` of B cases with a kernel. Arrays (B,): h, the thickness of the layer at
+    the surface, in R, and m = E1*/E3*.
 
-    The punch yields as a half-space of E3* does, so the kernel of both is L + m relative to E1*. Relative to the
-    modulus E of both, 1/E = 1/E1* + 1/E3*, it is (L + m)/(1 + m): L - 1 becomes (L - 1)/(1 + m).
+    The punch is displaced like a half-space of E3*. So relative to E1* the kernel of body and punch together is L + m.
+    Relative to their common modulus E, 1/E = 1/E1* + 1/E3*, it is (L + m)/(1 + m), and L - 1 becomes (L - 1)/(1 + m).
     """
 
     kernel: Kernel
@@ -74,7 +76,7 @@ class Hankel(NamedTuple):
         return 0 * self.m
 
     def at(self, a, mesh, near=None):
-        """A case whose radius has not changed since `near` keeps the values of L that `near` has."""
+        """A case whose radius is the same as in `near` takes the values of L from there."""
         parts, far = [], np.ones(len(a), dtype=bool)
         for part in () if near is None else near.parts:
             same = np.flatnonzero(a[part.index] == part.radius)
@@ -91,7 +93,7 @@ class Hankel(NamedTuple):
         return self.whole(1.5 * self.h / a)
 
     def error(self, a, nodes):
-        """Rounding, and for films the error of the convolution."""
+        """The rounding error, and for films the error of the convolution."""
         octave, _ = place_of(self, a)
         L = self.whole(np.where(octave == FILM, *_ROUNDED) * self.h / a)
         error, film = 1e-14 * nodes / np.minimum(L, 1.0), np.flatnonzero(octave == FILM)
@@ -105,9 +107,9 @@ class Hankel(NamedTuple):
         return _PLATE * np.maximum(self.L0, 1.0)
 
     def unseen(self, a, s1):
-        """Waves of k up to 1/s1² are in the solution. Those beyond, u > u1 = h/(a s1²), move the edge by
+        """The solution has waves of k up to 1/s1². Shorter ones, u > u1 = h/(a s1²), move the edge by
         (h/π) ∫ ln[L(u)/L(u1)] du/u², as in :mod:`..models.thin_layer_error`. Here the integral is over |ln|, because
-        waves that cancel at the edge may not do so in the pressure; beyond _SHORT the logarithm is constant."""
+        waves that cancel at the edge may not cancel in the pressure. Beyond _SHORT the logarithm is constant."""
         h_a, shift = self.h / a, np.zeros(len(a))
         thin = np.flatnonzero(h_a < _SHORT * s1**2)
         if not len(thin):
@@ -124,15 +126,15 @@ class Hankel(NamedTuple):
         return mesh * np.where(film, nodes, nodes**2), least + entry * nodes**2
 
     def order(self, a):
-        """Cases with the same table are together: fewer and larger matrix products."""
+        """Cases with the same table become neighbours: so there are fewer and larger matrix products."""
         return np.lexsort(place_of(self, a))
 
     def alike(self, a):
-        """The thin layer, if all cases are much thinner than a and it applies to them."""
+        """The thin layer, if in all cases the layer is much thinner than a and the thin-layer equation applies."""
         thin = thin_layer(self.h, self.kernel, self.m)
         return thin if np.all((self.h < _THIN * a) & (thin.C > 0)) else None
 
     def first_nodes(self, rtol, a, rise=None):
-        """Under asperities as on a half-space; under a smooth punch, the fewer the thicker the layer."""
+        """Under asperities the number is that on a half-space. Under a smooth punch it falls with the thickness."""
         smooth = 0.9 * np.clip(self.h / a, 0.0, 1.0), 2.3
         return fitted_nodes(rtol, *(smooth if rise is None else (rise, 1.1)))

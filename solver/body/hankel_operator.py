@@ -11,8 +11,11 @@ from .tables import between, felt, film_rows
 
 
 class HankelOperator(NamedTuple):
-    """The :class:`~solver.body.operator.Operator` of bodies with a kernel: its mesh; `parts`, the kernel; and `rows`
-    (B, n + 1, n), the matrix K and under it the row of the edge. In memory the index of the case runs fastest."""
+    """The :class:`~solver.body.operator.Operator` of bodies with a kernel.
+
+    parts : list of :class:`.part.Part`, the values of the kernel
+    rows : (B, n + 1, n), the matrix K and under it the row of the edge. In memory the index of the case runs fastest
+    """
 
     mesh: Mesh
     parts: list
@@ -27,7 +30,7 @@ class HankelOperator(NamedTuple):
         return self.rows[:, -1]
 
     def take(self, index):
-        """`index` ascends."""
+        """The operator of a sub-batch; `index` must ascend."""
         place = np.full(len(self.rows), -1)
         place[index] = np.arange(len(index))
         at = [np.flatnonzero(place[part.index] >= 0) for part in self.parts]
@@ -111,7 +114,8 @@ def rows_of(parts, mesh):
 
 
 def _film(c, tab, n):
-    """The part (b, n + 1, n) of a convolution c (b, T) in the matrix and, under it, in the row of the edge."""
+    """The contribution (b, n + 1, n) of the convolutions c (b, T) to the matrix and, under it, to the row of the
+    edge."""
     rows, at_edge = np.zeros((len(c), n + 1, n)), c @ tab.film.edge
     rows[:, :-1] -= at_edge[:, None]
     rows[:, tab.film.nodes] += tab.film.rows.of(c)

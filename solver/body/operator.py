@@ -1,7 +1,7 @@
 """The protocol of a body under the punch. One file has one body: :mod:`.half_space`, :mod:`.hankel`.
 
-The contact asks a body for nothing else, nor which body it is. Lengths are in R, moduli in E2*; a is the contact
-radius, and x = r/a. The displacement of the surface under the pressure p = p* q, less that at the edge, is
+The contact uses nothing of a body except this protocol. Lengths are in R, moduli in E2*; a is the contact radius, and
+x = r/a. The displacement of the surface under the pressure p = p* q, less that at the edge, is
 
     u(x) - u(1) = 4 a/(π E) p* (K q)(x) + C p* q(x).
 """
@@ -18,10 +18,11 @@ from ..numerics.mesh import Mesh
 class Operator(Protocol):
     """K of B cases at given radii, on a mesh of n nodes.
 
-    K : (B, n, n), or (1, n, n) where all cases share it: the displacement at the nodes less that of the edge
-    edge : (B or 1, n), the row that gives the displacement of the edge itself, edge @ q
-    take : the operator of a sub-batch, :func:`~solver.numerics.batch.take` unless its rows are in groups: then it has
-        a classmethod ``assemble(operators, places)`` too, in place of :func:`~solver.numerics.batch.join`
+    K : (B, n, n), or (1, n, n) where all cases share it: the displacement at the nodes less that at the edge
+    edge : (B or 1, n), the row that gives the displacement at the edge itself, edge @ q
+    take : the operator of a sub-batch, :func:`~solver.numerics.batch.take`. An operator whose rows are in groups has a
+        `take` of its own, and a classmethod ``assemble(operators, places)`` in place of
+        :func:`~solver.numerics.batch.join`
     """
 
     mesh: Mesh
@@ -60,39 +61,39 @@ class Body(Protocol):
 
     def at(self, a, mesh, near=None):
         """The :class:`Operator` at the radii a (B,). `near`: an operator of the same cases, perhaps at other radii or
-        on another mesh; the part of it that still holds is used again."""
+        on another mesh, from which everything that is still valid is reused."""
 
     def softness(self, a):
-        """About the compliance (B,) that a contact of radius a feels, over the compliance of a half-space of E."""
+        """Approximate compliance (B,) of the body under a contact of radius a, over that of a half-space of E."""
 
     def error(self, a, nodes):
-        """Relative error (B,) of the operator itself on `nodes` nodes, which no finer mesh makes smaller."""
+        """Relative error (B,) of the operator itself on `nodes` nodes, which a finer mesh does not reduce."""
 
     def rounding(self):
-        """Rounding (B,) of the pressure at any radius, over the largest pressure."""
+        """Rounding error (B,) of the pressure at any radius, over the largest pressure."""
 
     def unseen(self, a, s1):
-        """By how much, over the radius, a mesh whose first node is s1 may misplace the edge of a smooth contact, (B,).
-        The body's short waves move it, and only the ring between that node and the edge feels them."""
+        """Possible error (B,) of the place of the edge of a smooth contact, over the radius, on a mesh whose first node
+        is s1. Short waves of the body move the edge, and only the ring between that node and the edge feels them."""
 
     def work(self, a, nodes):
-        """The work of a case that is solved alone: (B,) for making a mesh of `nodes` nodes and the operator on it, and
-        (B,) for one Newton step there. The unit is that for one entry of the matrix of a half-space on a new mesh."""
+        """Work of a case that is solved alone: (B,) to make a mesh of `nodes` nodes and the operator on it, and (B,)
+        for one Newton step there. The unit is the work for one entry of the matrix of a half-space on a new mesh."""
 
     def order(self, a):
-        """Permutation (B,) that puts cases that share work next to each other; None: the order does not matter."""
+        """Permutation (B,) that makes cases that share work neighbours; None: the order does not matter."""
 
     def alike(self, a):
-        """A body that yields nearly as this one does under contacts of radius a, and is much cheaper to solve; or
+        """A body that is displaced nearly as this one under contacts of radius a, and is much cheaper to solve; or
         None."""
 
     def first_nodes(self, rtol, a, rise=None):
-        """Number of nodes (B,) that just about meet rtol (B,) for contacts of radius a. `rise` (B,), from 0 to about 1,
-        says how gently asperities let the pressure begin at the edge (:class:`~solver.laws.Law`); None: a smooth punch.
-        """
+        """Number of nodes (B,) that just about meets rtol (B,) for contacts of radius a. `rise` (B,), from 0 to about
+        1, says how gently the pressure rises from the edge under asperities (:class:`~solver.laws.Law`); None: a smooth
+        punch."""
 
 
 def fitted_nodes(rtol, rise, digits, factor=0.93):
-    """Number of nodes (B,), a formula fitted to random cases: at rise 0 it is 0 for rtol = 10^-digits, and grows by
-    factor/0.25 with each further digit."""
+    """Number of nodes (B,) by a formula that was fitted to random cases. At rise 0 it is 0 for rtol = 10^-digits, and
+    grows by factor/0.25 with each further digit."""
     return factor * (-np.log10(rtol) - digits + 3.6 * rise) / (0.25 + rise)

@@ -1,6 +1,6 @@
-"""The kernel L of a batch at nodes k of the quadrature: a part for each class of stiffness, and for films.
+"""The kernel L of a batch at nodes k of the quadrature, in parts: one for each class of stiffness, films apart.
 
-Classes, octaves of h/a, the few nodes and which layers are films: :mod:`.wave_rule`.
+:mod:`.wave_rule` defines the classes, the octaves of h/a, the few nodes, and which layers are films.
 """
 
 from itertools import pairwise
@@ -14,19 +14,22 @@ from . import film
 from .tables import table
 from .wave_rule import CUT, FILM, STIFFEST, few, place_of, quadrature
 
-#: Kernel values are computed in blocks of this many numbers: the arrays in between stay in the cache.
+#: Kernel values are computed in blocks of this many numbers, so that intermediate arrays stay in the cache.
 _BLOCK = 16384
 
 
 @batch.of_cases
 class Part(NamedTuple):
-    """The kernel of b cases of one family and one class of stiffness, which are all films or all thicker. If the family
-    has no `sampler`, they are of one octave too.
+    """The kernel of b cases of one family and one class of stiffness; either all are films, or none. If the family has
+    no `sampler`, they have one octave too.
 
-    `index` (b,): their places in the batch; `octave` (b,) of h/a, equal ones next to each other; `radius` (b,): a.
-    L1, uL (b, M): L - 1 and -u dL/du at the few nodes k of the tables, or at all of them. Films have χ (L - n') in
-    place of L - 1, and besides the convolution c and its derivative by ln a, `film` and `d_film` (b, T), and n',
-    `level` (b, 1): :mod:`.film` says what these are.
+    index : (b,), their places in the batch
+    octave : (b,), octave of h/a; equal octaves are neighbours
+    radius : (b,), the contact radius a
+    L1, uL : (b, M), L - 1 and -u dL/du at the few nodes k of the tables, or at all of them. Films have χ (L - n') in
+        place of L - 1, see :mod:`.film`
+    film, d_film : (b, T), for films: the convolution c and its derivative by ln a
+    level : (b, 1), for films: n'
     """
 
     sampler: Sampler | None
@@ -41,30 +44,30 @@ class Part(NamedTuple):
     level: np.ndarray | None = None
 
     def tables(self, mesh):
-        """Pairs of a :class:`~solver.body.tables.OctaveTable` on a mesh and the rows (slice) of its cases."""
+        """Yield each :class:`~solver.body.tables.OctaveTable` on a mesh with the slice of its cases."""
         for octave, rows in runs(self.octave):
             yield table(mesh, self.sampler, octave, self.stiffness, rows.stop - rows.start >= film.MANY), rows
 
     @property
     def kind(self):
-        """Parts that agree in this are made one by :func:`united`."""
+        """What parts must have in common so that :func:`united` can unite them."""
         return self.stiffness, self.film is None, self.sampler or int(self.octave[0])
 
     @property
     def share(self):
-        """How much of the half-space's K is added to Λ: 1, or n' (b, 1) of films."""
+        """The factor of the half-space's K that is added to Λ: 1, or n' (b, 1) for films."""
         return 1.0 if self.level is None else self.level
 
 
 def runs(kinds):
-    """Pairs of a number in `kinds` (b,) int, such as octaves, and the slice of its equal neighbours; b > 0."""
-    ends = (kinds[1:] != kinds[:-1]).nonzero()[0] + 1  # np.diff takes as long as what is done with a small slice
+    """Yield each run of equal neighbours in `kinds` (b,) int, such as octaves: the number and its slice; b > 0."""
+    ends = (kinds[1:] != kinds[:-1]).nonzero()[0] + 1  # np.diff would take as long as the work on a small slice
     for low, high in pairwise([0, *ends.tolist(), len(kinds)]):
         yield int(kinds[low]), slice(low, high)
 
 
 def united(parts):
-    """One part from several of one kind."""
+    """One part made of several of the same kind."""
     _, _, *arrays = zip(*parts, strict=True)
     whole = Part(*parts[0][:2], *(None if v[0] is None else np.concatenate(v) for v in arrays))
     order = np.argsort(whole.octave, kind="stable")
@@ -105,17 +108,17 @@ def _film_part(body, h_a, octave, stiffness):
 
 
 def _kernel(body, h_a, k, level=None, factor=1.0):
-    """L less `level` (b, 1), or less 1 if that is None, and -u dL/du; both (b, M), at the nodes k, (b, M) or (M,), and
-    times a `factor` (M,)."""
+    """L - `level` (b, 1), or L - 1 if that is None, and -u dL/du. Both are (b, M), at the nodes k (b, M) or (M,), and
+    multiplied by a `factor` (M,)."""
     size, count = len(h_a), k.shape[-1]
     L1, uL = np.empty((2, size, count))
-    many, yields = max(1, _BLOCK // count), body.m.any()  # whether a punch yields; few do
+    many, elastic_punch = max(1, _BLOCK // count), body.m.any()  # few punches are elastic
     for group in body.kernel.formulas():
         for low in range(0, len(group), many):
             rows = group[low : low + many]
             u = (k if k.ndim == 1 else k[rows]) * h_a[rows, None]
             above, slope = body.kernel.take(rows).decaying_part(u)
-            if yields:
+            if elastic_punch:
                 above, slope = above / (1 + body.m[rows, None]), slope / (1 + body.m[rows, None])
             L1[rows] = factor * (above if level is None else above - (level[rows] - 1))
             uL[rows] = -factor * slope

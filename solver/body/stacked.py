@@ -1,4 +1,4 @@
-"""A stack of layers of a problem, exact and as a thin layer: its kernel, and its body."""
+"""The kernel and the body of a problem's stack of layers, exact and as a thin layer."""
 
 import numpy as np
 
@@ -10,13 +10,13 @@ from .graded import refined
 from .half_space import thin_layer
 from .hankel import Hankel
 
-#: Stacks of more layers have waves of many lengths, and are evaluated at all nodes.
+#: Stacks of more layers than this have waves of many lengths, and their kernel is evaluated at all nodes.
 _FEW = 8
 
 
 def layers_of(problem):
-    """The numbers and words of the layers: key of :data:`~..layers.LAYER` -> (B, N), the first layer first. On a rigid
-    base, n = 0, moduli are in E1*."""
+    """The numbers and words of the layers: key of :data:`~..layers.LAYER` -> (B, N), from the first layer down. On a
+    rigid base, n = 0, moduli are in E1*."""
     numbers = range(1, max(1, numbers_of(problem.parameters)) + 1)
     names = ("h", "n", "nu", "bonding", "cn", "ct", "profile", "n_bottom", "nu_bottom")
     layers = {name: np.stack([getattr(problem, full_name(i, name)) for i in numbers], axis=1) for name in names}
@@ -24,8 +24,8 @@ def layers_of(problem):
 
 
 def kernel_of(problem, **octaves):
-    """The :class:`~..kernels.stack.Stack` of cases, and the thickness (B,) of its first layer in R. A graded layer is
-    as many uniform ones as `sublayers` says; `octaves` : of the first, if they are not the usual ones."""
+    """The :class:`~..kernels.stack.Stack` of the cases, and the thickness (B,) of its first layer in R. A graded layer
+    is cut into uniform ones, `sublayers` in each octave. `octaves` : see :func:`.graded.refined`."""
     layers = refined(layers_of(problem), problem.sublayers, problem.known.profiles, **octaves)
     h, unit = layers["h"], layers["n"][:, :1] / layers["h"][:, :1]
     slips = layers["bonding"] == "frictionless"
@@ -35,13 +35,13 @@ def kernel_of(problem, **octaves):
 
 
 def stack(problem, **octaves):
-    """The exact body. m = E1*/E3* is of the modulus at the surface itself, of a graded layer too. `octaves` : as of
-    :func:`kernel_of`."""
+    """The exact body. Its m = E1*/E3* has the modulus at the surface, which in a graded layer is that of the first
+    sublayer. `octaves` : as in :func:`kernel_of`."""
     kernel, h = kernel_of(problem, **octaves)
     return Hankel(kernel, h, problem.m * (kernel.E1 / layer_modulus(problem.n)))
 
 
 def thin_stack(problem):
-    """A half-space that carries springs: the kernel is L(0) + u dL/du, with the slope at u = 0."""
+    """A half-space that carries springs: its kernel is L(0) + u dL/du, with dL/du at u = 0."""
     kernel, h = kernel_of(problem)
     return thin_layer(h, kernel, problem.m * (kernel.E1 / layer_modulus(problem.n)))

@@ -13,31 +13,36 @@ from ..numerics.quadrature import gauss_legendre, radau_nodes
 from . import film
 from .wave_rule import CUT, FILM, STIFFEST, few, quadrature
 
-#: Largest array of a table, in numbers. In place of a larger one the product of J0 and φ (of films) is formed case by
-#: case, and J0 between the nodes anew each time.
+#: Largest array of a table, in numbers. If it would be larger, the product of J0 and φ (of films) is formed case by
+#: case, and J0 between the nodes is computed anew each time.
 _KEEP = 4e6
-#: All tables that are kept take at most this many bytes.
+#: Largest number of bytes of all tables in the cache.
 _MOST_BYTES = 4e8
-#: On meshes of up to this many nodes the product is formed for a single case too: it serves all later ones.
+#: On meshes of up to this many nodes the product is formed even for a single case: it serves all later ones.
 _SMALL = 22
-#: The same for the convolution of films.
+#: The same limit for the convolution of films.
 _WHOLE = 64
-#: The integral of the transform φ is taken in pieces. Along each the argument of J0 grows by at most this, in radians.
+#: The integral of the transform φ is split into pieces. Along each the argument of J0 changes by at most this, in
+#: radians.
 _PHASE = 120.0
-#: φ is formed, and its moments kept, in parts of this many nodes k.
+#: φ is formed, and its moments are cached, for this many nodes k at a time.
 _ROWS = 250
-#: The moments of a panel are formed for the first of these numbers of polynomials that is enough. J0 costs the most: so
-#: meshes of many orders share its values.
+#: The moments of a panel are formed for the first of these numbers of polynomials that is enough. J0 costs the most, so
+#: that meshes of many orders share its values.
 _COUNTS = (16, 48, 144)
-#: Where s is below _NEAR, J0(kx) - J0(k) is a Taylor series of _TERMS terms: k (1 - x) is at most 0.03 there. The
-#: difference itself is rounded by 2e-16/s², and then the load of films of n = 300 to 3e6 on narrow panels is off by
-#: 1e-10 to 6e-8 (tests/rough/errors/test_plates.py).
+#: Where s is below _NEAR, J0(kx) - J0(k) is a Taylor series of _TERMS terms: k (1 - x) is at most 0.03 there. Rounding
+#: would change the difference itself by 2e-16/s², and the load of films of n = 300 to 3e6 on narrow panels by 1e-10 to
+#: 6e-8 (tests/rough/errors/test_plates.py).
 _NEAR, _TERMS = 3e-3, 5
 
 
 class FilmTable(NamedTuple):
-    """The table by which a convolution c (b, T) becomes an operator on one mesh of n nodes: the `nodes` (m,) where it
-    is felt; `rows`, :func:`film_rows` there; and `edge` (T, n), c @ edge being the row of the edge."""
+    """The table that makes an operator on one mesh of n nodes from a convolution c (b, T).
+
+    nodes : (m,), indices of the nodes where the convolution is felt
+    rows : :func:`film_rows` at these nodes
+    edge : (T, n); c @ edge is the row of the edge
+    """
 
     nodes: np.ndarray
     rows: film.Whole | film.Convolution
@@ -45,12 +50,16 @@ class FilmTable(NamedTuple):
 
 
 class OctaveTable(NamedTuple):
-    """The table by which L - 1 (b, M) at the few nodes k becomes the operator, in one octave on one mesh of n nodes.
+    """The table that makes the operator from L - 1 (b, M) at the few nodes k, in one octave on one mesh of n nodes. G
+    is the number of all nodes k of the quadrature.
 
-    L - 1 times `product` (M, (n + 1) n) is the matrix and, under it, the row of the edge; None for few cases, or if it
-    were too large. The rest is at all G nodes k of the quadrature: `J` (G, n + 1), J0(k x_i) - J0(k), and last J0(k);
-    `phi` (G, n); and `spread` (M, G), which makes (π/2) w (L - 1) there, w the weights, from L - 1 at the few nodes;
-    (G,) for films and kernels without a sampler, which have no few nodes. `film` is for films.
+    J : (G, n + 1), J0(k x_i) - J0(k) at the nodes of the mesh, and in the last column J0(k)
+    phi : (G, n), the transforms of the basis
+    spread : (M, G), which makes (π/2) w (L - 1) at all nodes from L - 1 at the few; w are the weights. Films and
+        kernels without a sampler have no few nodes: it is (G,), the factors (π/2) w
+    product : (M, (n + 1) n); L - 1 times this is the matrix and, under it, the row of the edge. None for few cases, or
+        if it would be too large
+    film : :class:`FilmTable` for films, else None
     """
 
     J: np.ndarray
@@ -61,13 +70,13 @@ class OctaveTable(NamedTuple):
 
     @property
     def is_small(self):
-        """Whether the product of L - 1 with `product`, the matrix, takes fewer multiplications than the matrix times q
-        by a sum over all nodes k."""
+        """Whether it takes fewer multiplications to form the matrix by `product` than to multiply by q with sums over
+        all nodes k."""
         of_few = self.product is not None and self.spread.ndim == 2
         return of_few and self.product.size < self.spread.size + self.J.size + self.phi.size
 
     def weights(self, L1):
-        """(π/2) w (L - 1) (b, G) at all nodes of the quadrature from L - 1 (b, M) at the few."""
+        """(π/2) w (L - 1), (b, G), at all nodes of the quadrature from L - 1 (b, M) at the few."""
         return L1 * self.spread if self.spread.ndim == 1 else L1 @ self.spread
 
 
@@ -75,7 +84,7 @@ _tables = Kept(_MOST_BYTES)
 
 
 def _kept(make):
-    """A function of hashable arguments whose latest results are kept in `_tables`."""
+    """Decorator: the results of a function of hashable arguments are cached in `_tables`."""
 
     @wraps(make)
     def cached(*key):
@@ -86,8 +95,8 @@ def _kept(make):
 
 @_kept
 def table(mesh, sampler, octave, stiffness, many):
-    """The :class:`OctaveTable` of a mesh in an octave and a class of stiffness, for the kernels of a
-    :class:`~solver.kernels.kernel.Sampler` or for those without one; `many` bool: for many cases, or for few."""
+    """The :class:`OctaveTable` of a mesh in an octave and a class of stiffness. `sampler`: the
+    :class:`~solver.kernels.kernel.Sampler` of the kernels, or None. `many`: whether the table is for many cases."""
     J, phi = _waves(mesh, octave, stiffness % len(STIFFEST))
     product, is_film = None, octave == FILM
     at_all = is_film or sampler is None
@@ -101,14 +110,14 @@ def table(mesh, sampler, octave, stiffness, many):
 
 @_kept
 def _waves(mesh, octave, stiffness):
-    """J and φ of a :class:`OctaveTable`, the same for many cases and for few."""
+    """J and φ of an :class:`OctaveTable`, the same for many cases and for few."""
     k, _ = quadrature(octave, stiffness)
     return np.hstack([less_edge(k, mesh.s), special.j0(k)[:, None]]), transform(mesh, k)
 
 
 @_kept
 def _spread(sampler, octave, stiffness):
-    """The `spread` of a :class:`OctaveTable`, the same for all meshes."""
+    """`spread` of an :class:`OctaveTable`, the same for all meshes."""
     return np.pi / 2 * few(sampler, octave, stiffness).spread
 
 
@@ -121,8 +130,8 @@ def _film_table(mesh, many):
 
 @_kept
 def film_rows(mesh, s_bytes, many):
-    """The convolution at points s between the nodes: a :class:`film.Whole` for many cases or on few nodes, where it
-    serves all later cases, else a :class:`film.Convolution`."""
+    """The convolution at any points s. For many cases, or on few nodes, it is a :class:`film.Whole`, which serves all
+    later cases; otherwise a :class:`film.Convolution`."""
     convolution = film.convolution(mesh, np.frombuffer(s_bytes), CUT)
     return convolution.whole() if many or mesh.n <= _WHOLE else convolution
 
@@ -140,7 +149,7 @@ def transform(mesh, k):
     phi, order = np.empty((len(k), mesh.n)), mesh.order
     count = next((most for most in _COUNTS if order <= most), order)
     of_legendre = np.linalg.inv(legvander(2 * radau_nodes(order) - 1, order - 1))
-    for stop in range(len(k), 0, -_ROWS):  # from the end: all classes of an octave have the last nodes in common
+    for stop in range(len(k), 0, -_ROWS):  # from the end, because all classes of an octave share the last nodes
         part = slice(max(stop - _ROWS, 0), stop)
         for i, ends in enumerate(pairwise(mesh.breaks)):
             moments = _moments(*ends, count, k[part].tobytes())
@@ -150,8 +159,8 @@ def transform(mesh, k):
 
 @lru_cache(maxsize=1024)
 def _moments(low, high, count, k_bytes):
-    """∫ P_m J0(k sqrt(1 - s²)) s ds over a panel, P_m its Legendre polynomials: (G', count) for G' nodes k. Meshes of
-    all orders use the same."""
+    """∫ P_m J0(k sqrt(1 - s²)) s ds over a panel, with its Legendre polynomials P_m: (G', count) for G' nodes k. Meshes
+    of all orders use the same moments."""
     k = np.frombuffer(k_bytes)
     angle, weight = _angles(low, high, k.max(), count)
     sin, cos = np.sin(angle), np.cos(angle)
@@ -161,13 +170,13 @@ def _moments(low, high, count, k_bytes):
 
 def _angles(low, high, k, order):
     """Angles and weights (g,) of the integral over the angle, s = sin(angle), on a panel. The phase k cos(angle)
-    changes by the same along each piece, and by half of that along the first."""
+    changes by the same amount along each piece except the first, and by half of that along the first."""
     x = np.sqrt(1 - np.array([low, high]) ** 2)
     pieces = int(k * (x[0] - x[1]) / _PHASE) + 1
     ends = np.arccos(x[0] + np.maximum(np.arange(pieces + 1) - 0.5, 0) / (pieces - 0.5) * (x[1] - x[0]))
     ends[[0, -1]] = np.arcsin([low, high])
     width, sin = np.diff(ends), np.sin(ends)
-    # the largest phase on a piece: of J0, and of a polynomial, which is fastest at the ends of its panel
+    # the largest change of phase on a piece: that of J0, and that of a polynomial, largest at the ends of its panel
     share = min(np.diff(sin).max() / (high - low), 1.0)
     phase = k * (width * sin[1:]).max() + 2 * order * np.arcsin(np.sqrt(share))
     t, w = gauss_legendre(8 * int(phase / 32 + np.cbrt(phase / 2) * 3 / 8 + 2))
@@ -175,7 +184,7 @@ def _angles(low, high, k, order):
 
 
 def less_edge(k, s):
-    """J0(k sqrt(1 - s²)) - J0(k), (G, m) for k (G,) and s (m,). Next to the edge it is a Taylor series at k."""
+    """J0(k sqrt(1 - s²)) - J0(k), (G, m) for k (G,) and s (m,). Near the edge it is a Taylor series around k."""
     edge, near = special.j0(k), s < _NEAR
     if not near.any():
         return special.j0(k[:, None] * np.sqrt((1 - s) * (1 + s))) - edge[:, None]

@@ -1,9 +1,10 @@
 """The quadrature in k of a Hankel body, one for each octave of h/a, and the few of its nodes that determine L.
 
-k is in units of 1/a, and an octave is all h/a from a power of two to the next. The panels follow the oscillation of
-J0 J0, whose frequency is 2, and the scale of L: a/h, and where its stiffness n is large n^(-1/3) a/h and a/(nh). So the
-quadrature is as accurate for every h/a and n of an octave. L - 1 itself does not oscillate: for all kernels of a
-family, a class of stiffness and an octave, its values at all nodes follow, to rounding, from those at a few of them.
+k is in units of 1/a, and an octave is the interval of h/a from a power of two to the next. The panels follow the
+oscillation of J0 J0, whose frequency is 2, and the scales of L: a/h, and if its stiffness n is large also
+n^(-1/3) a/h and a/(nh). So the quadrature is equally accurate for every h/a and n of an octave. L - 1 itself does not
+oscillate. For all kernels of a family, in one class of stiffness and one octave, its values at all nodes follow to
+rounding from its values at a few of them.
 """
 
 from functools import lru_cache
@@ -15,33 +16,35 @@ import numpy as np
 from ..numerics.quadrature import gauss_legendre
 
 #: First and last octave of h/a (as powers of two) with tables of their own. All smaller h/a are films, the octave FILM.
-#: Where h/a is larger, the half-space under the layer is not felt any more.
+#: Where h/a is larger, the body under the layer is not felt any more.
 OCTAVES = (-8, 40)
 FILM = OCTAVES[0] - 1
 #: Width in k of the widest panel: a wider one would need a Gauss rule that is slow to make.
 _WIDEST = 200.0
-#: Largest n of each class of stiffness (:class:`~solver.kernels.kernel.Kernel`), and how many panels its quadrature has
-#: towards k = 0, each half as wide as the one before: beyond the first class the first panel ends below 0.15/n.
+#: Largest n of each class of stiffness (:class:`~solver.kernels.kernel.Kernel`), and the number of panels that its
+#: quadrature has towards k = 0, each half as wide as the one before. Except in the first class, the panel at k = 0 ends
+#: below u = 0.15/n.
 STIFFEST, _DEPTH = (2.0, 1e3, 1e6, 1e9), (0, 12, 22, 32)
-#: The class of kernels of the second one that are mild (:class:`~solver.kernels.kernel.Sampler`): it has the quadrature
-#: of the second one, and few nodes of its own.
+#: A class of its own for the mild kernels of the second class (:class:`~solver.kernels.kernel.Sampler`). It has the
+#: quadrature of the second class, and few nodes of its own.
 MILD = 1 + len(STIFFEST)
-#: The few nodes are chosen by L - 1 and u dL/du of random kernels. They are enough when they leave out at most this,
-#: which is rounding, of the largest of these functions.
+#: The few nodes are chosen by L - 1 and u dL/du of random kernels. They are enough when the error at the other nodes is
+#: at most this part of the largest of these functions, which is rounding.
 _LEFT_OUT = 3e-16
-#: A panel of the width w in k has _MORE + w/2 + _ROOT w^(1/3) points, but at least _LEAST: the first number below
-#: u = 1/2, the second above, with u = kh/a at the lower end of the octave. It has _LESS points fewer for each digit by
-#: which L - 1 has decayed at its beginning. The operator is then right to 1e-11 (tests/body/test_wave_rule.py).
+#: A panel of the width w in k has _MORE + w/2 + _ROOT w^(1/3) points, and at least _LEAST: the first number if it ends
+#: below u = 1/2, else the second, with u = kh/a at the lower end of the octave. It has _LESS points fewer for each
+#: digit by which L - 1 has decayed at its beginning. The operator is then right to 1e-11
+#: (tests/body/test_wave_rule.py).
 _MORE, _ROOT, _LEAST, _LESS = 9, 3.0, (11, 15), 0.8
-#: The integral over u ends at _END_MIDDLE in octave 0, in each further octave 0.7 later, at most at _END. Beyond,
-#: L - 1 ~ u² e^(-2u) and J0 φ ~ 1/k² (k > 1) are too small to count, under stiff layers too, where the pressure feels
-#: them more (tests/rough/errors/test_error_bars.py). That of films ends at _END_FILM: :mod:`.film` adds what lies
+#: In octave 0 the integral over u ends at _END_MIDDLE. The end moves by 0.7 with each octave, up to _END. Beyond, L - 1
+#: ~ u² e^(-2u) and J0 φ ~ 1/k² (k > 1) are too small to count, even under stiff layers, where they act more strongly on
+#: the pressure (tests/rough/errors/test_error_bars.py). For films it ends at _END_FILM: :mod:`.film` adds the waves
 #: beyond.
 _END, _END_MIDDLE, _END_FILM = 20.0, 18.0, 8.7
 
 
 def _end(octave):
-    """Where the integral over u ends in an octave."""
+    """The u at which the integral ends in an octave."""
     return _END_FILM if octave == FILM else min(_END, _END_MIDDLE + 0.7 * octave)
 
 
@@ -50,11 +53,11 @@ CUT = _end(FILM) * 2.0**-FILM
 
 
 def place_of(body, a):
-    """Octave of h/a, or FILM, and class of stiffness, its place in STIFFEST, (B,) int each."""
+    """Octave of h/a, or FILM, and class of stiffness, an index of STIFFEST or MILD; (B,) int each."""
     h_a, n = body.h / a, body.kernel.stiffness
     octave = np.floor(np.log2(h_a))
     octave = np.clip(np.where(np.isnan(octave), 0.0, octave), FILM, OCTAVES[1]).astype(int)
-    # all films share one quadrature: a film is as stiff in it as a layer of the octave's h/a with the same n h/a
+    # all films share one quadrature, in which a film is as stiff as a layer of h/a = 2^FILM with the same n h/a
     stiffness = np.where(octave == FILM, n * h_a * 2.0**-FILM, n)
     place = np.minimum(np.searchsorted(STIFFEST, stiffness), len(STIFFEST) - 1)
     sampler = body.kernel.sampler
@@ -83,7 +86,7 @@ def quadrature(octave, stiffness):
 
 class Few(NamedTuple):
     """The few nodes k (M,) of a quadrature of G nodes, where M depends on the class of stiffness; and the matrix
-    `spread` (M, G), which makes w (L - 1) at all nodes of L - 1 at the few, w being the weights."""
+    `spread` (M, G), which makes w (L - 1) at all nodes from L - 1 at the few; w are the weights."""
 
     k: np.ndarray
     spread: np.ndarray
@@ -91,11 +94,11 @@ class Few(NamedTuple):
 
 @lru_cache(maxsize=256)
 def few(sampler, octave, stiffness):
-    """The :class:`Few` nodes of an octave that is not FILM, by interpolative decomposition of random samples of w (L -
-    1)/(1 + k²), of the family of a :class:`~solver.kernels.kernel.Sampler`. J0 φ falls like 1/k²: so what is left out
-    is small beside the operator (tests/body/test_wave_rule.py).
+    """The :class:`Few` nodes of an octave other than FILM, by interpolative decomposition of random samples of
+    w (L - 1)/(1 + k²) from the family of a :class:`~solver.kernels.kernel.Sampler`. J0 φ falls like 1/k², so that the
+    error is small beside the operator (tests/body/test_wave_rule.py).
 
-    The nodes are chosen without BLAS, whose rounding may differ between machines: each would choose other nodes.
+    The nodes are chosen without BLAS: its rounding may differ between machines, and these would choose other nodes.
     """
     k, weight = quadrature(octave, stiffness)
     scale = weight / (1 + k * k)
@@ -111,13 +114,13 @@ def few(sampler, octave, stiffness):
         left[nodes] = 0.0
     R = np.array(rows)
     spread = np.linalg.solve(np.triu(R[:, nodes]), R) * (1 + k * k)
-    fill = sampler.few[stiffness] - len(nodes)  # nodes that do not count are added, so that all octaves have as many
+    fill = sampler.few[stiffness] - len(nodes)  # nodes of weight 0 are added, so that all octaves have equally many
     return Few(np.pad(k[nodes], (0, fill), mode="edge"), np.pad(scale[nodes, None] * spread, ((0, fill), (0, 0))))
 
 
 def _samples(sampler, octave, stiffness, k, scale):
-    """L - 1 and u dL/du (2 S, G), times `scale` (G,), of random kernels of a class with h/a in an octave. Where
-    the sum of |L - 1| over the nodes, about the size of the operator, is above 1, both are divided by it."""
+    """L - 1 and u dL/du (2 S, G), times `scale` (G,), of random kernels of a class with h/a in an octave. Where the
+    sum of |L - 1| over the nodes, which is about the size of the operator, is above 1, both are divided by it."""
     random, size = np.random.default_rng(0), sampler.samples[stiffness]
     share_n, share_h_a = 1.1 * np.sin(np.pi / 2 * random.random((2, size))) ** 2 - 0.05  # most at the ends, some beyond
     ends = (STIFFEST[0], sampler.mild) if stiffness == MILD else [1e-9, *STIFFEST][stiffness : stiffness + 2]

@@ -1,2 +1,2 @@
-"""The compiled core, optional: Newton's method in C with vectors, a case in each lane; numpy (:mod:`..rough`) is its
-reference, and solves the cases that it does not take."""
+"""The optional compiled core: Newton's method in C, with one case in each lane of the processor's vectors. The numpy
+code (:mod:`..rough`) is its reference and solves the cases that the core does not take."""

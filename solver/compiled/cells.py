@@ -1,7 +1,9 @@
-"""Families of cells on the coated body as the core has them: polynomials on pieces that a number's own bits choose.
+"""Families of cells on the coated body in the form of the core: polynomials on pieces, where the bits of a number give
+the piece in which it lies.
 
-A piece is one of PIECES parts of an octave of z = 1 + kappa y, with kappa so that the last octave ends where the series
-of the family do. Near y = 0 all pieces are equally wide, far from it they widen as y: the functions change as b/h does.
+A piece is one of PIECES equal parts of an octave of z = 1 + kappa y; kappa is such that the last octave ends where the
+series of the family end. Near y = 0 all pieces have about the same width and far from it their width grows like y, as
+suits functions of b/h.
 """
 
 import numpy as np
@@ -10,18 +12,18 @@ from ..laws.cell.cell_law import exponent, number, settled_slope, spot_guess
 from ..laws.cell.family import NUMBERS
 from ..numerics.kept import Kept
 
-#: As in batch.h: pieces an octave, and coefficients of a polynomial of exp(P), exp(G) and exp(Q); half as many of the
-#: first guess. The polynomials are those of the series to 1e-13 (tests/compiled/test_cells.py).
+#: As in batch.h: the pieces in an octave, and the coefficients of each polynomial for exp(P), exp(G) and exp(Q). The
+#: polynomials for the first guess have half as many. All agree with the series to 1e-13 (tests/compiled/test_cells.py).
 PIECES, ROW = 32, 8
 #: The least number of octaves.
 _OCTAVES = 2
-#: All that is kept for later calls takes at most this many bytes.
+#: Families for later calls, at most 40 MB.
 _kept = Kept(4e7)
 
 
 def cells_of(rows):
-    """The families of B cases from the rows (B, K) of their law, a list of arrays; and the address of that of each
-    case, (B,) whole numbers."""
+    """The families of B cases, a list of arrays, from the rows (B, K) of their law; and for each case the address of
+    its family, (B,) integers."""
     digests, first, index = np.unique(number(rows, "digest")[:, 0], return_index=True, return_inverse=True)
     families = [
         _kept.get((digest, rows.shape[1]), lambda i=i: _family(rows[i : i + 1]))
@@ -33,7 +35,7 @@ def cells_of(rows):
 
 @np.errstate(all="ignore")
 def _family(row):
-    """The numbers of a family as in batch.h, from its row (1, K)."""
+    """The numbers of a family in the order of batch.h, from its row (1, K)."""
     numbers = dict(zip(NUMBERS, row[0], strict=False))
     scale, end, end_r = numbers["scale"], numbers["end"], numbers["end_r"]
 
@@ -57,13 +59,14 @@ def _family(row):
 
 
 def _octaves(scale, end):
-    """kappa, and the number of octaves of 1 + kappa y from 0 to `end`."""
+    """kappa, and the number of octaves of 1 + kappa y for y from 0 to `end`."""
     octaves = max(_OCTAVES, int(np.ceil(np.log2(1 + scale * end))))
     return (2.0**octaves - 1) / end, octaves
 
 
 def _polynomials(of, kappa, octaves, count):
-    """Coefficients (PIECES * octaves, count), ascending, in t from -1 to 1 on each piece."""
+    """Coefficients (PIECES * octaves, count) of polynomials for the function `of` y, in ascending powers of t; t runs
+    from -1 to 1 on each piece."""
     piece = np.arange(PIECES * octaves)
     low, width = 2.0 ** (piece // PIECES) * (1 + piece % PIECES / PIECES), 2.0 ** (piece // PIECES) / PIECES
     nodes = np.cos(np.pi * (np.arange(count) + 0.5) / count)

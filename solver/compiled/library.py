@@ -1,7 +1,7 @@
-"""The library of the compiled core: found beside this file if it was built, and loaded when the first cases come.
+"""The library of the compiled core: if it was built it lies beside this file, and it is loaded with the first cases.
 
-The environment variable ROUGHCOAT_CORE says which path computes: "numpy", or the core with the vectors "sse2", "avx2"
-or "avx512". Without it that is the core with the widest vectors of the processor, or numpy where no core was built.
+The environment variable ROUGHCOAT_CORE selects numpy, "numpy", or the core with the vectors "sse2", "avx2" or "avx512".
+Without the variable the core with the widest vectors of the processor is used, or numpy if no core was built.
 """
 
 import os
@@ -14,10 +14,11 @@ from typing import Any
 
 import numpy as np
 
-#: Name of the file, without its suffix; its variants, the widest first; and the variable that chooses one.
+#: Name of the file without its suffix; names of the variants of the core, the one with the widest vectors first; and
+#: the environment variable that chooses one.
 NAME, VARIANTS, VARIABLE = "_core", ("avx512", "avx2", "sse2"), "ROUGHCOAT_CORE"
 
-#: LAYOUT of batch.h: a core that was built of another one would read elsewhere what this one writes.
+#: LAYOUT of batch.h. A core that was built with another layout would read the numbers of this one at wrong places.
 LAYOUT = 3
 
 _LAYERED = ("h", "m", "n", "bonded", "c1", "c2", "one_c1", "one_c2", "plus_c1", "one_c1c2")
@@ -77,7 +78,8 @@ def pointer(array: np.ndarray, start: int = 0) -> int:
 
 
 def layout() -> int:
-    """What `roughcoat_layout` of a core built of these sources returns: LAYOUT and the sizes of the structures."""
+    """The number that `roughcoat_layout` returns in a core built of these sources: it combines LAYOUT and the sizes of
+    the structures."""
     number = LAYOUT
     for structure in (CBatch, CMesh, CTable):
         number = number * 4096 + sizeof(structure)
@@ -85,7 +87,7 @@ def layout() -> int:
 
 
 def _fits(library: Any) -> bool:
-    """Whether a core has the :func:`layout` of these sources."""
+    """Whether a core was built with the :func:`layout` of these sources."""
     of = getattr(library, "roughcoat_layout", None)
     if of is None:
         return False
@@ -95,7 +97,7 @@ def _fits(library: Any) -> bool:
 
 @lru_cache(maxsize=1)
 def _library() -> Any:
-    """The library, None if it was not built, cannot be loaded, or was built of other sources (:func:`layout`)."""
+    """The library; None if it was not built, cannot be loaded, or has another :func:`layout`."""
     for suffix in EXTENSION_SUFFIXES:
         path = Path(__file__).with_name(NAME + suffix)
         if path.exists():
@@ -109,8 +111,7 @@ def _library() -> Any:
 
 @lru_cache(maxsize=len(VARIANTS))
 def _variant(name: str) -> Callable | None:
-    """The function of a variant; None if the library has none for this kind of processor, or this processor lacks its
-    vectors."""
+    """The function of a variant; None if the library does not contain it or this processor lacks its vectors."""
     has = getattr(_library(), f"roughcoat_has_{name}", None)
     if has is None or not has():
         return None
@@ -120,14 +121,14 @@ def _variant(name: str) -> Callable | None:
 
 
 def available() -> tuple[str, ...]:
-    """Names of the variants that can be used here, the widest vectors first; none where no core was built."""
+    """Names of the variants that can be used here, the widest vectors first; empty if no core was built."""
     return tuple(name for name in VARIANTS if _variant(name))
 
 
 def core() -> Callable | None:
-    """The function ``core(batch, most)`` of the variant that is chosen; None: the numpy path.
+    """The function ``core(batch, most)`` of the chosen variant; None selects the numpy code.
 
-    ValueError for a choice that does not exist, or that is not available here.
+    Raises ValueError for a choice that does not exist or is not available here.
     """
     choice = os.environ.get(VARIABLE, "")
     if choice == "numpy":

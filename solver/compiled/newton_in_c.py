@@ -1,5 +1,5 @@
-"""Newton's method by the compiled core: the cases that it takes, and numpy for the rest. Beside the cases the core gets
-structures of C: meshes, the points between their nodes, and the tables of layers."""
+"""Newton's method by the compiled core; numpy solves the cases that the core does not take. Besides the numbers of the
+cases the core gets C structures: meshes with the points between their nodes, and tables of layers."""
 
 from ctypes import addressof, byref
 
@@ -28,29 +28,32 @@ from ..status import Status
 from .cells import cells_of
 from .library import OF_MESH, OF_TABLE, CBatch, CMesh, CPoints, CRows, CTable, core, pointer
 
-#: The laws and controls of the core, in the order of batch.h. Behind these laws, CELL stands for those on the coated
-#: body whose curve is that of a family.
+#: The laws and controls of the core, in the order of batch.h. There, the law CELL follows these: it stands for all laws
+#: on the coated body whose curve is that of a family.
 TAKEN, _CONTROLS = ("disc_cell", "power_law", "smooth"), ("P", "a", "D")
-#: The bases of the core: it solves nearly all cases of these and the laws above.
+#: The bases of the core: it solves nearly all cases with these bases and the laws above.
 BASES = ("half_space", "thin_layer", "layered")
 _SCALARS = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "residual", "error", "profile_error")
-#: Most cases of one call of the core. Its memory is 14 MB, and groups of like cases are full.
+#: Most cases in one call of the core: so many fill its groups of similar cases, and it needs 14 MB.
 _CHUNK = 16_384
-#: Most families of cells on a coated body in one call: of 10 to 60 kB each. Where there are more, a call has no more
-#: cases than this.
+#: Most families of cells on a coated body in one call, of 10 to 60 kB each: if there are more, a call has at most
+#: _FAMILIES cases.
 _FAMILIES = 1024
-#: Meshes of the core, and the finer one of the last. Cases that need more are left to numpy, which goes on to panels.
+#: The meshes of the core, and the mesh with which the error on its last one is estimated. Cases that need finer meshes
+#: are left to numpy, which continues with panels.
 _MESHES, _FINER = LADDER[:-1], LADDER[-1]
-#: Most numbers k of a quadrature for which there is room in the core. The thinnest layer that is no film has 2,180.
+#: Most nodes k of a quadrature for which the core has room. The thinnest layer that is not treated as a film has 2,180.
 MOST_WAVES = 4096
-#: On meshes of up to this many nodes the matrices are products with one table. On finer ones that takes long to make.
+#: On meshes of at most _PRODUCT nodes the matrices are products with one table, which takes too long to form on finer
+#: meshes.
 _PRODUCT = 32
-#: All that is kept for later calls takes at most this many bytes.
+#: Meshes and tables for later calls, at most 200 MB.
 _kept = Kept(2e8)
 
 
 def solve_newton(cases, rtol, nodes, limit, x):
-    """As :func:`~solver.rough.adaptive.solve_newton`, which solves the cases that the core hands back."""
+    """Like :func:`~solver.rough.adaptive.solve_newton`, which solves the cases that the core does not take or
+    returns unsolved."""
     function = core()
     index = np.flatnonzero(_taken(cases, nodes)) if function and not limit else ()
     if not len(index):
@@ -67,7 +70,7 @@ def solve_newton(cases, rtol, nodes, limit, x):
 
 
 def _taken(cases, nodes):
-    """(B,) bool: the cases of which the core knows law, body and punch, and whose mesh is free."""
+    """(B,) bool: the core has the law, body and punch of the case, and its mesh if the case demands one."""
     law, body = cases.law.law, cases.body
     taken = (nodes == 0) | one_of(nodes, _MESHES)
     if _law_of(law) is None or not isinstance(cases.shape, Paraboloid):
@@ -82,14 +85,14 @@ def _taken(cases, nodes):
 
 
 def _law_of(law):
-    """The number of a law in batch.h; None of those that the core does not know."""
+    """The number of a law in batch.h; None if the core does not have it."""
     if law.curve is spot_curve:
         return len(TAKEN)
     return next((i for i, name in enumerate(TAKEN) if law is LAWS[name]), None)
 
 
 def _solved(function, cases, rtol, nodes, x):
-    """:class:`~solver.solution.Solution` by the core; `nodes` is 0 of the cases that are handed back."""
+    """:class:`~solver.solution.Solution` by the core; its `nodes` are 0 for cases that are returned unsolved."""
     size, points, s = len(rtol), len(x), np.sqrt((1 - x) * (1 + x))
     place = np.flatnonzero(s > 0)
     solved_at = off_edge(s[place], cases.law.rough)
@@ -137,13 +140,14 @@ def _inputs(cases, rtol):
 
 
 class _Callbacks:
-    """The callbacks of the core, and the errors that they raise: C would lose these."""
+    """The callbacks of the core. Errors that they raise are collected here, because they cannot pass through C."""
 
     def __init__(self, s_bytes):
         self.s_bytes, self.structures, self.raised = s_bytes, [], []
 
     def address_of(self, make):
-        """A callback that returns the address of what `make` returns, or 0. The structure lives until the call ends."""
+        """A callback that returns the address of the structure from `make`, or 0 if there is none. The structures live
+        as long as this object."""
 
         def of(*key):
             try:
@@ -162,7 +166,7 @@ class _Callbacks:
 
 
 class CStructure(tuple):
-    """A structure of C and the arrays to which it points: ``(structure, [arrays])``."""
+    """A C structure and the arrays to which it points: ``(structure, [arrays])``."""
 
     @property
     def address(self):
@@ -170,12 +174,12 @@ class CStructure(tuple):
 
 
 def mesh_for(n, s_bytes):
-    """:class:`CStructure` of the :class:`.library.CMesh` of n nodes, with the points of profiles."""
+    """:class:`CStructure` with the :class:`.library.CMesh` of n nodes and the points of profiles."""
     return _kept.get(("mesh", n, s_bytes), lambda: _mesh(mesh_of(n), np.frombuffer(s_bytes)))
 
 
 def table_for(n, octave, stiffness, s_bytes):
-    """:class:`CStructure` of the :class:`.library.CTable` of an octave of h/a and a class of stiffness on n nodes;
+    """:class:`CStructure` with the :class:`.library.CTable` of an octave of h/a and a class of stiffness on n nodes;
     None if the core has no room for it."""
     key = "table", n, octave, stiffness, s_bytes
     return _kept.get(key, lambda: _table(mesh_of(n), octave, stiffness, np.frombuffer(s_bytes)))
@@ -207,7 +211,8 @@ def _mesh(mesh, profile):
 
 
 def _blocks(array):
-    """The numbers of an array (r, c), 8 of c together, zeros behind the last: (blocks, r, 8), four or eight or so."""
+    """An array (r, c) as blocks of 8 columns, (blocks, r, 8), where zeros fill the columns up to a multiple of 32: the
+    number of blocks is a multiple of 4."""
     padded = np.pad(array, ((0, 0), (0, -array.shape[1] % 32)))
     return padded.reshape(len(array), -1, 8).transpose(1, 0, 2)
 
@@ -220,7 +225,7 @@ def _table(mesh, octave, stiffness, profile):
         return pointer(arrays[-1])
 
     def rows(mesh):
-        """The product is there whatever the number of cases, so that their bits do not depend on it."""
+        """The product is formed for any number of cases, so that the bits of a case do not depend on the number."""
         of_mesh = table(mesh, SAMPLER, octave, stiffness, mesh.n <= _PRODUCT)
         J, phi, columns = of_mesh.J, of_mesh.phi, at(_blocks(of_mesh.phi.T))
         if mesh.n <= _PRODUCT:

@@ -1,4 +1,4 @@
-"""Stresses and displacements in layer and body under a known pressure: docs/stresses.md."""
+"""Stresses and displacements in layer and body under a given pressure: docs/stresses.md."""
 
 from .polynomial import of_pressure
 

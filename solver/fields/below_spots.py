@@ -1,14 +1,14 @@
-"""The field below a spot of a periodic cell, beside its axis too: docs/stresses.md, Below a spot.
+"""The field below a spot of a periodic cell, on its axis and off it: docs/stresses.md, Below a spot.
 
-Of the waves G != 0 of the lattice, averaged over the angle about the axis, with the transfer u, S, T, M of the coated
-body per unit pressure and q^ of the spot,
+The waves G != 0 of the lattice, averaged over the angle about the axis, cause the stresses
 
     sz = 2 pi Nbar sum q^(G) S J0(Gr),   trz = 2 pi Nbar sum q^(G) T J1(Gr),
-    sr + st = 2 pi Nbar sum q^(G) M J0(Gr),   sr - st = -2 pi Nbar sum q^(G) u J2(Gr).
+    sr + st = 2 pi Nbar sum q^(G) M J0(Gr),   sr - st = -2 pi Nbar sum q^(G) u J2(Gr),
 
-In the layer the transfer is that of a half-space and a difference that falls as waves from the interface do. Of the
-half-space the lone spot is a closed form over k, to which the sum over G less the integral over k of the long waves
-comes, as on the axis (:mod:`~solver.laws.cell.axis`).
+where u, S, T, M are the transfer of the coated body per unit pressure, and q^ is that of the spot. In the layer the
+transfer is that of a half-space plus a difference that decays like waves from the interface. For the half-space, a lone
+spot is a closed form over k. To it is added the difference, for the long waves, between the sum over G and the integral
+over k, as on the axis (:mod:`~solver.laws.cell.axis`).
 """
 
 import numpy as np
@@ -25,13 +25,14 @@ from . import normal
 from .pressure import Pressure
 from .waves import bessel
 
-#: Waves above u = kh reach the interface with less than e^-u of their pressure: 1e-15; and where some 1e-7 do.
+#: Largest u = kh of the waves: they reach the interface with e^-u of their pressure, less than 1e-15; and for a rough
+#: field, some 1e-8.
 EXACT, ROUGH = 38.0, 18.0
-#: Below this X = kh the state is carried from the surface down (:mod:`~solver.kernels.transfer`).
+#: Below this X = kh the state is integrated from the surface down (:mod:`~solver.kernels.transfer`).
 _THIN = 1.0
 #: Nodes of the pressure of a spot on each panel of s = sqrt(1 - (r/b)²).
 _NODES = 32
-#: Numbers in an array of states: so many waves are taken at once.
+#: Largest number of entries of an array of states, which limits the number of waves at a time.
 _AT_ONCE = 200_000
 
 
@@ -40,9 +41,10 @@ def below_spot(cell, spot, layers, r, z, region, last=EXACT):
 
     cell, spot : :class:`~solver.laws.cell.spot.Cell` and :class:`~solver.laws.cell.spot.CellSpots` of one radius
     layers : :class:`~solver.kernels.transfer.Layered` of the case
-    r, z : (R,), radii from the axis, which with b are less than the distance of neighbours; (Z,), depths, in l
-    region : 0, in the first layer, z <= h; 1 and so on, in what is below it; of N layers, N is the body
-    last : waves of u = kh up to this are taken
+    r : (R,), radii from the axis, in l; r + b must be less than the distance of neighbours
+    z : (Z,), depths in l
+    region : the region of all depths: 0, the first layer, z <= h, to N, the body under N layers
+    last : largest u = kh of the waves
     """
     lattice, b, h = "hex" if cell.lattice == "disc" else cell.lattice, spot.b[0], 1 / cell.pitch
     k, c = lattice_waves(lattice, last * cell.pitch, b + r.max())
@@ -53,21 +55,21 @@ def below_spot(cell, spot, layers, r, z, region, last=EXACT):
 
 
 def below_summit(cell, b, p, layers, r, z, region, last=EXACT):
-    """The same below a spot of its own load, of random heights: the waves of the cells of equal heights with its
-    radius b and the nominal pressure p, in units E = Ra = l = 1, and what it has beside these as a lone spot.
+    """As :func:`below_spot`, for a spot with a load of its own, as with random heights: the field of the cells of equal
+    heights with the same radius b and nominal pressure p, plus the field of the rest of its pressure as a lone spot.
 
-    cell : of disc cells; the other arguments are those of :func:`below_spot`
+    cell : a disc cell; p : in units E = Ra = l = 1
     """
     of_lattice, lone = pieces(cell, b), pieces(cell._replace(lattice="lone"), b)
     both = parts(cell, np.array([b]), of_lattice, lone)
-    own, share = both.spots(np.array([p])), p / both.equal.p[0]
+    spot, share = both.spots(np.array([p])), p / both.equal.p[0]
     equal = both.equal._replace(phi=share * both.equal.phi, fall=share * both.equal.fall)
-    rest = own._replace(phi=own.phi - equal.phi, fall=own.fall - equal.fall)
+    rest = spot._replace(phi=spot.phi - equal.phi, fall=spot.fall - equal.fall)
     return below_spot(cell, equal, layers, r, z, region, last) + _below_lone(cell, rest, layers, r, z, region)
 
 
 def _below_lone(cell, spot, layers, r, z, region):
-    """sr, st, sz and trz (4, Z, R) below a lone spot, of waves to 1e-8 of their pressure."""
+    """sr, st, sz and trz (4, Z, R) below a lone spot, by waves down to 1e-8 of their pressure."""
     k, c = lone_waves(cell.pitch, (spot.b[0] + r.max()) / 2)
     whole = _of_layers(k, c * k * transform(spot, k), 1 / cell.pitch, layers, r, z, region)
     if not region:
@@ -76,7 +78,8 @@ def _below_lone(cell, spot, layers, r, z, region):
 
 
 def _of_layers(k, weights, h, layers, r, z, region):
-    """The four integrals (4, Z, R) of waves k with weights (K,), in a region, of the first layer less a half-space."""
+    """The four integrals (4, Z, R) over waves k with weights (K,) in a region. In the first layer they are less those
+    of a half-space."""
     region = int(region)
     nu, whole = float(layers.poisson[0, region]), np.zeros((4, len(z), len(r)))
     for thin in (True, False):
@@ -89,7 +92,7 @@ def _of_layers(k, weights, h, layers, r, z, region):
 
 
 def _summed(state, nu, weights, J):
-    """The four integrals (4, Z, R) of states (Z, K) of waves with their weights (K,)."""
+    """The four integrals (4, Z, R) from the states (Z, K) of waves and their weights (K,)."""
     u, _, S, T = state
     rows = (radial_sum(state, nu), 0), (-u, 2), (S, 0), (T, 1)
     return np.stack([(values * weights) @ J[order] for values, order in rows])

@@ -1,4 +1,4 @@
-"""The fields of solved contacts: pressures at the nodes are found again, at the radius of each."""
+"""The fields of solved contacts, whose pressures at the nodes are solved for again at the radius of each."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -13,7 +13,7 @@ from ..numerics.ladder import STACK
 from ..numerics.threads import one_blas_thread
 from ..rough.answer import answer
 from ..scaling import as_cases, dimensionless
-from ..sensitivity.same_mesh import found_again, meshes, stacks
+from ..sensitivity.same_mesh import meshes, solve_again, stacks
 from ..sensitivity.solved_cases import solved_cases
 from ..shapes import is_flat, shaped
 from ..solve import solve
@@ -26,29 +26,29 @@ from .shaped import corners, shaped_pressures
 from .stacks.section import SUBLAYERS, Section
 from .waves import MISSED, THINNEST
 
-#: The pressure is solved again with at most this rtol, whatever that of the contact was.
+#: Largest rtol with which the pressure is solved for again, whatever that of the contact was.
 _RTOL = 1e-8
-#: Least error of the stresses: `profile_error` says less than that where it may be twice too small
+#: Smallest error of the stresses: `profile_error` may be half of the true one where it is below this
 #: (tools/errors/stress_errors.py).
 _LEAST = 1e-10
-#: The stresses in a graded layer change by at most this times as much as the load with the number of sublayers
-#: (tests/stacks/test_stresses_of_stacks.py).
+#: With the number of sublayers of a graded layer, the relative change of the stresses is at most this times that of the
+#: load (tests/stacks/test_stresses_of_stacks.py).
 _OF_GRADED = 3.0
-#: A depth over that of an interface, up to which it lies in the upper layer: places of extremes may exceed h by their
-#: last bits.
+#: Depths up to this times that of an interface lie in the upper layer: places of extremes may exceed h by their last
+#: bits.
 _INTERFACE = 1 + 1e-14
-#: Numbers in an array of the integrals of several cases.
+#: Largest number of entries of an array of integrals of several cases.
 _AT_ONCE = 4_000_000
 
 
 class Fields(NamedTuple):
     """The fields of B contacts, in the units of their problem; NaN where the contact is not solved.
 
-    inside : name -> (B, Z, R), at the depths and radii that were asked for: sr, st, sz, trz, ur, uz; with mu > 0 also
-        the amplitudes of :func:`~.polynomial.of_pressure`
-    above, below : the same at the interfaces, (B, J, R), J the most layers of a case: in the layer above and in what is
-        below; NaN without a layer
-    error : (B,), of any stress, over the largest
+    inside : name -> (B, Z, R), at the given depths and radii: sr, st, sz, trz, ur, uz; with mu > 0 also the amplitudes
+        of :func:`~.polynomial.of_pressure`
+    above, below : name -> (B, J, R), at the interfaces, on their upper and on their lower side; J is the largest number
+        of layers of a case; NaN without a layer
+    error : (B,), error of any stress over the largest stress
     """
 
     inside: dict
@@ -63,16 +63,16 @@ def of_contacts(problem, solution, r, z, mu=0.0):
     """:class:`Fields` of solved contacts, a batch of any mixture.
 
     Each contact is solved again with its radius given. A thin layer has the field of the exact layer under the pressure
-    of the thin one; an elastic punch changes the pressure alone.
+    of the thin layer. An elastic punch only changes the pressure.
 
-    problem, solution : B cases and their :class:`~solver.solution.Solution`, of which a, status and model_used count
+    problem, solution : B cases, and their :class:`~solver.solution.Solution`
     r, z : (R,), (Z,), radii and depths in units of a, >= 0
     mu : >= 0, the coefficient of friction
     """
     r, z = np.asarray(r, dtype=float), np.asarray(z, dtype=float)
     names = [*normal.NAMES, *(sliding.NAMES if mu > 0 else ())]
     J = max(1, numbers_of(problem.parameters))
-    made = {name: np.full((len(problem), len(z) + 2 * J, len(r)), np.nan) for name in names}
+    fields = {name: np.full((len(problem), len(z) + 2 * J, len(r)), np.nan) for name in names}
     error, index = np.full(len(problem), np.nan), np.flatnonzero(have_fields(problem, solution))
     if len(index):
         part, ended = problem.take(index), solution.take(index)
@@ -81,45 +81,46 @@ def of_contacts(problem, solution, r, z, mu=0.0):
         film = ~is_bare(scaled.base) & (scaled.h / a < THINNEST)
         for rows, pressure, missed in pressures_of(scaled, ended, a):
             here = index[rows]
-            in_film = np.where(are_infinite(scaled.take(rows)), 1.0, MISSED)  # next to an infinite edge, unknown
+            in_film = np.where(are_infinite(scaled.take(rows)), 1.0, MISSED)  # near an infinite edge it is unknown
             error[here] = np.maximum(missed, np.where(film[rows], in_film, 0.0))
             for some, field in _of_pressures(scaled.take(rows), a[rows], pressure, r, z, mu):
                 units = problem.E2[here[some], None, None], solution.a[here[some], None, None]
                 depths = np.append(np.arange(len(z)), len(z) + _ends(field["sr"].shape[1] - len(z), J))
                 for name, values in field.items():
-                    made[name][here[some, None], depths] = values * units[name.startswith("u")]
+                    fields[name][here[some, None], depths] = values * units[name.startswith("u")]
         on_surface = np.isin(np.arange(len(z) + 2 * J), np.flatnonzero(z == 0))[:, None]
         at_tip = on_surface & (r == corners(scaled, a)[:, None])[:, None]
-        made["sz"][index] = np.where(at_tip, -np.inf, made["sz"][index])
-        infinite = np.isinf(made["sz"])
+        fields["sz"][index] = np.where(at_tip, -np.inf, fields["sz"][index])
+        infinite = np.isinf(fields["sz"])
         for name in ("sr", "st"):
-            made[name] = np.where(infinite, made["sz"], made[name])
+            fields[name] = np.where(infinite, fields["sz"], fields[name])
     parts = (slice(len(z)), slice(len(z), len(z) + J), slice(len(z) + J, None))
-    return Fields(*({name: values[:, part] for name, values in made.items()} for part in parts), error)
+    return Fields(*({name: values[:, part] for name, values in fields.items()} for part in parts), error)
 
 
 def _ends(rows, J):
-    """Of `rows` at interfaces, first those above and then those below, their places among J of each."""
+    """The places, among J upper and J lower sides of interfaces, of `rows` that are half upper and half lower sides."""
     return np.concatenate([np.arange(rows // 2), J + np.arange(rows // 2)])
 
 
 def have_fields(problem, solution):
-    """(B,) bool: solved contacts of which there are stresses. There are none yet of what attracts outside of the
-    contact, and of rough punches of other shapes than the paraboloid."""
+    """(B,) bool: solved contacts for which stresses can be computed. They cannot be yet if attraction acts outside the
+    contact, or for rough punches that are not paraboloids."""
     without = (problem.w_adhesion > 0) & (problem.adhesion != "jkr")
     return (solution.status == Status.CONVERGED) & ~without & ~(shaped(problem) & problem.rough())
 
 
 def are_infinite(problem):
-    """(B,) bool: contacts whose stresses are infinite at the edge, as those of flat punches and of what sticks."""
+    """(B,) bool: contacts whose stresses are infinite at the edge: those of flat punches, and those with adhesion."""
     return is_flat(problem) | (problem.w_adhesion > 0)
 
 
 def pressures_of(scaled, solution, a, with_errors=True):
-    """Yield indices of cases, their :class:`~.pressure.Pressure` in units of E2*, and its error (b,). That on a graded
-    layer is the one of its sublayers, whose load differs from that of the solution by about as much as the stresses.
+    """Yield indices of cases, their :class:`~.pressure.Pressure` in units of E2*, and its error (b,). On a graded layer
+    the pressure is that with a number of sublayers. The load then differs from that of the solution, and the stresses
+    by about as much.
 
-    with_errors : without that of profiles the error takes less time, as long as finding the pressure
+    with_errors : whether the error includes that of profiles, which takes as long as the pressure
     """
     graded = is_graded(scaled)
     if graded.any():
@@ -145,31 +146,31 @@ def _of_paraboloids(scaled, solution, a, with_errors):
     named = solved_cases(scaled, solution.model_used).named
     fine = np.minimum(named.rtol, _RTOL)
     at_a = replace(named, control="a", value=a).but(rtol=fine, nodes=0, max_iterations=0)
-    again = solve(at_a)
-    now = solved_cases(at_a, again.model_used)
-    for rows, nodes in stacks(now.written, meshes(again, at_a), a, STACK):
+    at_radii = solve(at_a)
+    now = solved_cases(at_a, at_radii.model_used)
+    for rows, nodes in stacks(now.written, meshes(at_radii, at_a), a, STACK):
         some = now.take(rows)
-        iterated = found_again(as_cases(some.written), nodes, a[rows], some.written.rtol)
+        iterated = solve_again(as_cases(some.written), nodes, a[rows], some.written.rtol)
         q, p_star = iterated.at.curve.q, iterated.at.cases.law.p_star * some.E2
-        # panels may be others than those of the solution: their own error counts
+        # panels may differ from those of the solution: their own error counts
         off = answer(iterated, np.zeros(0)).solution.profile_error if with_errors else 0.0
         error = np.where(iterated.closed, off, np.nan)
         pressure = Pressure(iterated.at.mesh, np.where(np.isfinite(error)[:, None], p_star[:, None] * q, np.nan))
-        edge = np.abs(pressure.at_edge()) / np.abs(pressure.values).max(axis=1)  # ought to be 0, and profiles say so
+        edge = np.abs(pressure.at_edge()) / np.abs(pressure.values).max(axis=1)  # should be 0, as it is in profiles
         yield rows, pressure, error + edge + _LEAST
 
 
 def bodies_of(scaled, bare):
-    """Layer and body of cases, :class:`~solver.kernels.two_layers.TwoLayers`; of bare half-spaces two of one material,
-    bonded, whatever the problem says of an interface."""
+    """Layer and body of cases, :class:`~solver.kernels.two_layers.TwoLayers`. A bare half-space becomes a bonded layer
+    on a body of the same material, whatever interface the problem has."""
     if not bare:
         return TwoLayers.of(scaled)
     return TwoLayers(np.ones(len(scaled)), scaled.nu2, scaled.nu2, np.ones(len(scaled), dtype=bool))
 
 
 def _of_pressures(scaled, a, pressure, r, z, mu):
-    """Yield indices of cases of one kind, and their fields, name -> (b, Z + 2J, R): at z, at all interfaces in what is
-    above, and in what is below."""
+    """Yield indices of cases of one kind, and their fields, name -> (b, Z + 2J, R): at z, on the upper sides of all
+    interfaces, and on their lower sides."""
     stacked = is_stack(scaled.base)
     for i in np.flatnonzero(stacked):
         yield np.array([i]), _of_stack(scaled.take([i]), a[[i]], pressure.take([i]), r, z, mu)
@@ -180,7 +181,7 @@ def _of_pressures(scaled, a, pressure, r, z, mu):
 
 
 def _of_stack(scaled, a, pressure, r, z, mu):
-    """The same fields (1, Z + 2N, R) of one case on a stack of N layers."""
+    """As :func:`_of_pressures`, (1, Z + 2N, R), for one case on a stack of N layers."""
     section = Section.of(scaled, a, pressure, mu, np.zeros(max(1, numbers_of(scaled.parameters))))
     ends = section.ends
     N = len(ends)
@@ -190,7 +191,7 @@ def _of_stack(scaled, a, pressure, r, z, mu):
 
 
 def _of_layers(scaled, a, pressure, r, z, mu):
-    """The same fields (b, Z + 2, R) of cases with one layer, or none."""
+    """As :func:`_of_pressures`, (b, Z + 2, R), for cases with one layer or none."""
     bare = is_bare(scaled.base)
     h = np.where(bare, 1.0, scaled.h / a)
     depths = np.concatenate([np.tile(z, (len(h), 1)), h[:, None], h[:, None]], axis=1)
@@ -207,10 +208,10 @@ def _of_layers(scaled, a, pressure, r, z, mu):
             G2 = np.where(rows[1], 1 - layers.nu2[:, None], (layer_modulus(layers.n) * (1 - layers.nu1))[:, None])
             field = normal.components(integrals(normal.NORMAL, layers, *here), G2[..., None])
             if mu > 0:
-                rubbed = sliding.components(integrals(sliding.SLIDING, layers, *here), G2[..., None])
+                friction = sliding.components(integrals(sliding.SLIDING, layers, *here), G2[..., None])
                 free = (~layers.bonded)[:, None, None]
-                rubbed["ux_0"] = np.where(free, np.nan, rubbed["ux_0"])
-                field |= {name: mu * values for name, values in rubbed.items()}
+                friction["ux_0"] = np.where(free, np.nan, friction["ux_0"])
+                field |= {name: mu * values for name, values in friction.items()}
             if bare[some[0]]:
                 for values in field.values():
                     values[:, -2:] = np.nan

@@ -1,7 +1,8 @@
-"""The integrals over k of a half-space, in closed form over k: docs/stresses.md, Near the surface.
+"""The integrals over k for a half-space, in closed form: docs/stress_fields.md, Near the surface.
 
-With Abel's φ, k p^(k) = ∫₀¹ φ(t) sin(kt) dt, each integral over k is one over t of an elementary function, regular down
-to the surface: E_m = ∫ p^ k e^(-kz) J_m dk, F_m = ∫ p^ k (kz) e^(-kz) J_m dk, D_m = ∫ p^ e^(-kz) J_m dk.
+They are E_m = ∫ p^ k e^(-kz) J_m dk, F_m = ∫ p^ k (kz) e^(-kz) J_m dk and D_m = ∫ p^ e^(-kz) J_m dk. With Abel's φ,
+k p^(k) = ∫₀¹ φ(t) sin(kt) dt, each of them is an integral over t of an elementary function, regular down to the
+surface.
 """
 
 from typing import NamedTuple
@@ -10,21 +11,22 @@ import numpy as np
 
 from ..numerics.quadrature import gauss_legendre
 
-#: t = sin(angle): Gauss points on each panel of the angle. Panels are graded to t = r, where the integrand has its
-#: singularity, at the distance z in the complex plane; with 12 points Hertz is right to 7e-13, with 16 to rounding
+#: Gauss points on each panel of the angle, t = sin(angle). The panels shrink towards t = r, where the integrand has a
+#: singularity at the distance z in the complex plane. With 12 points Hertz is right to 7e-13, with 16 to rounding
 #: (tests/fields/test_half_space.py).
 _POINTS = 16
 #: Most halvings of a panel towards t = r: on the surface, where D has a root there, and below it, where E and F change
-#: by the root of z. Depths share the nodes of the next multiple of _STEP halvings.
+#: by the root of z. The number of halvings is rounded up to a multiple of _STEP, so that depths share nodes.
 _ON_SURFACE, _BELOW, _STEP = 39, 69, 3
-#: On a panel of the angle no wider than this over the number of nodes the polynomial has at most 5 of its waves.
+#: A panel of the angle is at most this wide, over the number of nodes: the polynomial has at most 5 of its waves there.
 _WIDTH = 10.0
-#: Added where a panel without width has t = r or t = 0 on the surface.
+#: Added to denominators that are 0 on a panel without width, where t = r or t = 0 on the surface.
 _TINY = 1e-200
 
 
 class Integrals(NamedTuple):
-    """E, F (m + 1, B, Z, R) for the orders 0 to m, D (3, B, Z, R) for 0, 1, 2, of B pressures at Z depths, R radii."""
+    """E and F (m + 1, B, Z, R) for the orders 0 to m, and D (3, B, Z, R) for 0, 1, 2, of B pressures at Z depths and R
+    radii."""
 
     E: np.ndarray
     F: np.ndarray
@@ -34,8 +36,8 @@ class Integrals(NamedTuple):
 def integrals(pressure, r, z, most=2, displacements=True):
     """:class:`Integrals` of a :class:`~.pressure.Pressure` at radii r (R,) and depths z (Z,), both in a.
 
-    most : largest order m of E and F. On the surface, z = 0, E and F are 0: only D is an integral there
-    displacements : without them D is 0
+    most : largest order m of E and F. On the surface, z = 0, E and F are set to 0: only D is an integral there
+    displacements : whether D is needed; otherwise it is 0
     """
     B = len(pressure.values)
     E, F, D = (np.zeros((count, B, len(z), len(r))) for count in (most + 1, most + 1, 3))
@@ -52,7 +54,8 @@ def integrals(pressure, r, z, most=2, displacements=True):
 
 
 class Nodes(NamedTuple):
-    """Nodes t (R, T) of the integrals over t, their distance t - r, and φ dt there (B, R, T)."""
+    """Nodes t (R, T) of the integrals over t, their distance `beyond` = t - r, and the `weight` φ dt there (B, R,
+    T)."""
 
     t: np.ndarray
     beyond: np.ndarray
@@ -60,7 +63,7 @@ class Nodes(NamedTuple):
 
     @classmethod
     def of(cls, pressure, r, halvings):
-        """For radii r (R,), on panels halved so many times towards t = r."""
+        """The nodes for radii r (R,), on panels that are halved `halvings` times towards t = r."""
         t, beyond, s, width = _places(pressure.mesh, r, halvings)
         density = pressure.density(s) * s + (2 / np.pi * pressure.at_edge())[:, None, None]
         weight = density * t * width
@@ -72,7 +75,7 @@ class Nodes(NamedTuple):
 
     @classmethod
     def of_each(cls, pressure, r, halvings):
-        """The same, weights (R, T), of as many cases as radii: each at its own."""
+        """As :meth:`of`, for as many cases as radii, each at its own radius; the weights are (R, T)."""
         t, beyond, s, width = _places(pressure.mesh, r, halvings)
         density = pressure.density_of_each(s) * s + (2 / np.pi * pressure.at_edge())[:, None]
         weight = density * t * width
@@ -83,7 +86,7 @@ class Nodes(NamedTuple):
 
 
 def _places(mesh, r, halvings):
-    """Nodes t (R, T) for radii r (R,), their distance t - r, s = sqrt(1 - t²), and the width of each in the angle."""
+    """Nodes t (R, T) for radii r (R,), their distance t - r, s = sqrt(1 - t²), and their weights in the angle."""
     centre = np.arcsin(np.minimum(r, 1.0))[:, None]
     fixed = np.arccos(np.array(mesh.breaks[::-1]))
     widths = np.diff(fixed)
@@ -92,7 +95,7 @@ def _places(mesh, r, halvings):
     fixed = np.concatenate([low + width * np.arange(n) / n for low, width, n in starts])
     graded = np.pi / 2 * 0.5 ** np.arange(1, halvings + 1)
     graded = np.concatenate([-graded, [0.0], graded]) + 0 * centre
-    # distances from the centre, because angles lose the digits of small ones
+    # the variable is the distance from the centre, because angles lose the digits of small distances
     ends = np.concatenate([graded, fixed - centre, np.pi / 2 - centre], axis=1)
     ends = np.sort(np.clip(ends, -centre, np.pi / 2 - centre), axis=1)
     x, w = gauss_legendre(_POINTS)
@@ -105,12 +108,12 @@ def _places(mesh, r, halvings):
 
 
 def _halvings(r, z):
-    """(Z,) int: how often panels are halved, until they are as narrow as the singularity is far away from any r."""
+    """(Z,) int: number of halvings after which panels are as narrow as the distance of the singularity, for any r."""
     return halvings_at(r, z[:, None]).max(axis=1)
 
 
 def halvings_at(r, z):
-    """The same at each of the points r, z, which broadcast."""
+    """As :func:`_halvings`, for each of the points r, z, which broadcast."""
     most = np.where(z == 0, _ON_SURFACE, _BELOW)
     far = np.abs(np.arcsin(r + 1j * z).imag)
     needed = np.ceil(np.log2(np.pi / 2 / np.maximum(far, 2.0 ** -(most - 1))) / _STEP).astype(int)
@@ -118,9 +121,9 @@ def halvings_at(r, z):
 
 
 def _kernels(nodes, r, z, most, displacements):
-    """Kernels (R, T) of E, F, D, lists over the order, at the depth z."""
+    """Kernels (R, T) of E, F and D at the depth z, a list over the order each."""
     t = nodes.t
-    real, imaginary = z * z - nodes.beyond * (t + r), z * t  # of rho², the latter over -2
+    real, imaginary = z * z - nodes.beyond * (t + r), z * t  # real part of rho², and its imaginary part over -2
     large = np.sqrt((np.hypot(real, 2 * imaginary) + np.abs(real)) / 2) + _TINY
     small = imaginary / large
     rho = np.where(real >= 0, large - 1j * small, small - 1j * large)
@@ -141,8 +144,8 @@ def _kernels(nodes, r, z, most, displacements):
 def on_surface(pressure, r):
     """E_1 and E_3 (2, B, R) at z = 0 and radii r (R,).
 
-    E_m = ∫ φ sin(mb) db with t = r sin(b), up to t = 1. For r = 1 this is smooth in the angle, elsewhere its panels are
-    halved towards t = min(1, r) until the other root is not near.
+    E_m = ∫ φ sin(mb) db with t = r sin(b), up to t = 1. For r = 1 this is smooth in the angle. For other radii the
+    panels are halved towards t = min(1, r), until the other root is not near.
     """
     inner = np.minimum(r, 1.0)[:, None]
     fixed = np.sqrt(np.maximum(1 - np.array(pressure.mesh.breaks[::-1]) ** 2, 0.0))

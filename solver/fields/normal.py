@@ -1,4 +1,4 @@
-"""The field of normal pressure: docs/stresses.md, Waves."""
+"""The field of normal pressure: docs/stress_fields.md, Waves."""
 
 import numpy as np
 
@@ -8,18 +8,19 @@ from .waves import Load
 
 
 def amplitudes(waves, row, z):
-    """Of sr + st, sr - st, sz, trz, 2 G ur and 2 G uz."""
+    """The amplitudes of sr + st, sr - st, sz, trz, 2 G ur and 2 G uz."""
     u, w, S, T = v = waves.state(row.region, z, row.less)
     return radial_sum(v, waves.nu[:, row.region, None, None]), -u, S, T, u, w
 
 
 def stress_parts(E, F, nu):
-    """sr + st, sr - st, sz, trz of half-spaces, of the integrals E_m and F_m of :func:`~.half_space.integrals`."""
+    """sr + st, sr - st, sz, trz of half-spaces, from the integrals E_m and F_m of :func:`~.half_space.integrals`."""
     return [F[0] - (1 + 2 * nu) * E[0], (1 - 2 * nu) * E[2] - F[2], -(E[0] + F[0]), -F[1]]
 
 
 def in_closed_form(pressure, r, z, nu, displacements=True):
-    """The same (6 or 4, B, Z, R) of half-spaces of Poisson ratios nu (B,), at radii r (R,) and depths z (Z,) in a."""
+    """The quantities of :func:`amplitudes`, (6 or 4, B, Z, R), for half-spaces with Poisson ratios nu (B,), at radii r
+    (R,) and depths z (Z,) in a."""
     nu, depth = nu[:, None, None], z[:, None]
     E, F, D = integrals(pressure, r, z, displacements=displacements)
     parts = stress_parts(E, F, nu)
@@ -38,7 +39,7 @@ LOAD = NORMAL = Load((-1.0, 0.0), (0, 2, 0, 1, 1, 0), 4, amplitudes, in_closed_f
 
 
 def components(whole, G2=None):
-    """sr, st, sz, trz, and if there ur, uz of these; G2 : 2 G, what broadcasts."""
+    """sr, st, sz, trz, and ur, uz if `whole` has the displacements, from its quantities; G2 : 2 G, which broadcasts."""
     total, difference, sz, trz, *displacements = whole
     parts = [(total + difference) / 2, (total - difference) / 2, sz, trz, *(v / G2 for v in displacements)]
     return dict(zip(NAMES, parts, strict=False))

@@ -15,14 +15,14 @@ from .field import integrals
 from .pressure import Pressure
 from .waves import farthest
 
-#: Nodes that are tried: a polynomial of fewer degrees is told by the first that has all of it.
+#: Numbers of nodes that are tried in turn: the first that represents the polynomial exactly is used.
 _NODES = (6, 16, 32, 64)
-#: A polynomial is right to this part of its largest value at points between the nodes; a pressure that is none of up
-#: to 63 degrees is not.
+#: The pressure is represented exactly if its error between the nodes is at most _SAME times its largest value. If it is
+#: above _NONE even with the most nodes, the pressure is not a polynomial of up to 63 degrees.
 _SAME, _NONE = 1e-13, 1e-10
-#: Points that have little in common are computed so many at a time, at all radii and depths of these.
+#: If points share few radii and depths, this many are computed at a time, at all of their radii and depths.
 _SOME = 16
-#: At this relative distance from h and less a point is at the interface.
+#: A point whose relative distance from h is at most this is at the interface.
 _AT = 1e-12
 
 
@@ -45,36 +45,37 @@ def of_pressure(
 ) -> Mapping[str, np.ndarray]:
     """Stresses and displacements in layers and the body below them under a pressure p(x), x <= 1, of contact radius 1.
 
-    z points down from the surface; tension is positive, and p > 0 presses. A half-space is n = 1, nu1 = nu2, bonded,
-    with any h. One layer is h, n, nu1 and bonding, several are `layers`. The equations are in docs/stress_fields.md.
+    z points down from the surface; tension is positive, and p > 0 is compression. For a half-space give n = 1, nu1 =
+    nu2, "bonded", and any h; for one layer h, n, nu1 and bonding; for several, `layers`. The equations are in
+    docs/stress_fields.md.
 
     Parameters
     ----------
     p : function of radii x (m,) in [0, 1], a polynomial of up to 60 degrees in sqrt(1 - x²)
     r, z : radii >= 0 and depths >= 0, in units of the contact radius; they broadcast
-    h : thickness of the layer in that unit, > 0
+    h : thickness of the layer in the same unit, > 0
     n : E1*/E2* of layer and body, >= 0; 0 is a rigid body
     nu1, nu2 : Poisson ratios of layer and body in (-1, 0.5]
     bonding : "bonded" or "frictionless", the interface
     layers : in place of h, n, nu1 and bonding, at most 16 layers (h, n, nu), the one at the surface first
     interfaces : below each of the layers: "bonded" (all of them, by default), "frictionless", or compliances (cn, ct)
         of springs, >= 0, across and along it, in units of the contact radius over E2*
-    rigid_base : whether the body under the layers is rigid; n is then E_j*/E_1*, 1 of the first layer
+    rigid_base : whether the body under the layers is rigid; n is then E_j*/E_1*, and 1 for the first layer
     mu : >= 0; with mu > 0 the field of the traction mu p along x, in full sliding, is added as amplitudes
-    side : in which of two bodies a point at an interface is: "layer" or "base" at z = h; with `layers` the number of
+    side : the body to which a point at an interface belongs: "layer" or "base" at z = h; with `layers` the number of
         the body, 1 at the surface, len(layers) + 1 below the last layer. None: the upper one
 
     Returns
     -------
-    dict : name -> array of the shape of r and z. sr, st, sz, trz, in units of p, are the stresses by p; ur, uz the
-        displacements, in units of p times the contact radius over E2* (E1* on a rigid body, in which all is NaN). With
-        mu > 0, of the friction alone: sr_c, st_c, sz_c and uz_c are to be multiplied by cos th, srt_s by sin th; sxz is
-        sxz_0 + sxz_2 cos 2th, ux is ux_0 + ux_2 cos 2th. ux_0 is NaN with a frictionless interface: nothing holds what
-        is above
+    dict : name -> array of the shape of r and z. sr, st, sz, trz are the stresses by p, in units of p; ur, uz are the
+        displacements, in units of p times the contact radius over E2* (E1* on a rigid body; inside it all is NaN). With
+        mu > 0, the other names are those of friction alone: sr_c, st_c, sz_c and uz_c must be multiplied by cos th, and
+        srt_s by sin th; sxz is sxz_0 + sxz_2 cos 2th, ux is ux_0 + ux_2 cos 2th. ux_0 is NaN with a frictionless
+        interface: nothing holds the layers above it
 
     Raises
     ------
-    ValueError : an argument is out of its bounds or not finite; p is no such polynomial
+    ValueError : an argument is out of its bounds or not finite; p is not such a polynomial
 
     Examples
     --------
@@ -86,12 +87,12 @@ def of_pressure(
     >>> print(f"{field['sz'].item():.6f}")
     -0.881689
     """
-    one = {"h": h, "n": n, "nu1": nu1, "bonding": bonding}
+    layer = {"h": h, "n": n, "nu1": nu1, "bonding": bonding}
     if layers is None:
-        layered, h = _layer(one, nu2), np.array([float(h)])
+        layered, h = _layer(layer, nu2), np.array([float(h)])
         _refuse({"interfaces": interfaces, "rigid_base": rigid_base or None}, "only beside layers")
     else:
-        _refuse(one, "each of the layers has its own")
+        _refuse(layer, "each of the layers has its own")
         layered, h = _stack(layers, interfaces, nu2, rigid_base)
     r, z = (_checked(name, value) for name, value in (("r", r), ("z", z)))
     if not (np.ndim(mu) == 0 and np.isfinite(mu) and mu >= 0):
@@ -118,15 +119,15 @@ def of_pressure(
 
 
 def _refuse(values, reason):
-    """Raise ValueError for a value that is not None."""
+    """Raise ValueError if one of the values is not None."""
     for name, value in values.items():
         if value is not None:
             raise ValueError(f"{name} is given: {reason}")
 
 
-def _layer(one, nu2):
-    """:class:`TwoLayers` of one case; ValueError for a number out of bounds."""
-    h, n, nu1, bonding = one.values()
+def _layer(layer, nu2):
+    """:class:`TwoLayers` of one case. Raises ValueError for a number out of bounds."""
+    h, n, nu1, bonding = layer.values()
     _check({"h": (h, None), "n": (n, COMMON["n"]), "nu1": (nu1, COMMON["nu1"]), "nu2": (nu2, COMMON["nu2"])})
     if bonding not in BONDINGS:
         raise ValueError(f'bonding = "{bonding}": must be one of {", ".join(BONDINGS)}')
@@ -134,7 +135,7 @@ def _layer(one, nu2):
 
 
 def _check(numbers):
-    """Raise ValueError for a number that is missing or out of the bounds of its row; without one they are > 0."""
+    """Raise ValueError for a number that is missing or out of the bounds of its row; without a row it must be > 0."""
     for name, (value, row) in numbers.items():
         good = np.ndim(value) == 0 and isinstance(value, (int, float, np.number)) and np.isfinite(value)
         if not good or (value <= 0 if row is None else not allowed(row, value)):
@@ -143,7 +144,7 @@ def _check(numbers):
 
 
 def _stack(layers, interfaces, nu2, rigid):
-    """:class:`Stack` of one case, and the thickness (1,) of its first layer; ValueError."""
+    """:class:`Stack` of one case, and the thickness (1,) of its first layer. Raises ValueError."""
     if isinstance(layers, str) or not hasattr(layers, "__len__") or not 1 <= len(layers) <= MOST:
         raise ValueError(f"layers = {layers!r:.60}: must be a list of 1 to {MOST} layers (h, n, nu)")
     for number, layer in enumerate(layers, 1):
@@ -189,9 +190,10 @@ def _interfaces(interfaces, count):
 
 
 def _number(side, count):
-    """The number of the body in which points at an interface are, from 1, or 0: the upper one. ValueError.
+    """The number, from 1, of the body to which points at an interface belong; 0 stands for the upper body. Raises
+    ValueError.
 
-    count : of layers; None where the one layer is given by its numbers
+    count : number of layers; None if the one layer is given by its numbers
     """
     if side is None:
         return 0
@@ -205,8 +207,8 @@ def _number(side, count):
 
 
 def _region(z, ends, number):
-    """In which layer depths z (M,) are, from 0; len(ends) : in the body. number : of the body in which those at an
-    interface are, if it is next to it."""
+    """The layer of the depths z (M,), counted from 0; len(ends) for the body. number : of the body to which depths at
+    an interface belong, if it is next to that interface."""
     at = np.abs(z[:, None] - ends) <= _AT * ends
     return np.where(at, np.arange(1, len(ends) + 1) < number, z[:, None] > ends).sum(axis=1)
 
@@ -220,8 +222,8 @@ def _checked(name, values):
 
 
 def _interpolated(p):
-    """:class:`Pressure` of one case, on as few nodes as have all of p."""
-    fine = np.linspace(0.02, 1.0, 197)  # nearer to the edge 1 - x² has lost digits
+    """:class:`Pressure` of one case, on the fewest nodes that represent p exactly."""
+    fine = np.linspace(0.02, 1.0, 197)  # nearer to the edge, 1 - x² loses digits
     wanted = _values(p, fine)
     for nodes in _NODES:
         mesh = mesh_of(nodes)
@@ -242,15 +244,15 @@ def _values(p, s):
 
 
 def _at_points(load, layers, h, pressure, r, z, region):
-    """The integrals (fields, N) of a load at points (N,): where most pairs of their radii and depths are wanted, at all
-    of them, else at those of some points after the others."""
+    """The integrals (fields, N) of a load at points (N,). If the points are most of the pairs of their radii and
+    depths, they are computed at all pairs; otherwise for a few points at a time."""
     rows, row = np.unique(np.stack([z, region]), axis=1, return_inverse=True)
     radii, column = np.unique(r, return_inverse=True)
     if rows.shape[1] * len(radii) <= 4 * len(r) or len(r) <= _SOME:
         whole = integrals(load, layers, h, pressure, radii, rows[:1], rows[1])
         return whole[:, 0, row.ravel(), column.ravel()]
     order = np.lexsort((r, z))
-    made = np.zeros((len(load.orders), len(r)))
+    whole = np.zeros((len(load.orders), len(r)))
     for part in np.array_split(order, -(-len(r) // _SOME)):
-        made[:, part] = _at_points(load, layers, h, pressure, r[part], z[part], region[part])
-    return made
+        whole[:, part] = _at_points(load, layers, h, pressure, r[part], z[part], region[part])
+    return whole

@@ -1,7 +1,8 @@
-"""Pressures p(r) of cases on one mesh (a = 1), and what the fields need of them: docs/stresses.md, Waves.
+"""Pressures p(r) of cases on one mesh (a = 1), and the transforms that the fields need: docs/stress_fields.md, Waves.
 
-p is the polynomial in s = sqrt(1 - r²) through the values at the nodes, one on each panel, and A/s: the edge of a flat
-punch, A > 0, or of a contact that sticks, A < 0. The waves of 1/s are sin k/k, so that its φ is δ(t - 1).
+p is the sum of two parts. One is, on each panel, the polynomial in s = sqrt(1 - r²) through the values at the nodes.
+The other is A/s, the edge of a flat punch, A > 0, or of a contact with adhesion, A < 0. The transform of 1/s is sin
+k/k, so that its φ is δ(t - 1).
 """
 
 from functools import lru_cache
@@ -15,23 +16,24 @@ from ..numerics import batch, special
 from ..numerics.mesh import Mesh
 from ..numerics.quadrature import gauss_legendre, lagrange, radau_nodes
 
-#: Gauss points of ∫ p' db on a panel beyond half its number of nodes. With 16 a polynomial of degree 63 is right to
-#: rounding, which grows like the square of the degree in p' (tests/fields/test_half_space.py).
+#: Gauss points of ∫ p' db on a panel, in addition to half its number of nodes. With 16 a polynomial of degree 63 is
+#: right to rounding, which grows in p' like the square of the degree (tests/fields/test_half_space.py).
 _MORE = 16
-#: Of waves above _LONG only what is within _WINDOW/k of the edge makes any, or of panels narrower than _NARROW/k, as at
-#: a tip: there a smooth window ends, the normal distribution with the width _WIDE/k, whose own waves and tails are
-#: 1e-14. So p^ takes as long at any k. With 4 for _NARROW the same tests pass (tests/fields/test_half_space.py).
+#: Waves with k above _LONG come only from the pressure within _WINDOW/k of the edge, or of panels narrower than
+#: _NARROW/k, as at a tip. A smooth window selects it; it ends like a normal distribution of the width _WIDE/k, whose
+#: own waves and tails are 1e-14. So p^ takes the same time at any k. With _NARROW = 4 the same tests pass
+#: (tests/fields/test_half_space.py).
 _LONG, _WINDOW, _WIDE = 500.0, 120.0, 8.0
 _NARROW = 40.0
-#: Rows of so many numbers in all are kept for other cases and other points.
+#: Matrices of at most this many entries are cached for other cases and other points.
 _KEPT = 250_000
-#: An edge pressure below this part of the largest is rounding, and would make stresses infinite at the edge.
+#: An edge pressure below this part of the largest is rounding. It would make stresses infinite at the edge.
 _ROUNDING = 1e-12
 
 
 @batch.of_cases
 class Pressure(NamedTuple):
-    """`values` (B, n), the pressures of B cases at the nodes of a mesh; and A (B,) of 1/s, 0 for all if it is None."""
+    """The pressures of B cases: `values` (B, n) at the nodes of a mesh, and A (B,), the factor of 1/s; None: all 0."""
 
     mesh: Mesh
     values: np.ndarray
@@ -39,7 +41,7 @@ class Pressure(NamedTuple):
 
     def transform(self, k):
         """p^(k) = ∫ p J0(kr) r dr (B, K) at ascending k (K,)."""
-        first = max(_LONG, self.mesh.order**2 / 50)  # of shorter waves the polynomial has none but at the edge
+        first = max(_LONG, self.mesh.order**2 / 50)  # above this, the polynomial has waves only at the edge
         octaves = first * 2.0 ** np.arange(max(np.ceil(np.log2(k[-1] / first)), 0))
         pieces = [piece for piece in np.split(k, np.searchsorted(k, octaves)) if len(piece)]
         rows = [
@@ -52,13 +54,13 @@ class Pressure(NamedTuple):
         return waves if self.A is None else waves + self.A[:, None] * (np.sin(k) / k)
 
     def at(self, r):
-        """p at radii r (R,), (B, R); 0 outside, infinite at an edge that has A."""
+        """p (B, R) at radii r (R,); 0 outside the contact, infinite at an edge with A."""
         s = np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
         p = self.values @ self.mesh.basis(s).T
         return np.where(r <= 1, p if self.A is None else p + self.A[:, None] / s, 0.0)
 
     def at_edge(self):
-        """p at s = 0, (B,): rounding and taken for 0, but for the polynomials of films."""
+        """p (B,) at s = 0. It is rounding, and becomes 0, except for the polynomials of films."""
         p = self.values @ self.mesh.basis(np.zeros(1))[0]
         return np.where(np.abs(p) > _ROUNDING * np.abs(self.values).max(axis=1), p, 0.0)
 
@@ -66,7 +68,7 @@ class Pressure(NamedTuple):
         """∫₀^r p r' dr'/r² (B, R) at radii r (R,): p(0)/2 in the centre, and P/(2 pi r²) outside."""
         breaks, order = np.array(self.mesh.breaks), self.mesh.order
         s = np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
-        # s' = s + (1 - s) t; panels end at these t. Where s = 1 the last panel is all there is
+        # s' = s + (1 - s) t; panels end at these t. If s = 1 there is only the last panel
         ends = np.clip((breaks - s[:, None]) / np.maximum(1 - s, np.finfo(float).tiny)[:, None], 0.0, 1.0)
         ends[:, -1] = 1.0
         t, weight = gauss_legendre(order // 2 + 2)
@@ -78,24 +80,24 @@ class Pressure(NamedTuple):
         return mean if self.A is None else mean + self.A[:, None] / (1 + s) / np.maximum(r, 1.0) ** 2
 
     def density(self, s):
-        """φ/t of Abel's φ(t) (B, ...) at s = sqrt(1 - t²) (...), without what :meth:`at_edge` and A add."""
+        """φ/t (B, ...) of Abel's φ(t) at s = sqrt(1 - t²) (...), without the parts of :meth:`at_edge` and of A."""
         nodal = self.values @ _density(self.mesh).T
         return (nodal @ self.mesh.basis(s.ravel()).T).reshape(len(nodal), *s.shape)
 
     def density_of_each(self, s):
-        """The same (B, T) at points s (B, T), its own of each case."""
+        """As :meth:`density`, (B, T), at the points s (B, T) of each case."""
         nodal = self.values @ _density(self.mesh).T
         return np.einsum("bn,btn->bt", nodal, self.mesh.basis(s.ravel()).reshape(*s.shape, -1))
 
 
 @lru_cache(maxsize=64)
 def _kept_waves(mesh, k_bytes):
-    """From values at the nodes to p^ at k of one octave: (n, K)."""
+    """The matrix (n, K) that makes p^ at k of one octave from values at the nodes."""
     return _waves(mesh, np.eye(mesh.n), np.frombuffer(k_bytes))
 
 
 def _waves(mesh, values, k):
-    """p^ (B, K) at k of one octave, from windows alone where that is enough."""
+    """p^ (B, K) at k of one octave, from the windows alone if that is enough."""
     windows = _windows(mesh, k[0])
     if k[0] < _LONG or np.diff(windows).sum() > 0.5:
         return values @ transform(mesh, k).T
@@ -106,18 +108,18 @@ def _waves(mesh, values, k):
 
 
 def _windows(mesh, k):
-    """Where in x waves of k and shorter ones are felt, the ends of windows (m, 2): at the edge, and about panels that
-    may have such waves, as those at a tip and at a kink."""
+    """Ends (m, 2) in x of the windows from which waves with this k and larger ones come: at the edge, and around narrow
+    panels, such as those at a tip or a kink."""
     x = np.sqrt(1 - np.array(mesh.breaks) ** 2)
     narrow = -np.diff(x) < _NARROW / k
     low, high = np.append(1.0, x[1:][narrow])[::-1] - _WINDOW / k, np.append(1.0, x[:-1][narrow])[::-1] + _WINDOW / k
-    apart = low[1:] > high[:-1]
-    return np.clip(np.stack([low[np.append(True, apart)], high[np.append(apart, True)]], axis=1), 0.0, 1.0)
+    separate = low[1:] > high[:-1]
+    return np.clip(np.stack([low[np.append(True, separate)], high[np.append(separate, True)]], axis=1), 0.0, 1.0)
 
 
 def edge_rule(mesh, k):
-    """Rule of ∫ · ds, points s and weights (m,), of what makes waves from k to 2k at the edge, the end of a window;
-    None if the window is not the only one, or as wide as the contact."""
+    """Rule of ∫ · ds, points s and weights (m,), over the window at the edge, for waves from k to 2k. None if it is not
+    the only window, or is as wide as the contact."""
     windows = _windows(mesh, k)
     if len(windows) > 1 or windows[0, 0] <= 0:
         return None
@@ -140,26 +142,26 @@ def _rule(mesh, k, low, high):
 
 @lru_cache(maxsize=16)
 def _density(mesh):
-    """From values at the nodes to (2/pi) ∫ p'(s cos b) db, b from 0 to pi/2, at the nodes: (n, n)."""
-    breaks, order, own = np.array(mesh.breaks), mesh.order, radau_nodes(mesh.order)
+    """The matrix (n, n) that makes (2/pi) ∫ p'(s cos b) db, b from 0 to pi/2, at the nodes from values there."""
+    breaks, order, nodes = np.array(mesh.breaks), mesh.order, radau_nodes(mesh.order)
     t, weight = gauss_legendre(order // 2 + _MORE)
     angles = np.arcsin(np.minimum(breaks / mesh.s[:, None], 1.0))  # where the path s' = s sin(angle) leaves a panel
-    made = np.zeros((mesh.n, mesh.n))
+    matrix = np.zeros((mesh.n, mesh.n))
     slope = _slopes(order)
     for i, (low, high) in enumerate(zip(breaks[:-1], breaks[1:], strict=True)):
         rows = np.flatnonzero(mesh.s > low)
         start, width = angles[rows, i, None], np.diff(angles[rows, i : i + 2])
         points = mesh.s[rows, None] * np.sin(start + width * t)
         local = np.clip((points - low) / (high - low), 0.0, 1.0)
-        basis = lagrange(own, local.ravel()).reshape(*local.shape, order)
+        basis = lagrange(nodes, local.ravel()).reshape(*local.shape, order)
         summed = np.einsum("rg,rgj->rj", width * weight, basis)
-        made[rows, i * order : (i + 1) * order] = summed @ slope * (2 / np.pi / (high - low))
-    made.flags.writeable = False
-    return made
+        matrix[rows, i * order : (i + 1) * order] = summed @ slope * (2 / np.pi / (high - low))
+    matrix.flags.writeable = False
+    return matrix
 
 
 @lru_cache(maxsize=64)
 def _slopes(order):
-    """From values at Radau nodes to the derivative of the polynomial through them there: (n, n)."""
+    """The matrix (n, n) that makes the derivative of a polynomial at the Radau nodes from its values there."""
     inverse = np.linalg.inv(legvander(2 * radau_nodes(order) - 1, order - 1))
     return 2 * legvander(2 * radau_nodes(order) - 1, order - 1)[:, : order - 1] @ legder(inverse)

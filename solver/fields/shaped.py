@@ -1,5 +1,5 @@
-"""Pressures of smooth contacts of other shapes than the paraboloid, and of what sticks, as the fields need them: on
-panels that shrink to where the shape has kinks, and to a sharp tip."""
+"""Pressures of smooth contacts that are not paraboloids, or have adhesion, as the fields need them: on panels that
+shrink towards the kinks and the sharp tip of the shape."""
 
 import numpy as np
 
@@ -13,29 +13,30 @@ from ..smooth.galerkin import respond
 from ..smooth.pressure import pressure_changes, without_edge
 from .pressure import Pressure
 
-#: Nodes of one panel under shapes that are smooth in r², and of each of several panels. With half of them the stresses
-#: of tests/fields/test_shaped.py differ by 1e-7 and 1e-6.
+#: Nodes of a single panel under shapes that are smooth in r², and of each of several panels. With half as many, the
+#: stresses of tests/fields/test_shaped.py differ by 1e-7 and 1e-6.
 _WHOLE, _EACH = 64, 16
-#: Panels shrink by this towards a kink or a tip, so often on each side: at a kink to 1e-8 a, at a tip to 1e-6 a, as
-#: r² is about 2 a² (1 - s) there. What is left of a pressure like ln r changes no eighth digit.
+#: Panels shrink by the factor _SHRINK, _TIMES times on each side of a kink, to 1e-8 a, and _TIP_TIMES times towards a
+#: tip, to 1e-6 a, as r² is about 2 a² (1 - s) there. The rest of a pressure like ln r does not change the eighth digit.
 _SHRINK, _TIMES, _TIP_TIMES = 0.4, 20, 30
-#: At a kink or a tip itself p may be infinite: it is taken at this part of the smallest panel beside it.
-_BESIDE = 0.1
-#: A slope jumps where this part of a radius changes it by this part of that at the edge.
-_APART, _JUMP = 1e-14, 1e-3
+#: At a kink or a tip p may be infinite. There p is evaluated at a distance of this part of the smallest panel.
+_OFF_KINK = 0.1
+#: The slope of a shape jumps if a change of the radius by its _NEXT_TO-th part changes it by more than _JUMP times the
+#: slope at the edge.
+_NEXT_TO, _JUMP = 1e-14, 1e-3
 #: Radii at which the polynomials are compared with the pressure.
 _LOOKED_AT = np.sin(np.pi / 2 * (np.arange(40) + 0.37) / 40)
 
 
 def shaped_pressures(scaled, a, D):
-    """Yield indices of smooth cases with a shape or with adhesion at the edge, their :class:`~.pressure.Pressure` in
-    units of E2*, and its error (b,), over the largest pressure that is looked at."""
+    """Yield indices of smooth cases that are not paraboloids, or have adhesion at the edge; their
+    :class:`~.pressure.Pressure` in units of E2*; and its error (b,), over the largest pressure at _LOOKED_AT."""
     for index in kinds_of(scaled):
         part, at = scaled.take(index), a[index]
         shape, body = shape_of(part), BODIES[str(part.base[0])](part)
         response, even = respond(shape, body, at), shape.even
-        sticks = -np.sqrt(2 * np.pi * at * part.w_adhesion / body.E)
-        A = D[index] / response.flat_D if has_radius(shape).all() else sticks
+        A_jkr = -np.sqrt(2 * np.pi * at * part.w_adhesion / body.E)
+        A = D[index] / response.flat_D if has_radius(shape).all() else A_jkr
         several = np.flatnonzero(~even)
         for rows in (np.flatnonzero(even), *several[:, None]):
             if len(rows):
@@ -44,13 +45,13 @@ def shaped_pressures(scaled, a, D):
 
 
 def corners(scaled, a):
-    """Radius (B,) in a of where the slope of the shape jumps inside the contact, the innermost; 0 of a sharp tip, NaN
-    where there is none. The pressure of a smooth punch is infinite there, like a logarithm."""
+    """Smallest radius (B,), in a, at which the slope of the shape jumps inside the contact; 0 for a sharp tip, NaN if
+    there is none. The pressure of a smooth punch is infinite there, like a logarithm."""
     at = np.full(len(scaled), np.nan)
     for index in kinds_of(scaled) if shaped(scaled).any() else ():
         shape = shape_of(scaled.take(index))
         kinks = shape.kinks()
-        jumps = shape.slope(kinks * (1 + _APART)) - shape.slope(kinks * (1 - _APART))
+        jumps = shape.slope(kinks * (1 + _NEXT_TO)) - shape.slope(kinks * (1 - _NEXT_TO))
         sharp = (jumps > _JUMP * shape.slope(a[index, None])) & (kinks < a[index, None])
         first = np.min(np.where(sharp, kinks, np.inf), axis=1, initial=np.inf) / a[index]
         at[index] = np.where(shape.pointed, 0.0, np.where(np.isfinite(first), first, np.nan))
@@ -85,6 +86,7 @@ def _panels(shape, a):
     s = on_panels(radau_nodes(_EACH), breaks)
     s[-1] = 1.0
     least = np.diff(breaks).min()
-    at = np.where(np.abs(s[:, None] - np.array([*singular, 9.0])).min(axis=1) < _BESIDE * least, s - _BESIDE * least, s)
+    singular_node = np.abs(s[:, None] - np.array([*singular, 9.0])).min(axis=1) < _OFF_KINK * least
+    at = np.where(singular_node, s - _OFF_KINK * least, s)
     none = np.zeros(0)
     return Mesh(_EACH, breaks, s, np.sqrt((1 - at) * (1 + at)), none, none, none)

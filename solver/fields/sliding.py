@@ -1,6 +1,6 @@
-"""The field of sliding, the traction q = p along x (times mu): docs/stresses.md, Sliding.
+"""The field of sliding, of the traction q = p along x (times mu): docs/stress_fields.md, Sliding.
 
-Its fields have factors cos and sin of the polar angle, so that amplitudes in (r, z) suffice.
+Its stresses and displacements are cosines and sines of the polar angle times amplitudes, which depend on r and z.
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ from .waves import Load
 
 
 def amplitudes(waves, row, z):
-    """Of the nine integrals from which :func:`components` come."""
+    """The amplitudes of the nine integrals from which :func:`components` follow."""
     u, w, S, T = v = waves.state(row.region, z, row.less)
     Q, across = waves.antiplane(row.region, z, row.less)
     both, less = u + across, u - across
@@ -20,7 +20,7 @@ def amplitudes(waves, row, z):
 
 
 def stress_parts(E, F, nu):
-    """The six integrals of stresses in half-spaces, of E_m and F_m of :func:`~.half_space.integrals`."""
+    """The six integrals of stresses in half-spaces, from E_m and F_m of :func:`~.half_space.integrals`."""
     return [
         F[1] - 2 * (1 + nu) * E[1],
         F[1] - 2 * (2 - nu) * E[1],
@@ -32,7 +32,8 @@ def stress_parts(E, F, nu):
 
 
 def in_closed_form(pressure, r, z, nu, displacements=True):
-    """The same (9 or 6, B, Z, R) of half-spaces of Poisson ratios nu (B,), at radii r (R,) and depths z (Z,) in a."""
+    """The integrals of :func:`amplitudes`, (9 or 6, B, Z, R), for half-spaces with Poisson ratios nu (B,), at radii r
+    (R,) and depths z (Z,) in a."""
     nu, depth = nu[:, None, None], z[:, None]
     E, F, D = integrals(pressure, r, z, 3, displacements)
     surface = z == 0
@@ -54,7 +55,7 @@ LOAD = SLIDING = Load((0.0, 1.0), (1, 1, 3, 1, 0, 2, 1, 0, 2), 6, amplitudes, in
 
 
 def components(whole, G2=None):
-    """The amplitudes of the field of those integrals for mu = 1; G2 : 2 G, what broadcasts."""
+    """The amplitudes of the field for mu = 1, from those integrals; G2 : 2 G, which broadcasts."""
     total, first, third, sz, even, odd, *displacements = whole
     difference = (first + third) / 2
     parts = [
@@ -70,9 +71,12 @@ def components(whole, G2=None):
 
 
 def in_plane(names, behind):
-    """The field of pressure and friction together in the plane y = 0, where nothing shears across it: sr, st, sz, trz
-    (which is sxz), and if there ur (ux) and uz, of the mapping `names` of both; `behind` : bool, where x < 0, which is
-    the trailing side."""
+    """The field of pressure and friction together in the plane y = 0, across which there is no shear: sr, st, sz, trz
+    (which is sxz), and ur (ux) and uz if `names` has them.
+
+    names : name -> array, of both fields
+    behind : bool, whether x < 0, on the trailing side
+    """
     sign = np.where(behind, -1.0, 1.0)
     along = {name: names[name] + sign * names[f"{name}_c"] for name in ("sr", "st", "sz", "uz") if name in names}
     along["trz"] = sign * names["trz"] + names["sxz_0"] + names["sxz_2"]

@@ -1,7 +1,7 @@
-"""Integrals over the waves k of the layer and of the body: docs/stresses.md, Waves.
+"""Integrals over the waves k in the layer and in the body: docs/stress_fields.md, Waves.
 
-Each row is a depth. In the first layer it is all of the field or its difference to that of a half-space of the layer's
-material. The rows of one region go together, and each ends at its own largest k.
+Each row is a depth. In the first layer it has either the whole field or its difference from that of a half-space of the
+layer's material. The rows of one region are computed together, and each ends at its own largest k.
 """
 
 from collections.abc import Callable
@@ -13,44 +13,45 @@ from ..numerics import special
 from ..numerics.kept import Kept
 from ..numerics.quadrature import gauss_legendre
 
-#: A panel of _POINTS Gauss points holds at most so many radians of p^ J_m, and is no longer than its distance from 0,
-#: over which the state is smooth however stiff the layer is. Half of the radians change no stress by more than 1e-15 of
-#: the largest.
+#: A panel of _POINTS Gauss points covers at most _RADIANS of the phase of p^ J_m. It is no longer than its distance
+#: from 0, over which the state is smooth however stiff the layer is. With half of the radians no stress changes by more
+#: than 1e-15 of the largest.
 _POINTS, _RADIANS = 20, 20.0
-#: The first panel ends at this times min(1/a, 1/h), over n of stiff layers, which bend over 1/n of that.
+#: The first panel ends at this times min(1/a, 1/h). Stiff layers, which bend over n times that length, have n times
+#: less.
 FIRST = 1e-4
-#: A field that decays like e^(-kz) ends at k = _END/z.
+#: The integral for a field that decays like e^(-kz) ends at k = _END/z.
 _END = 36.0
-#: But no later than at SHORTEST, whose waves take some seconds: in thinner films, h below THINNEST, a stress next to
-#: the edge is wrong by up to MISSED of the largest, and farther away by far less (tests/fields/test_of_pressure.py).
+#: It ends at SHORTEST at the latest: so many waves take some seconds. In films with h below THINNEST a stress near the
+#: edge is then wrong by up to MISSED times the largest, farther away by far less (tests/fields/test_of_pressure.py).
 SHORTEST, MISSED = 1.5e5, 1e-3
-#: So many waves take some seconds; the farther away a radius is the more it takes.
+#: Largest number of nodes k of an integral, about, which take some seconds. The number grows with the radius.
 _MOST = 1e6
-#: No radius is looked at beyond this, in a: squares of larger ones overflow.
+#: Largest radius, in a: squares of larger radii overflow.
 _FARTHEST = 1e9
-#: Where some percent do, these are the ends.
+#: These replace _END and SHORTEST if an error of some percent is allowed.
 _ROUGH_END, _ROUGH_SHORTEST = 8.0, 2e3
 THINNEST = _END / SHORTEST
-#: The ends of rules and the reach of their panels are rounded up to such parts of an octave.
+#: The ends of rules and the reach of their panels are rounded up to whole numbers of 1/_OF_OCTAVE octave.
 _OF_OCTAVE = 3
-#: Below _SMALL, J3 is a series of _TERMS terms: from J1 and J2 it loses digits.
+#: Below _SMALL, J3 is a series of _TERMS terms: computed from J1 and J2 it loses digits.
 _SMALL, _TERMS = 3.0, 14
-#: Numbers in an array of states: so many waves are taken at once.
+#: Largest number of entries of an array of states, which limits the number of waves at a time.
 _AT_ONCE = 200_000
-#: Bessel functions of coarse grids, which bodies of one octave of h/a share: half of their time.
-_kept = Kept(3e7)
+#: Bessel functions of coarse grids, which bodies of one octave of h/a share. They are half of the time of such grids.
+_bessel = Kept(3e7)
 
 
 class Load(NamedTuple):
-    """What presses or rubs on the surface, and which integrals make its field.
+    """A kind of load on the surface, normal or tangential, and the integrals that make its field.
 
     traction : (S, T) of its unit wave
-    orders : of the Bessel function of each integral; the first `stresses` of them have a factor k, the rest, if there,
-        makes the displacements
-    amplitudes : ``amplitudes(waves, row, z)``, the other factor of each integrand, but for p^, from the
-        :class:`~solver.kernels.transfer.Waves` at depths z (B, Z) alike the :class:`Row`
-    in_closed_form : ``in_closed_form(pressure, r, z, nu, displacements)``, the integrals of half-spaces (fields, B, Z,
-        R), all or those of stresses
+    orders : order of the Bessel function in each integral. The first `stresses` integrals have a factor k; the others,
+        if any, make the displacements
+    amplitudes : ``amplitudes(waves, row, z)`` returns the remaining factor of each integrand, except p^, from the
+        :class:`~solver.kernels.transfer.Waves` at depths z (B, Z) of the same kind as the :class:`Row`
+    in_closed_form : ``in_closed_form(pressure, r, z, nu, displacements)`` returns the integrals (fields, B, Z, R) for
+        half-spaces, all of them or only those of stresses
     """
 
     traction: tuple
@@ -60,31 +61,33 @@ class Load(NamedTuple):
     in_closed_form: Callable
 
     def of_stresses(self):
-        """The same without displacements, which take the most time on the surface."""
+        """The load without displacements, which take the most time on the surface."""
         return self._replace(orders=self.orders[: self.stresses])
 
 
 class Row(NamedTuple):
-    """Depths z (B,) in a of B cases in a region, 0 the first layer; `less` the field of a half-space of that layer."""
+    """Depths z (B,), in a, of B cases in a region; 0 is the first layer. `less`: less the field of a half-space of the
+    first layer's material."""
 
     region: int
     less: bool
     z: np.ndarray
 
     def reach(self, h):
-        """How far from the source the waves are, (B,)."""
+        """The distance (B,) over which the waves have decayed."""
         return 2 * h - self.z if self.less else self.z
 
 
 def farthest(h):
-    """The largest radius in a at which fields are computed, of layers of the thickness h in a; h = inf: of a
-    half-space, which is a closed form there. Shape of h."""
+    """The largest radius, in a, at which fields are computed, for layers of the thickness h in a; it has the shape of
+    h. h = inf stands for a half-space, whose field is a closed form there."""
     return np.minimum(_MOST * np.maximum(h / _END, 1 / SHORTEST) - 1, _FARTHEST)
 
 
 def quadrature(first, last, reach, radians=_RADIANS):
-    """Nodes k and weights (K,) from 0 to `last`: the first panel ends at `first`, further ones are as long as their
-    distance from 0 until that is radians/reach. All three are rounded, so that many points and cases have one rule."""
+    """Nodes k and weights (K,) from 0 to `last`. The first panel ends at `first`; further panels are as long as their
+    distance from 0, up to radians/reach. All three arguments are rounded, so that many points and cases share a
+    rule."""
     first, last, reach = 2.0 ** np.floor(np.log2(first)), _above(last), _above(reach)
     widest = radians / reach
     doubling = first * 2.0 ** np.arange(max(np.ceil(np.log2(min(widest, last) / first)), 0) + 1)
@@ -100,11 +103,11 @@ def _above(value):
 
 
 def integrals(load, layers, h, pressure, r, rows, roughly=False):
-    """The integrals of a :class:`Load` at the `rows` (Z) and radii r (R,): (fields, B, Z, R).
+    """The integrals of a :class:`Load`, (fields, B, Z, R), at the `rows` (Z) and radii r (R,).
 
-    layers : :class:`~solver.kernels.transfer.Layered` of B cases; h : (B,), thickness of the first in a. No two of a
-    layer are as different as 1 and 2
-    roughly : some percent do
+    layers : :class:`~solver.kernels.transfer.Layered` of B cases
+    h : (B,), thickness of the first layer in a. No layer's thickness may differ between cases by a factor of 2 or more
+    roughly : whether an error of some percent is allowed
     """
     end, shortest = (_ROUGH_END, _ROUGH_SHORTEST) if roughly else (_END, SHORTEST)
     z = np.array([row.z for row in rows]).T
@@ -113,9 +116,9 @@ def integrals(load, layers, h, pressure, r, rows, roughly=False):
     kinds = dict.fromkeys(row[:2] for row in rows)
     p = (pressure.transform(k) * weight)[:, None]
     whole, most = np.zeros((len(load.orders), len(h), len(rows), len(r))), max(load.orders)
-    kept = _kept.get((k.tobytes(), r.tobytes(), most), lambda: bessel(k, r, most)) if roughly else None
+    values_of = _bessel.get((k.tobytes(), r.tobytes(), most), lambda: bessel(k, r, most)) if roughly else None
     for part in _parts(layers.few(k, h), len(k), z.size):
-        J = [values[part] for values in kept] if roughly else bessel(k[part], r, most)
+        J = [values[part] for values in values_of] if roughly else bessel(k[part], r, most)
         waves = layers.waves(k[part], h, load.traction)
         for kind in kinds:
             index = np.array(
@@ -130,14 +133,14 @@ def integrals(load, layers, h, pressure, r, rows, roughly=False):
 
 
 def _parts(few, count, rows):
-    """Slices of `count` nodes, the `few` first of which are by themselves."""
+    """Slices of `count` nodes; the first `few` nodes are in slices of their own."""
     size = max(_AT_ONCE // rows // _POINTS * _POINTS, _POINTS)
     starts = [*range(0, few, size), *range(few, count, size)]
     return [slice(*ends) for ends in zip(starts, [*starts[1:], count], strict=True)]
 
 
 def bessel(k, r, most):
-    """J_m (K, R) of k r, m from 0 to `most`, 2 or 3; right to 1e-15 absolutely."""
+    """J_m(k r), (K, R) each, for m from 0 to `most`, which is 2 or 3; the absolute error is 1e-15."""
     x = k[:, None] * r
     away = np.where(x > 0, x, 1.0)
     J = [special.j0(x), special.j1(x)]
@@ -148,7 +151,7 @@ def bessel(k, r, most):
 
 
 def _series_of_third(x):
-    """J3 below _SMALL."""
+    """J3(x) for x below _SMALL."""
     square, term, total = -((x / 2) ** 2), (x / 2) ** 3 / 6, 0.0
     for j in range(1, _TERMS + 1):
         total = total + term

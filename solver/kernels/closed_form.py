@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-#: Below this u, a hyperbolic function less the first term of its series is taken from the rest of the series.
+#: Below this u, a hyperbolic function less the first terms of its series is the sum of the further terms.
 _SERIES = 0.8
-#: Stands for u = 0: the quotients, 0/0 there, have their limits here.
+#: It stands for u = 0: the quotients that are 0/0 there have their limits here.
 _LEAST = 1e-300
 
 
@@ -25,13 +25,13 @@ class Values(NamedTuple):
 def layered_kernel(u, n, nu1, nu2, bonded):
     """:class:`Values` of a layer on a half-space for any Poisson ratios; the arguments broadcast.
 
-    L and L - 1 are right to a relative 1e-13 (L - 1 relative to its largest term where it changes sign), u dL/du to
-    1e-13 of the larger of |L - 1| and itself.
+    The relative error of L and of L - 1 is 1e-13 (where L - 1 changes sign, relative to its largest term). The error of
+    u dL/du is 1e-13 of the larger of |L - 1| and |u dL/du|.
 
     u : wave number times thickness, >= 0
     n : E1*/E2* >= 0; 0 on a rigid base, where L(0) = 0
-    nu1, nu2 : Poisson ratios of layer and half-space, in (-1, 0.5]; not used without friction
-    bonded : perfect bond, or a frictionless interface
+    nu1, nu2 : Poisson ratios of layer and half-space, in (-1, 0.5]; without friction they have no effect
+    bonded : True: perfect bond; False: frictionless interface
 
     >>> print(f"{float(layered_kernel(0.01, 0.5, 0.3, 0.3, False).L):.6f}")
     0.505000
@@ -42,7 +42,7 @@ def layered_kernel(u, n, nu1, nu2, bonded):
 
 
 def whole(u, n, nu1, nu2, bonded):
-    """L alone, of arrays u (at least one-dimensional); arguments as in :func:`layered_kernel`."""
+    """L alone, at an array u of at least one dimension; arguments as in :func:`layered_kernel`."""
     return _by_interface(bonded, lambda: _bonded_whole(u, n, nu1, nu2), lambda: _frictionless_whole(u, n))
 
 
@@ -52,15 +52,19 @@ def decaying_part(u, n, nu1, nu2, bonded):
 
 
 def _by_interface(bonded, of_bonded, of_frictionless):
-    """The values of the one function whose interface occurs, or of both, each for its cases."""
+    """The values for bonded and for frictionless cases, each from its own function. A function whose interface does not
+    occur is not called."""
     if np.all(bonded):
         return of_bonded()
     return np.where(bonded, of_bonded(), of_frictionless()) if np.any(bonded) else of_frictionless()
 
 
 class _Frictionless(NamedTuple):
-    """Terms of L = [s² + n(sc + u)]/[(sc + u) + n(s² - u²)], s = sinh u, c = cosh u. With e = exp(-2u): rest = 1 - e,
-    e4 = 4e, ue4 = 4ue. Multiplied by 4e: wedge = sc + u, gap = s² - u², excess = sc - u, and below, the denominator."""
+    """Terms of L = [s² + n(sc + u)]/[(sc + u) + n(s² - u²)], s = sinh u, c = cosh u.
+
+    With e = exp(-2u): rest = 1 - e, e4 = 4e, ue4 = 4ue. The others are multiplied by 4e: wedge = sc + u, gap = s² - u²,
+    excess = sc - u, and `below`, the denominator.
+    """
 
     e: np.ndarray
     rest: np.ndarray
@@ -73,14 +77,14 @@ class _Frictionless(NamedTuple):
 
 
 def _frictionless_terms(u, n):
-    """The terms at u > 0, an array of any order in memory."""
-    u = np.ascontiguousarray(u)  # of another order, reshape(-1) below is a copy and the series written there are lost
+    """The terms at u > 0, an array in any memory order."""
+    u = np.ascontiguousarray(u)  # in another order, reshape(-1) below makes a copy, and what is written there is lost
     e, rest = np.exp(-2 * u), -np.expm1(-2 * u)
     e4 = 4 * e
     ue4 = u * e4
     wedge = rest * (1 + e) + ue4
     gap, excess = rest * rest - u * ue4, wedge - 2 * ue4
-    if np.any(n > 2):  # for smaller n what the gap and the excess lose by cancellation is small beside the wedge
+    if np.any(n > 2):  # for smaller n, the digits that gap and excess lose by cancellation are small beside the wedge
         small = np.flatnonzero(u < _SERIES)
         gap.reshape(-1)[small], half_excess = _series(u.reshape(-1)[small], e.reshape(-1)[small])
         excess.reshape(-1)[small] = 2 * half_excess
@@ -104,8 +108,8 @@ def _frictionless(u, n):
 
 
 class _Bond(NamedTuple):
-    """Constants of the bonded kernel: c1 = (alpha g2 - g1)/(1 + alpha g2) and c2 = (alpha - 1)/(alpha + g1), alpha =
-    G1/G2, g = 3 - 4 nu; and 1 - c1, 1 - c2, 1 + c1, 1 - c1 c2 in product form."""
+    """Constants of the bonded kernel: c1 = (alpha g2 - g1)/(1 + alpha g2) and c2 = (alpha - 1)/(alpha + g1), with alpha
+    = G1/G2 and g = 3 - 4 nu; and 1 - c1, 1 - c2, 1 + c1, 1 - c1 c2, each as a product."""
 
     c1: np.ndarray
     c2: np.ndarray
@@ -131,11 +135,11 @@ def bond_constants(n, nu1, nu2):
 
 
 def _bonded_below(u, e, rest, bond):
-    """Denominator 1 - (c1 + c2 + 4c2u²)e + c1c2e² of L and its derivative by u."""
+    """The denominator 1 - (c1 + c2 + 4c2u²)e + c1c2e² of L, and its derivative by u."""
     c1, c2, one_c1, one_c2, _, _ = bond
-    hard = c2 > 0  # 1 - c2 e may nearly vanish at small u: the denominator is written in 1 - c1, 1 - c2 and s² - u²
+    hard = c2 > 0  # 1 - c2 e may nearly vanish at small u: so the denominator is formed of 1 - c1, 1 - c2 and s² - u²
     if not np.all(hard):
-        one_c1e = np.where(c1 > 0, one_c1 + c1 * rest, 1 - c1 * e)  # 1 - c1 e, where nothing cancels for either sign
+        one_c1e = np.where(c1 > 0, one_c1 + c1 * rest, 1 - c1 * e)  # 1 - c1 e, without cancellation for either sign
         soft = one_c1e * (1 - c2 * e) - 4 * c2 * u * u * e
         d_soft = e * (2 * (c1 + c2 + 4 * c2 * u * u) - 8 * c2 * u - 4 * c1 * c2 * e)
         if not np.any(hard):
@@ -175,7 +179,7 @@ def _gap_and_excess(u, e, rest):
 
 
 def _series(u, e):
-    """The same by the series of cosh 2u - 1 - 2u² = Σ (2u)^(2j)/(2j)!, j >= 2, and of sinh 2u - 2u."""
+    """Gap and excess by the series of cosh 2u - 1 - 2u² = Σ (2u)^(2j)/(2j)!, j >= 2, and of sinh 2u - 2u."""
     z = 4 * u * u
     gap = z * z / 12 * _nested(z, (30, 56, 90, 132, 182, 240, 306, 380))
     return e * gap, e * u * z / 3 * _nested(z, (20, 42, 72, 110, 156, 210, 272, 342))

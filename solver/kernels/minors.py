@@ -1,4 +1,5 @@
-"""The recursion of :mod:`.stack`: the minors x = (UW, WS, -US, WT, TS) of a wave, from below a layer to above it.
+"""The recursion of :mod:`.stack`: it carries the minors x = (UW, WS, -US, WT, TS) of a wave from the bottom of a layer
+to its top.
 
 Tractions are in G1, the shear modulus of the top layer, and z = k h_j. In a layer of the shear modulus G, dx/dζ = B x
 with g = G1/G, c = g (1 - 2ν)/(2(1 - ν)), d = 2/(g (1 - ν)), e = ν/(1 - ν) and
@@ -9,7 +10,8 @@ with g = G1/G, c = g (1 - 2ν)/(2(1 - ν)), d = 2/(g (1 - ν)), e = ν/(1 - ν) 
         [d -2e 0  0  c]
         [0  0  d  0  0]
 
-X (B, 5, S, M) are x at M wave numbers, S = 1, or x and its derivative by ln k, S = 2. Only ratios count.
+X (B, 5, S, M) has x at M wave numbers (S = 1), or x and its derivative by ln k (S = 2). Only ratios of the minors
+count.
 """
 
 from math import factorial
@@ -18,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 #: Where y = 2z is below 1, sinh y - y = y³/6 (1 + y²/20 + ...) and cosh y - 1 - y²/2 = y⁴/24 (1 + y²/30 + ...) are
-#: taken from so many terms of these series, whose coefficients are these, the highest first.
+#: sums of this many terms. Below are the coefficients in the brackets, the highest first.
 _TERMS = 9
 _ODD = [6 / factorial(3 + 2 * i) for i in reversed(range(_TERMS))]
 _EVEN = [24 / factorial(4 + 2 * i) for i in reversed(range(_TERMS))]
@@ -43,20 +45,20 @@ class LayerPowers(NamedTuple):
         return cls(np.stack([np.broadcast_to(np.eye(5), B.shape), B, two, three, two @ two, 4 * three], axis=1))
 
     def combined(self, factors, first=0):
-        """Σ factor_i B^(first + i) at each wave number, (B, 5, 5, M), from five `factors` (B, 5, M)."""
+        """Σ factor_i B^(first + i) at each wave number, (B, 5, 5, M), with five `factors` (B, 5, M)."""
         return _spread(self.powers[:, first : first + 5], factors)
 
 
 def _spread(powers, factors):
-    """Σ factor_i power_i (B, ..., M) of five arrays `powers` (B, 5, ...) and `factors` (B, 5, M)."""
+    """Σ factor_i power_i, (B, ..., M), with five arrays `powers` (B, 5, ...) and `factors` (B, 5, M)."""
     shape = powers.shape[2:]
     flat = powers.reshape(len(powers), 5, -1).transpose(0, 2, 1) @ factors
     return flat.reshape(len(powers), *shape, -1)
 
 
 def base(g, nu, rigid, slopes, count):
-    """X at `count` wave numbers on a half-space with G1/G = g and Poisson ratio nu (B,), or on a rigid base, where
-    `rigid` (B,). `slopes`: with the derivative, which is 0."""
+    """X at `count` wave numbers on a half-space with G1/G = g and Poisson ratio nu (B,), or on a rigid base where
+    `rigid` (B,). `slopes`: whether X includes the derivative, which is 0."""
     minors = np.stack([3 - 4 * nu, 2 * g * (1 - 2 * nu), 4 * g * (1 - nu), 4 * g * (1 - nu), 4 * g * g], axis=1)
     X = np.zeros((len(g), 5, 1 + slopes, count))
     X[:, :, 0] = np.where(rigid[:, None], [0.0, 0.0, 0.0, 0.0, 1.0], minors)[:, :, None]
@@ -64,13 +66,17 @@ def base(g, nu, rigid, slopes, count):
 
 
 def scaled(X):
-    """X over UW - US + TS, none of which is negative, nor are all 0: so that nothing overflows in many layers."""
+    """X over UW - US + TS, so that nothing overflows in many layers. None of the three terms is negative, and they are
+    never all 0."""
     return X * (1 / (X[:, 0, 0] + X[:, 2, 0] + X[:, 4, 0]))[:, None, None]
 
 
 def across(X, free, Kn, Kt):
-    """X above an interface, from that below it. free : (B,), there is no friction; Kn, Kt : (B, M) or None, compliances
-    of springs times G1 k."""
+    """X above an interface, from X below it.
+
+    free : (B,) bool, the interface is frictionless
+    Kn, Kt : (B, M) or None, normal and tangential compliance of its springs, times G1 k
+    """
     if Kn is not None:
         X = _on_springs(X, Kn, Kt)
     if free.any():
@@ -93,7 +99,7 @@ def _on_springs(X, Kn, Kt):
 
 
 def through(layer, z, X):
-    """X above a layer, times e^(-2z), with X below it; z (B, M)."""
+    """X above a layer, times e^(-2z), from X below it; z (B, M)."""
     out = np.einsum("bijm,bjsm->bism", layer.combined(_exponential(z)), X)
     if X.shape[2] > 1:
         out[:, :, 1] += z[:, None] * (layer.powers[:, 1] @ out[:, :, 0])
@@ -101,7 +107,8 @@ def through(layer, z, X):
 
 
 def at_surface(layer, z, X):
-    """x4 and x5 above a layer, and their derivatives by ln k, times e^(-2z): (B, 2, S, M), as :func:`through`."""
+    """x4 and x5 above a layer, and their derivatives by ln k, times e^(-2z): (B, 2, S, M). Arguments as those of
+    :func:`through`."""
     factors = _exponential(z)
     out = np.einsum("bijm,bjsm->bism", _spread(layer.powers[:, :5, 3:], factors), X)
     if X.shape[2] > 1:
@@ -127,7 +134,7 @@ def _exponential(z):
 
 
 def numerator(layer, z, X, nu1):
-    """x4 - (1 - nu1) x5 at the surface, the part left out that is 0 there, and its derivative by ln k; times e^(-2z).
+    """x4 - (1 - nu1) x5 at the surface and its derivative by ln k, times e^(-2z), without the part that is exactly 0.
 
     exp(zB) e^(-2z) is P+ + e^(-2z) [1 - B⁴/16 + z (B - B³/4) + z²/2 (B² - B⁴/4)] + e^(-4z) (B⁴ - 2B³)/32, and
     (0, 0, 0, 1, -(1 - nu1)) P+ = 0.

@@ -1,21 +1,22 @@
-"""Random stacks, which choose the few nodes at which a kernel of :mod:`.stack` determines itself."""
+"""Random stacks, by which the few nodes of kernels of :mod:`.stack` are chosen (:class:`~.kernel.Sampler`)."""
 
 import numpy as np
 
 from .kernel import Sampler
 from .stack import Stack
 
-#: Layers of a random stack. Two equal neighbours, which occur, are one; deeper stacks have the same waves.
+#: Number of layers of a random stack. Neighbours may be equal, and so act as one layer. Deeper stacks have waves of the
+#: same kinds.
 _LAYERS = 3
-#: So many stacks are drawn of which the nearest to the wanted stiffness are taken.
+#: Number of stacks that are drawn. From them those nearest to the wanted stiffness are taken.
 _POOL = 4000
-#: One case in four is softer than its class: so the class of a stack may be chosen too high.
+#: Share of cases that are softer than their class, so that the nodes also serve stacks whose class was chosen too high.
 _SOFTER = 0.25
 
 
 def random_stacks(random, stiffness):
-    """:class:`~.stack.Stack` (S,) of about the `stiffness` (S,) and some of less: moduli, thicknesses and springs of
-    all sizes that make no stiffer one, one interface in four frictionless, one base in five rigid."""
+    """:class:`~.stack.Stack` of S random cases of about the `stiffness` (S,); some are softer. Moduli, thicknesses and
+    springs have all sizes that this allows. One interface in four is frictionless, one base in five is rigid."""
     wanted = np.where(random.random(len(stiffness)) < _SOFTER, stiffness ** random.random(len(stiffness)), stiffness)
     most, size = max(3.0, 2 * stiffness.max()), (_POOL, _LAYERS)
     contrast, thickness = (random.random((_POOL, 1)) * np.log(v) for v in (most, min(most, 1e4)))
@@ -37,5 +38,5 @@ def random_stacks(random, stiffness):
     return stacks.take(order[np.clip(place, 0, _POOL - 1)])
 
 
-#: tests/kernels/test_stack.py (test_few_nodes_determine_a_stack) finds the error of so many nodes.
+#: tests/kernels/test_stack.py (test_few_nodes_determine_a_stack) measures the error with these numbers of nodes.
 SAMPLER = Sampler(random_stacks, (52, 120, 240, 360, 0, 88), (200, 300, 600, 600, 0, 300), mild=30.0)

@@ -1,8 +1,8 @@
 """Stacks of layers on a half-space or a rigid base, by a recursion on five numbers.
 
-In a layer the amplitudes of a wave, the state (U, W, T, S) of displacements and tractions, obey a linear equation in
-ζ = kz. The 2x2 minors of its two solutions that fit to the layers below, x = (UW, WS, -US, WT, TS), obey dx/dζ = B x
-(:mod:`.minors`). At the surface L = x4/((1 - nu1) x5). All of it is formed without cancellation, also at nu = 1/2.
+The amplitudes of a wave in a layer are its state (U, W, T, S), displacements and tractions. It obeys a linear equation
+in ζ = kz. Two of the solutions fit to the layers below. Their 2x2 minors x = (UW, WS, -US, WT, TS) obey dx/dζ = B x
+(:mod:`.minors`). At the surface L = x4/((1 - nu1) x5). Nothing cancels, not even at nu = 1/2.
 """
 
 from typing import NamedTuple
@@ -15,9 +15,9 @@ from .minors import LayerPowers, across, at_surface, base, numerator, scaled, th
 from .transfer_stack import stack_waves
 from .two_layers import thin_layer_coefficients
 
-#: Below this u, L - 1 is the difference of two terms, none of which is small there.
+#: Below this u, L - 1 is formed as the difference of two terms, neither of which is small there.
 _NEAR = 0.7
-#: Values are computed for this many cases times nodes at a time, so that intermediate arrays stay in the cache.
+#: Number of values, cases times nodes, that are computed at a time, so that intermediate arrays stay in the cache.
 _BLOCK = 2048
 
 
@@ -26,12 +26,12 @@ class Stack(NamedTuple):
     """The :class:`~solver.kernels.kernel.Kernel` and the :class:`~.transfer.Layered` of B stacks of N layers, the top
     first.
 
-    n, nu, depth : (B, N), moduli E_j*, Poisson ratios, and thickness over that of the first layer. The unit of moduli
-        is E2*, or E1* on a rigid base, where the first layer has n = 1
-    free, cn, ct : (B, N), the interface below each layer: whether it is frictionless; and its normal and tangential
-        compliance times E1*/h1, 0 of a perfect bond
+    n, nu, depth : (B, N), modulus E_j*, Poisson ratio, and thickness over that of the first layer, for each layer. The
+        unit of moduli is E2*, or E1* on a rigid base, where the first layer has n = 1
+    free, cn, ct : (B, N), for the interface below each layer: whether it is frictionless; and its normal and tangential
+        compliance times E1*/h1, 0 for a perfect bond
     nu2, rigid : (B,), Poisson ratio of the base, whose modulus is 1, and whether it is rigid
-    sampler : of the family, or None: the kernel is then evaluated at all nodes
+    sampler : Sampler of the family; None: the kernel is evaluated at all nodes
     """
 
     n: np.ndarray
@@ -55,14 +55,15 @@ class Stack(NamedTuple):
 
     @property
     def slope(self):
-        """dL/du at 0. Layers that are bonded to the base, and groups of layers that are bonded to each other above a
-        frictionless interface, add their parts; so does the normal compliance of springs."""
+        """dL/du at u = 0, a sum of three kinds of parts: one for each layer that is bonded to the base, one for each
+        group of layers that are bonded to each other above a frictionless interface, and one for the normal compliance
+        of springs."""
         of_base = np.where(self.rigid[:, None], 0.0, self.n)
         _, A2 = thin_layer_coefficients(of_base, self.nu, self.nu2[:, None], True)
         softness, slope = self.n[:, :1] / self.n * self.depth, self.cn.sum(axis=1) / 2
         on_base = ~np.logical_or.accumulate(self.free[:, ::-1], axis=1)[:, ::-1]
         slope = slope + np.where(on_base, softness * A2, 0.0).sum(axis=1)
-        group = np.cumsum(self.free[:, ::-1], axis=1)[:, ::-1]  # 0 is bonded to the base, 1 lies upon the lowest slip
+        group = np.cumsum(self.free[:, ::-1], axis=1)[:, ::-1]  # 0: bonded to the base; 1: on the lowest slip plane
         squeezed, lateral = softness * (1 - 2 * self.nu) / (1 - self.nu) ** 2, self.nu / (1 - self.nu)
         for number in range(1, int(group.max(initial=0)) + 1):
             in_group = group == number
@@ -75,9 +76,9 @@ class Stack(NamedTuple):
 
     @property
     def stiffness(self):
-        """The largest of L, and of the lengths over h1 at which L varies: the thickness of the whole, and those over
-        which plates and membranes spread their load, at most their thickness times their modulus over that of the
-        softest body below."""
+        """The larger of the largest L and the longest length, over h1, at which L varies. Such lengths are the
+        thickness of the whole stack, and those over which plates and membranes spread their load: at most their
+        thickness times their modulus over that of the softest body below."""
         softest = np.maximum((self.n[:, :1] / self.n).max(axis=1), self.L0) + self.cn.max(axis=1) / 2
         bodies = np.hstack([self.n, np.where(self.rigid, np.inf, 1.0)[:, None]])
         under = np.minimum.accumulate(bodies[:, ::-1], axis=1)[:, ::-1][:, 1:]
@@ -101,7 +102,8 @@ class Stack(NamedTuple):
         return L1, uL
 
     def _blocks(self, u):
-        """Slices of cases, their kernel, its :class:`~.minors.LayerPowers` s, and their u (b, M)."""
+        """Yield for each block of cases: their slice, their kernel, the :class:`~.minors.LayerPowers` of each layer,
+        and their u (b, M)."""
         step, G = max(1, _BLOCK // max(1, u.shape[1])), self.n * (1 - self.nu)
         layers = [LayerPowers.of(G[:, 0] / G[:, j], self.nu[:, j]) for j in range(self.n.shape[1])]
         for low in range(0, len(u), step):
@@ -109,8 +111,8 @@ class Stack(NamedTuple):
             yield rows, self.take(rows), [LayerPowers(layer.powers[rows]) for layer in layers], u[rows]
 
     def _near_and_far(self, u, layers):
-        """L - 1 and u dL/du (B, M). The part of the numerator x4 - (1 - nu1) x5 and its derivative that vanishes but
-        does not decay is left out where the rest is small."""
+        """L - 1 and u dL/du (B, M). A part of the numerator x4 - (1 - nu1) x5, and of its derivative, is exactly 0, but
+        its rounding does not decay with u. It is left out where the rest is small."""
         layer, X = self._under_top(u, layers, slopes=True)
         x4, x5 = at_surface(layer, u, X).transpose(1, 2, 0, 3)
         complement = 1 - self.nu[:, :1]
@@ -123,7 +125,7 @@ class Stack(NamedTuple):
         return L1, (d_above - L1 * d_below) / below
 
     def _under_top(self, u, layers, slopes):
-        """The top layer (:class:`~.minors.LayerPowers`), and X below it; `slopes`: with derivatives by ln u."""
+        """The :class:`~.minors.LayerPowers` of the top layer, and X below it; `slopes`: whether X has derivatives."""
         g = (1 - self.nu2) / (self.n[:, 0] * (1 - self.nu[:, 0]))
         X = base(g, self.nu2, self.rigid, slopes, u.shape[1])
         for j in reversed(range(self.n.shape[1])):
@@ -157,7 +159,7 @@ class Stack(NamedTuple):
         return False
 
     def longest(self, h):
-        """Springs along an interface spread what drags the layers over sqrt(G h ct)."""
+        """Tangential springs at an interface spread the tractions that drag the layers over a length sqrt(G h ct)."""
         dragged = (self.depth * self.n / self.n[:, :1]).sum(axis=1) * self.ct.sum(axis=1)
         return max(1.0, (h * np.maximum(self.stiffness, np.sqrt(dragged))).max())
 

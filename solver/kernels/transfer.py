@@ -1,10 +1,11 @@
-"""The state of layer and body under a wave of unit traction: docs/stresses.md, Transfer.
+"""The state of layer and body under a wave of unit traction: docs/stress_fields.md, Transfer.
 
-A traction J0(kr) (normal, S) or J1(kr) (tangential, T) on the surface makes in each body the state v = (u, w, S, T) of
-x = kz: u and w are the displacements along r and z times 2 G k, S and T the stresses sz and trz, as amplitudes of J1,
-J0, J0 and J1. In a body dv/dx = A v, whose solutions are e^(-x) and e^x times polynomials of degree one. Nothing is
-divided by 1 - 2 nu. Where X = kh is below about 1 the state is carried from the surface down, which cancels nothing.
-Above, it is the sum of a wave that decays from the surface and one that decays from the interface: nothing overflows.
+The traction on the surface is J0(kr) (normal, S) or J1(kr) (tangential, T). In each body it causes a state
+v = (u, w, S, T), a function of x = kz: u and w are the displacements along r and z times 2 G k, S and T the stresses
+sz and trz. They are amplitudes of J1, J0, J0 and J1. In a body dv/dx = A v, whose solutions are e^(-x) and e^x times
+polynomials of degree one. Nothing is divided by 1 - 2 nu. Where X = kh is below about 1, the state is integrated from
+the surface down, and nothing cancels. Where X is larger, the state is the sum of a wave that decays from the surface
+and one that decays from the interface, and nothing overflows.
 """
 
 from collections.abc import Callable
@@ -14,16 +15,17 @@ import numpy as np
 
 from ..status import Codes
 
-#: Where X = kh is below it, the layer is thin. Against 113 bits 0.5 and 1.5 do as well (docs/stresses.md), so that
-#: cases whose h differ by a factor of 2 may have one limit in k.
+#: The layer is thin for waves with X = kh below this. With 0.5 and with 1.5 the states are as near to those of 113
+#: bits. So cases whose h differ by a factor of 2 may have one limit in k.
 THIN = 1.0
 #: Below _SERIES, x cosh x - sinh x is the sum of its first _TERMS powers: the difference loses digits.
 _SERIES, _TERMS = 0.8, 10
 
 
 class StatePart(Codes):
-    """Where a state is, and whether that of a half-space of the layer's material is left out of it: the difference is
-    formed without cancellation, and decays like a wave that was at the interface."""
+    """Which state is computed: that in the layer, that in the body, or the difference between that in the layer and
+    that of a half-space of the layer's material. The difference is formed without cancellation. It decays like a wave
+    that has been at the interface."""
 
     DIFFERENCE = 0
     LAYER = 1
@@ -33,7 +35,7 @@ class StatePart(Codes):
 class Bodies(NamedTuple):
     """Layers on bodies; the fields broadcast.
 
-    alpha : G1/G2 = n (1 - nu1)/(1 - nu2), 0 of a rigid base; nu1, nu2 : Poisson ratios; bonded : bool
+    alpha : G1/G2 = n (1 - nu1)/(1 - nu2), 0 on a rigid base; nu1, nu2 : Poisson ratios; bonded : bool
     """
 
     alpha: np.ndarray
@@ -43,12 +45,12 @@ class Bodies(NamedTuple):
 
     @classmethod
     def of(cls, layers):
-        """Those of :class:`~solver.kernels.two_layers.TwoLayers`."""
+        """The bodies of :class:`~solver.kernels.two_layers.TwoLayers`."""
         return cls(layers.n * (1 - layers.nu1) / (1 - layers.nu2), layers.nu1, layers.nu2, layers.bonded)
 
     def jumps(self, v):
-        """What is 0 at an interface with the state v above it, over 1 + alpha, two arrays. Bonded: the displacements
-        less those of the body; frictionless: T, and the normal displacement less that of the body."""
+        """Two arrays that must be 0 at an interface where v is the state in the layer, over 1 + alpha. Bonded: both
+        displacements less those of the body. Frictionless: T, and the normal displacement less that of the body."""
         u, w, S, T = v
         above, below = 1 / (1 + self.alpha), self.alpha / (1 + self.alpha)
         normal, cross = 2 * (1 - self.nu2), 1 - 2 * self.nu2
@@ -58,27 +60,30 @@ class Bodies(NamedTuple):
 
 
 class Waves(Protocol):
-    """Waves k (K,) in layers and body, regions that are counted from 0, the first layer: :class:`LayerWaves`,
+    """Waves k (K,) in N layers and a body, which are the regions 0 to N: :class:`LayerWaves`,
     :class:`~.transfer_stack.StackWaves`. The state v = (u, w, S, T) obeys dv/dx = A v, x = kz, within each region.
 
-    nu : (B, N + 1), Poisson ratios of N layers and the body
+    nu : (B, N + 1), Poisson ratio of each region
     """
 
     nu: np.ndarray
 
     def state(self, region, z, less=False):
-        """u, w, S, T (B, Z, K) each at depths z (B, Z) of a region; `less` those of a half-space of the first layer, in
-        which the depths then are."""
+        """u, w, S, T, (B, Z, K) each, at depths z (B, Z) in a region. `less`: less those of a half-space of the first
+        layer's material; the region must then be the first layer."""
 
     def antiplane(self, region, z, less=False):
-        """Q and v' (B, Z, K) each of a tangential unit wave."""
+        """Q and v', (B, Z, K) each, of :func:`antiplane` at depths z (B, Z) in a region."""
 
 
 class Layered(Protocol):
-    """What the fields need of N layers on bodies, B cases: :class:`~.two_layers.TwoLayers`, :class:`~.stack.Stack`.
+    """The protocol of N layers on a body, B cases, as the stress fields need it: :class:`~.two_layers.TwoLayers`,
+    :class:`~.stack.Stack`.
 
-    poisson, shear : (B, N + 1), Poisson ratio and 2 G of each region, in the unit of moduli. G of a rigid body is any
-    rigid : (B,) bool, the body is; slips : (B,) bool, some interface is frictionless
+    poisson, shear : (B, N + 1), Poisson ratio and 2 G of each region, in the unit of moduli. The shear modulus of a
+        rigid body has no meaning
+    rigid : (B,) bool, whether the body is rigid
+    slips : (B,) bool, whether some interface is frictionless
     """
 
     poisson: np.ndarray
@@ -88,24 +93,24 @@ class Layered(Protocol):
     take: Callable
 
     def tops(self, h):
-        """(B, N + 1): depth of the top of each region, with the first layer of thickness h (B,)."""
+        """(B, N + 1): depth of the top of each region, if the first layer has the thickness h (B,)."""
 
     def uniform(self):
-        """Whether no case has a layer that is felt."""
+        """Whether the layer makes no difference in any case."""
 
     def longest(self, h):
-        """The longest length, or more, over which the state varies, of all cases; at least 1."""
+        """An upper bound of the lengths over which the state varies in any case; at least 1."""
 
     def few(self, k, h):
-        """So many of the ascending waves k are to be taken by themselves."""
+        """Number of the first of the ascending waves k that must be computed by themselves."""
 
     def waves(self, k, h, load):
-        """:class:`Waves` of ascending k, all or none of which are among the `few`; `load` : S and T on the surface. The
-        thickness of a layer differs by a factor of 2 at most."""
+        """:class:`Waves` of ascending k, either all among the `few` or none. `load` : S and T on the surface. The
+        thickness of a layer must not differ between cases by more than a factor of 2."""
 
 
 def decaying(x, nu, S, T):
-    """State at the depth x under surface tractions S, T of a half-space, H(x) (S, T)."""
+    """State H(x) (S, T) of a half-space at the depth x under the surface tractions S, T."""
     decay, shift = np.exp(-x), x * (S - T)
     u = decay * ((1 - 2 * nu) * S - 2 * (1 - nu) * T - shift)
     w = decay * ((1 - 2 * nu) * T - 2 * (1 - nu) * S - shift)
@@ -113,7 +118,8 @@ def decaying(x, nu, S, T):
 
 
 def growing(y, nu, S, T):
-    """Its mirror image: the state at the height y above tractions S, T, decaying upwards."""
+    """The mirror image of :func:`decaying`: the state at the height y above the tractions S, T, from where it decays
+    upwards."""
     u, w, S, T = decaying(y, nu, S, -T)
     return u, -w, S, -T
 
@@ -125,8 +131,10 @@ def derivative(v, nu):
 
 
 def carried(x, nu, v):
-    """State at the depth x below one of state v, e^(Ax) v = [cosh x + sinh x A + (x sinh x)/2 N + (x cosh x - sinh x)/2
-    A N] v with N = A A - 1; for x below about 1.5."""
+    """State e^(Ax) v at the distance x below a plane with the state v; for x below about 1.5. With N = A A - 1,
+
+    e^(Ax) = cosh x + sinh x A + (x sinh x)/2 N + (x cosh x - sinh x)/2 A N.
+    """
     first = derivative(v, nu)
     second = tuple(a - b for a, b in zip(derivative(first, nu), v, strict=True))
     third = derivative(second, nu)
@@ -145,7 +153,7 @@ def _odd_series(x):
 
 
 def _solved(first, second, right):
-    """The two numbers by which `first` and `second` (two arrays each) are `right`."""
+    """The two numbers c, d with c `first` + d `second` = `right`; all three are pairs of arrays."""
     (a, c), (b, d), (e, f) = first, second, right
     determinant = a * d - b * c
     return (e * d - b * f) / determinant, (a * f - e * c) / determinant
@@ -161,8 +169,8 @@ def thin_surface(bodies, X, S, T):
 
 
 def thick_waves(bodies, X, S, T):
-    """Tractions (S, T) of the two waves of a thick layer: of the one that decays from the surface, less those of a
-    half-space; and of the one that decays from the interface."""
+    """Tractions (S, T) of the two waves in a thick layer: of the wave that decays from the surface, less those of a
+    half-space; and of the wave that decays from the interface."""
     nu = bodies.nu1
 
     def column(S, T):
@@ -180,7 +188,7 @@ def wave_state(kind, bodies, X, x, load, thin):
 
     kind : :class:`StatePart`; bodies : :class:`Bodies`; X, x : kh and kz; all broadcast
     load : (S, T) at the surface, (-1, 0) or (0, 1)
-    thin : bool, whether X is below about 1 (:data:`THIN`)
+    thin : bool, whether all X are below about 1 (:data:`THIN`)
     """
     if kind == StatePart.BODY:
         _, _, S, T = wave_state(StatePart.LAYER, bodies, X, X, load, thin)
@@ -196,7 +204,7 @@ def wave_state(kind, bodies, X, x, load, thin):
 
 def antiplane(kind, bodies, X, x):
     """The pair (Q, v') of a wave of tangential traction: shear stress and displacement across the plane of the wave.
-    Frictionless or rigid bodies have none."""
+    In a body below a frictionless interface, and in a rigid one, both are 0."""
     alpha, bonded = bodies.alpha, bodies.bonded
     returned, passed = np.where(bonded, (alpha - 1) / (alpha + 1), 1.0), np.where(bonded, 2 / (alpha + 1), 0.0)
     around = passed * np.exp(-2 * X) - np.expm1(-2 * X)  # 1 - returned e^(-2X)
@@ -209,7 +217,7 @@ def antiplane(kind, bodies, X, x):
 
 
 def radial_sum(v, nu):
-    """M of sr + st = ∫ M p^ J0 k dk, of a state v."""
+    """M of sr + st = ∫ M p^ J0 k dk, from a state v."""
     return (2 * nu * v[2] + (1 + nu) * v[0]) / (1 - nu)
 
 
@@ -217,7 +225,7 @@ class LayerWaves(NamedTuple):
     """The :class:`Waves` of one layer.
 
     bodies : :class:`Bodies`, (B,) each; h : (B,), its thickness
-    thin : bool, whether kh is below about 1 (:data:`THIN`)
+    thin : bool, whether all kh are below about 1 (:data:`THIN`)
     """
 
     bodies: Bodies

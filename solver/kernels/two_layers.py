@@ -1,5 +1,5 @@
-"""A layer on a half-space, frictionless or bonded: its kernel, formed by :mod:`.closed_form`, and A1 + A2 u, which
-is the kernel of a thin one."""
+"""A layer on a half-space, frictionless or bonded: its kernel, formed by :mod:`.closed_form`, and the kernel A1 + A2 u
+of a thin layer."""
 
 from typing import NamedTuple
 
@@ -93,15 +93,16 @@ class TwoLayers(NamedTuple):
 
 
 def random_layers(random, n):
-    """:class:`TwoLayers` of n (S,), two thirds of them bonded; one Poisson ratio in five is below 0."""
+    """:class:`TwoLayers` with the moduli n (S,). Two thirds of them are bonded; one Poisson ratio in five is below
+    0."""
     size = len(n)
     bonded = random.random(size) < 0.67
     nu = np.where(random.random((2, size)) < 0.8, random.uniform(0, 0.5, (2, size)), random.uniform(-1, 0, (2, size)))
     return TwoLayers(n, *nu, bonded)
 
 
-#: The numbers of few nodes are the most that any octave of h/a asks for; tests/body/test_wave_rule.py checks what they
-#: leave out.
+#: The numbers of few nodes are the largest that any octave of h/a needs; tests/body/test_wave_rule.py checks the error
+#: that remains.
 SAMPLER = Sampler(random_layers, (52, 90, 104, 104))
 
 
@@ -109,9 +110,9 @@ def thin_layer_coefficients(n, nu1, nu2, bonded):
     """Coefficients A1 and A2 (B,) of the thin-layer kernel L(u) ≈ A1 + A2 u, Eq. (2), for any Poisson ratios. Arguments
     as those of :func:`.closed_form.layered_kernel`, (B,) each.
 
-    A1 = n; A2 = 1/2 without friction. Bonded, with alpha = G1/G2 = n (1 - nu1)/(1 - nu2), it is (1 + alpha (1 - 2 nu2))
-    (1 - 2 nu1 - alpha (1 - 2 nu2)) / (2 (1 - nu1)²); for nu1 = nu2 that is the paper's Eq. (2). A2 <= 0 (nu1 = 1/2, or
-    alpha >= (1 - 2 nu1)/(1 - 2 nu2)) means that the thin-layer equation does not apply.
+    A1 = n. Without friction A2 = 1/2. With a bond, A2 = (1 + alpha (1 - 2 nu2)) (1 - 2 nu1 - alpha (1 - 2 nu2)) /
+    (2 (1 - nu1)²), alpha = G1/G2 = n (1 - nu1)/(1 - nu2); for nu1 = nu2 that is the paper's Eq. (2). A2 <= 0 (nu1 =
+    1/2, or alpha >= (1 - 2 nu1)/(1 - 2 nu2)) means that the thin-layer equation does not apply.
 
     >>> A1, A2 = thin_layer_coefficients(0.5, 0.3, 0.3, True)
     >>> print(float(A1), round(float(A2), 12))
@@ -124,5 +125,6 @@ def thin_layer_coefficients(n, nu1, nu2, bonded):
 
 
 def layer_modulus(n):
-    """E1* in the unit of moduli. That is E2*, so E1* is n; on a rigid base, n = 0, it is E1* itself, so E1* is 1."""
+    """E1* in the unit of moduli. The unit is E2*, and E1* is n. On a rigid base, n = 0, the unit is E1* itself, and E1*
+    is 1."""
     return n + (n == 0)

@@ -1,7 +1,7 @@
-"""What the words of a problem mean: its micro laws, shapes and profiles by their names, and its table of parameters.
+"""The vocabulary of a problem: its micro laws, shapes and profiles by their names, and its table of parameters.
 
-A :class:`Known` is a value that travels with the problem, to other threads and processes too. `register` adds to what
-calls know by themselves, :func:`default`; nothing else does.
+A :class:`Known` is a value that travels with the problem, to other threads and processes too. Only `register` adds to
+the vocabulary that every call has, :func:`default`.
 """
 
 import re
@@ -37,7 +37,7 @@ RESERVED = {*CONTROL, *_OF_PROBLEM, "E", "nu"}
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """Micro laws, shapes and profiles by name; a value, of which the methods `with_...` make others.
+    """Micro laws, shapes and profiles by name. It is a value: the methods `with_...` return others.
 
     Attributes
     ----------
@@ -59,7 +59,8 @@ class Known:
         return f"Known({', '.join(['what this package has', *names])})"
 
     def __reduce__(self):
-        """What this package has stays at home, and so do schemes, which other processes must have themselves."""
+        """Only the user's laws, shapes and profiles are pickled. Another process has those of this package itself, and
+        must have the schemes itself."""
         of_users = {name: law for name, law in self.laws.items() if law not in laws.BUILT_IN}
         kinds = {name: kind for name, kind in self.shapes.items() if shapes.SHAPES.get(name) is not kind}
         return _arrived, (of_users, kinds, dict(self.profiles))
@@ -72,8 +73,8 @@ class Known:
 
     @once
     def parameters(self) -> NamedRows:
-        """Name -> :class:`~solver.parameters.Parameter`: the common ones, those of the laws and of the shapes, and by
-        their names those of layers. ValueError where a law or a shape gives a parameter a name of something else."""
+        """Name -> :class:`~solver.parameters.Parameter`: the common ones, those of laws and shapes, and, by their full
+        names, those of layers. Raises ValueError if a parameter of a law or a shape has the name of something else."""
         rows = {**COMMON, **_declared_by_laws(self), **_declared_by_shapes(self)}
         rows["scheme"] = rows["scheme"]._replace(choices=self.schemes)
         rows["micro"] = rows["micro"]._replace(choices=tuple(self.laws))
@@ -87,11 +88,11 @@ class Known:
 
     @property
     def is_package(self) -> bool:
-        """Whether all of it is of this package."""
+        """Whether it contains only laws and shapes of this package."""
         return not self.profiles and len(self.laws) == len(laws.LAWS) and len(self.shapes) == len(shapes.SHAPES)
 
     def table(self, count: int) -> Mapping[str, Parameter]:
-        """The parameters with those of stacks of `count` layers among them; 0 : without these."""
+        """The parameters, including those of stacks of `count` layers; 0: without those of stacks."""
         if not count:
             return self.parameters
         names = [full_name(number, field) for number in range(1, count + 1) for field in LAYER]
@@ -102,13 +103,14 @@ class Known:
 
         Parameters
         ----------
-        name : of the parameter
-        values : a function: name of a parameter such as base -> its values, an array of any shape
+        name : name of the parameter
+        values : function from the name of a parameter, such as base, to its values, an array of any shape
         """
         return uses(self.parameters.get(name) or CONTROL[name], values)
 
     def with_law(self, law: Law) -> "Known":
-        """With a law, in place of one of its name. Raises ValueError for a law that is declared wrongly."""
+        """A vocabulary with this law, in place of any of the same name. Raises ValueError for a law that is declared
+        wrongly."""
         if self.laws.get(law.name) is law:
             return self
         taken = self.laws.get(law.name, law) in laws.BUILT_IN
@@ -121,7 +123,8 @@ class Known:
         return _checked(replace(self, laws=MappingProxyType({**self.laws, law.name: law})))
 
     def with_shape(self, kind: Kind) -> "Known":
-        """With a shape, in place of one of its name. Raises ValueError for the name of one of this package."""
+        """A vocabulary with this shape, in place of any of the same name. Raises ValueError if the name is that of a
+        shape of this package."""
         if self.shapes.get(kind.name) is kind:
             return self
         if kind.name in shapes.SHAPES:
@@ -129,17 +132,17 @@ class Known:
         return _checked(replace(self, shapes=MappingProxyType({**self.shapes, kind.name: kind})))
 
     def with_laws_of(self, micro: Any, names: Iterable[str] = ()) -> "Known":
-        """With what the values of `micro` are: laws as objects, and tables "table:FILE" that are not known yet. Where a
-        word, or one of the `names` of parameters, is not known, with the laws of installed packages too.
+        """A vocabulary with the laws that are values of `micro`: laws as objects, and new tables "table:FILE". If a
+        word, or one of the `names` of parameters, is still unknown, it also has the laws of installed packages.
 
         Parameters
         ----------
-        micro : a name or a law, or several; or what has a law as its attribute `law`
-        names : of parameters
+        micro : a name or a law, or several; or an object with a law as its attribute `law`
+        names : names of parameters
 
         Raises
         ------
-        ValueError : a table cannot be used; or something is not known, and a law of an entry point cannot be had
+        ValueError : a table cannot be used; or something is unknown, and the law of an entry point cannot be loaded
         """
         known, words = self, [law_in(word) for word in _flat(micro)]
         for word in words:
@@ -156,21 +159,24 @@ class Known:
         return known
 
     def with_tips(self, words: Any) -> "Known":
-        """With the tables "table:FILE" among the words of `shape` that are not known yet; ValueError."""
+        """A vocabulary with the new tables "table:FILE" among the words of `shape`. Raises ValueError for a table that
+        cannot be used."""
         known = self
         for word in _tables_among(words, table.PREFIX, self.shapes):
             known = known.with_shape(table.read(word))
         return known
 
     def with_profiles(self, parameters: Mapping[str, Any]) -> "Known":
-        """With the tables of profiles that stand among the parameters and are not known yet; ValueError."""
+        """A vocabulary with the new tables of profiles among the parameters. Raises ValueError for a table that cannot
+        be used."""
         words = [word for name, value in parameters.items() if name.endswith(".profile")
                  for word in _tables_among(value, profiles.PREFIX, self.profiles)]  # fmt: skip
         tables = {word: profiles.read(word) for word in words}
         return replace(self, profiles=MappingProxyType({**self.profiles, **tables})) if tables else self
 
     def only(self, parameters: Mapping[str, ArrayLike]) -> "Known":
-        """With those laws, shapes and profiles alone, beside the ones of this package, that the parameters name."""
+        """A vocabulary with only those laws, shapes and profiles that the parameters name, and those of this
+        package."""
         profile = [name for name in parameters if name.endswith(".profile")] if self.profiles else []
         named = {name: _words(parameters.get(name, ())) for name in ("micro", "shape", *profile)}
         named_laws = {name: law for name, law in self.laws.items() if law in laws.BUILT_IN or name in named["micro"]}
@@ -184,7 +190,7 @@ class Known:
         return all(name in self.parameters for name in names) and words <= {*self.laws}
 
     def _with_installed(self):
-        """With the laws of installed packages of which it has none of the name; and texts of what is wrong."""
+        """A vocabulary with the laws of installed packages whose names are not taken; and a list of error messages."""
         known, (pairs, wrong) = self, installed.laws()
         for law, where in pairs:
             if law.name not in self.laws:
@@ -196,7 +202,7 @@ class Known:
 
 
 def names_of(micro: Any) -> Any:
-    """The values of `micro`, or of a list of them, with names in place of laws."""
+    """`micro`, a value or a list of values, with the names of laws in place of the laws."""
     if isinstance(micro, (list, tuple)):
         return [names_of(each) for each in micro]
     micro = law_in(micro)
@@ -204,21 +210,22 @@ def names_of(micro: Any) -> Any:
 
 
 def law_in(micro: Any) -> Any:
-    """The law of what has one, such as the law of a scan; everything else as it is."""
+    """The law of an object that has one, such as the law of a scan; any other value as it is."""
     law = getattr(micro, "law", None)
     return law if isinstance(law, Law) else micro
 
 
 def default() -> Known:
-    """What a call knows that names nothing of its own: this package, and what the program has registered."""
+    """The vocabulary that every call has: this package, and everything that the program has registered."""
     return _default.known
 
 
 def register(kind: Law | Kind) -> Law | Kind:
-    """Make a law, or a shape, known by its name to all later calls, in place of one registered before, and its
-    parameters like any other.
+    """Make a law or a shape, and its parameters, available by name to all later calls, in place of one registered
+    before.
 
-    To travel to worker processes with the cases, its functions must have a name in a module that can be imported there.
+    To be sent to worker processes with the cases, its functions must have a name in a module that can be imported
+    there.
 
     Parameters
     ----------
@@ -226,16 +233,17 @@ def register(kind: Law | Kind) -> Law | Kind:
 
     Returns
     -------
-    Law or Kind : the same
+    Law or Kind : `kind`
 
     Raises
     ------
     ValueError : the name is not allowed, or is that of a law or shape of this package; a law has no version; a
-        parameter is declared wrongly, or has the name of something else, or of one of another law with other bounds
+        parameter is declared wrongly, or has the name of something else, or that of another law's parameter with other
+        bounds
 
     Examples
     --------
-    docs/own_law.md has a law in one file.
+    docs/own_law.md shows a law in one file.
     """
     _default.change(lambda known: known.with_law(kind) if isinstance(kind, Law) else known.with_shape(kind))
     return kind
@@ -247,7 +255,7 @@ def register_scheme(name: str) -> None:
 
 
 class _Default:
-    """What calls know by themselves. A change is a step of its own: of two that come at once both count."""
+    """The vocabulary that every call has. Changes are atomic: if two threads make one at the same time, both count."""
 
     def __init__(self, known):
         self.known, self._lock = known, shared_lock()
@@ -258,13 +266,13 @@ class _Default:
 
 
 def _checked(known):
-    """The same, whose table of parameters has been made: ValueError where it cannot."""
+    """`known`, after its table of parameters has been made. Raises ValueError if that is not possible."""
     _ = known.parameters
     return known
 
 
 def _declared_by_laws(known):
-    """Name -> row of the parameters of laws. ValueError where one cannot have its name."""
+    """Name -> row, for the parameters of laws. Raises ValueError if a parameter cannot have its name."""
     declared: dict[str, tuple] = {}
     of_shapes = {name for kind in known.shapes.values() for name in kind.parameters}
     for law in known.laws.values():
@@ -280,7 +288,7 @@ def _declared_by_laws(known):
 
 
 def _declared_by_shapes(known):
-    """Name -> row of the parameters of shapes. ValueError where one cannot have its name."""
+    """Name -> row, for the parameters of shapes. Raises ValueError if a parameter cannot have its name."""
     declared: dict[str, tuple] = {}
     of_laws = {name for law in known.laws.values() for name in law.parameters}
     for kind in known.shapes.values():
@@ -293,7 +301,7 @@ def _declared_by_shapes(known):
 
 
 def _flat(values):
-    """The words, laws and so on of one value, an array, or a list of such."""
+    """All words, laws and so on in a value, an array, or a list of these."""
     if isinstance(values, (list, tuple)):
         return [word for value in values for word in _flat(value)]
     return np.ravel(values).tolist() if hasattr(values, "__array__") else [values]
@@ -304,13 +312,13 @@ def _words(values):
 
 
 def _tables_among(words, prefix, known):
-    """The words "table:FILE" among others that are not known yet, each once, in order."""
+    """The words "table:FILE" among `words` that are not in `known`, each once, in order."""
     tables = (word for word in _flat(words) if isinstance(word, str) and word.startswith(prefix))
     return dict.fromkeys(word for word in tables if word not in known)
 
 
 def _arrived(of_users, kinds, tables):
-    """A :class:`Known` in the process to which it was sent."""
+    """A :class:`Known`, put together again in the process to which it was sent."""
     if not (of_users or kinds or tables) and default().schemes == PACKAGE.schemes:
         return PACKAGE
     return Known(
@@ -321,10 +329,10 @@ def _arrived(of_users, kinds, tables):
     )
 
 
-#: What this package has.
+#: The vocabulary of this package.
 PACKAGE = Known(laws.LAWS, shapes.SHAPES, MappingProxyType({}), COMMON["scheme"].choices)
 #: The table of its parameters.
 PARAMETERS = PACKAGE.parameters
 _default = _Default(PACKAGE)
-#: The name that scripts of version 0.1 have for it.
+#: Scripts of version 0.1 use this name.
 shapes.register = register

@@ -1,17 +1,18 @@
-"""The laws of installed packages, which these name as entry points."""
+"""The laws of installed packages, which declare them as entry points."""
 
 from functools import cache
 
 from ..laws import trial
 
-#: Entry points of this group are laws of installed packages.
+#: The group of these entry points.
 GROUP = "roughcoat.laws"
 
 
 @cache
 def laws():
-    """[(law, where it is from)] of all entry points, each a :class:`Law` or a list of them; texts of what is wrong."""
-    from importlib.metadata import entry_points  # takes a while, and most studies have no need of it
+    """A list of pairs (law, where it is from) from all entry points, each of which is a :class:`Law` or a list of laws;
+    and a list of error messages."""
+    from importlib.metadata import entry_points  # imported here: it takes a while, and most studies do not need it
 
     wrong, places = [], {}
     for entry in entry_points(group=GROUP):

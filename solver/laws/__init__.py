@@ -1,4 +1,4 @@
-"""Micro laws, one a file. docs/own_law.md says how to add one."""
+"""The micro laws; each is a file. docs/own_law.md says how to add one."""
 
 from types import MappingProxyType
 
@@ -31,7 +31,8 @@ def identity(law):
 
 
 def name_in(identity):
-    """The name in a text of :func:`identity`. The path of a table may have blanks, the version of another law too."""
+    """The name in a text of :func:`identity`. The path of a table may contain blanks, and so may the version of any
+    other law."""
     return identity.rpartition(" ")[0] if identity.startswith(own_table.PREFIX) else identity.partition(" ")[0]
 
 
@@ -39,5 +40,5 @@ BUILT_IN = (
     *(disc_cell.SMOOTH, disc_cell.LAW, power_law.LAW, lattice.SQUARE, lattice.HEX, heights.LAW, heights.UNIFORM_LAW),
     elastic_plastic.LAW,
 )
-#: Name -> Law of this package.
+#: Name -> Law, for the laws of this package.
 LAWS = MappingProxyType({law.name: law for law in BUILT_IN})

@@ -1,7 +1,7 @@
 """The micro law of the paper: identical spherical asperities, each in the middle of a disc-shaped cell, Eqs (6), (7).
 
-Both equations become explicit in the angle θ = arccos(b/B̄), b the radius of a spot and B̄ = 1/sqrt(pi Nbar) that of the
-cell. With p = p* q and A = A* g,
+Both equations become explicit in the angle θ = arccos(b/B̄), where b is the radius of a spot and B̄ = 1/sqrt(pi Nbar)
+that of the cell. With p = p* q and A = A* g,
 
     p* = 2 E B̄/(3 Ra),  A* = B̄²/Ra,  q = cos³θ/(θ + sinθ cosθ),  g = cos²θ - (4/3) q sinθ,  λ = cos²θ,
 
@@ -29,22 +29,22 @@ PARAMETERS = {
 
 
 def scales(E, Nbar, Ra):
-    """p* = 2 E B̄/(3 Ra) (unit of E) and A* = B̄²/Ra (unit of Ra)."""
+    """p* = 2 E B̄/(3 Ra), in the unit of E, and A* = B̄²/Ra, in the unit of Ra."""
     radius = 1 / np.sqrt(np.pi * Nbar)  # B̄
     return 2 * E * radius / (3 * Ra), radius**2 / Ra
 
 
 def spot_curve(y):
-    """q(y), g(y) of Eqs (7) and (6) and their derivatives; y = cot θ > 0 of any shape."""
+    """q(y) of Eq. (7), g(y) of Eq. (6), and their derivatives; y = cot θ > 0 has any shape."""
     y = np.asarray(y, dtype=float)
     q, dq, sin, sin2, cos2, theta, sc, slope = _pressure(y)
-    # d(q sinθ)/dθ, written so that nothing cancels but in θ - sinθ cosθ, which has a series
+    # d(q sinθ)/dθ, written so that nothing cancels except in θ - sinθ cosθ, which has a series
     d_q_sin = slope / (theta + sc) * ((cos2 - 3 * sin2) * _theta_minus_sc(theta, sc) - 6 * sin2 * sc)
     return Curve(q, cos2 - (4 / 3) * q * sin, dq, sin2 * (2 * sc + (4 / 3) * d_q_sin))
 
 
 def _pressure(y):
-    """q(y) and dq/dy; of θ: sin, sin², cos², θ itself and sinθ cosθ; and cos²θ/(θ + sinθ cosθ)."""
+    """q(y), dq/dy, sinθ, sin²θ, cos²θ, θ, sinθ cosθ, and cos²θ/(θ + sinθ cosθ)."""
     sin2 = 1 / (1 + y * y)
     sin = np.sqrt(sin2)
     cos, theta = y * sin, np.arctan(1 / y)
@@ -55,7 +55,7 @@ def _pressure(y):
 
 
 def _theta_minus_sc(theta, sc):
-    """θ - sinθ cosθ, by its series where the difference would cancel."""
+    """θ - sinθ cosθ; a series where the two terms would cancel."""
     difference, small = np.asarray(theta - sc), theta < 0.3
     if small.any():
         t = theta[small]
@@ -75,8 +75,9 @@ def spot_peak(y, q):
 
 
 def spot_guess(q):
-    """y with q(y) = q within 1 %: the root of y³ = q (2 y² + π/2), which is Eq. (7) for small and for large y."""
-    m, kappa = np.minimum(2 / 3 * q, 1e100), np.minimum(np.pi / 4 * q, 1e200)  # of larger q the cubes overflow
+    """y with q(y) = q, right to 1 %: the root of y³ = q (2 y² + π/2), to which Eq. (7) tends for small and for large
+    y."""
+    m, kappa = np.minimum(2 / 3 * q, 1e100), np.minimum(np.pi / 4 * q, 1e200)  # for larger q the cubes would overflow
     m2 = m * m
     m3 = m2 * m
     t = np.cbrt(m3 + kappa + np.sqrt(kappa) * np.sqrt(2 * m3 + kappa))
@@ -88,13 +89,13 @@ def spot_from_pressure(q):
     q = np.asarray(q, dtype=float)
     target = np.where(q > 0, q, 1.0)
     y = spot_guess(target)
-    for _ in range(3):  # the slope of ln q by ln y is between 1 and 3: from a guess within 1 % three steps are enough
+    for _ in range(3):  # d ln q/d ln y is between 1 and 3: three steps are enough from a guess right to 1 %
         y = y * np.exp(log_step(lambda y: _pressure(y)[:2], target, y))
     return where_positive(q, y)
 
 
 def _odds(curve):
-    """The odds g/(1 - 3 g), which are about y² for small and for large y, and their derivative by y."""
+    """The odds g/(1 - 3 g), which tend to y² for small and for large y, and their derivative by y."""
     rest = np.maximum(1 - 3 * curve.g, 1e-300)
     return curve.g / rest, curve.dg / rest**2
 
@@ -109,7 +110,7 @@ def spot_from_displacement(g):
 
 @cache
 def _near():
-    """A table (2, 200) of the odds, ascending, and of y over their square root. Interpolated, y is right to 0.5 %."""
+    """A table (2, 200): the odds, ascending, and y over their square root. y interpolated in it is right to 0.5 %."""
     y = np.geomspace(1e-2, 1e2, 200)
     odds, _ = _odds(spot_curve(y))
     return odds, y / np.sqrt(odds)

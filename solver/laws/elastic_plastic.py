@@ -1,12 +1,12 @@
 """The micro law of identical asperities that yield: the disc cell, with spots that flow beyond their elastic limit.
 
-A spot of radius b is elastic until the peak of its Hertz pressure is q(ν) Y, of :func:`..closed_forms.yield_pressure`.
-With x = 4 E b/(3 pi Ra H), the mean Hertz pressure over the hardness H, that is at x_y = (2/3) q(ν) Y/H. Beyond, with
-τ = max(x - x_y, 0)/(1 - x_y),
+A spot of radius b is elastic until the peak of its Hertz pressure is q(ν) Y (:func:`..closed_forms.yield_pressure`).
+Let x = 4 E b/(3 pi Ra H) be the mean Hertz pressure over the hardness H. The limit is at x_y = (2/3) q(ν) Y/H. Above
+it, with τ = max(x - x_y, 0)/(1 - x_y),
 
-    mean pressure of the spot   p_s = H (x - x_y²)/(x + 1 - 2 x_y), which is H x before, and tends to H,
+    mean pressure of the spot   p_s = H (x - x_y²)/(x + 1 - 2 x_y), which is H x at the limit, and tends to H,
     approach                    δ = (b²/Ra)/(1 + χ), χ = τ²/(τ² + 2.5 τ + 2): b² grows from Ra δ to 2 Ra δ,
-    peak of the spot            p_s (1 + 0.5/(1 + τ)), from 3/2 p_s to p_s.
+    peak of the spot            p_s (1 + 0.5/(1 + τ)), which falls from 3/2 p_s to p_s.
 
 The neighbours of a spot act on it as in :mod:`.disc_cell`, with y = cot θ as there. So with t = b/B̄ = cosθ,
 X = 2 p*/(pi H), x = X t and f = p_s/(H x),
@@ -14,17 +14,17 @@ X = 2 p*/(pi H), x = X t and f = p_s/(H x),
     q = f cos³θ/(θ + sinθ cosθ),  g = t²/(1 + χ) - (4/3) q sinθ,  λ = t²,
     p_max/p* = (2 t/pi) f (1 + 0.5/(1 + τ)) + (2 q/pi) arcsin t.
 
-Where nothing yields all numbers are those of the disc cell to the last bit. The law holds while the load rises.
+Where nothing yields, all numbers are those of the disc cell to the last bit. The law holds while the load rises.
 
-On the coated body itself (:mod:`.cell.cell_law`) the disc cell's q_e and g_e at t = y are those of its family, and x is
-the mean pressure of the elastic spot there: x = X y exp(P - P0), with P0 that of a half-space,
+On the coated body itself (:mod:`.cell.cell_law`) the q_e and g_e of elastic spots at t = y are those of the disc cell's
+family, and x is the mean pressure of the elastic spot there, x = X y exp(P - P0). P0 is that of a half-space,
 
     exp(P0) = (π/2)/(arccos t + t sqrt(1 - t²)).
 
-Under a hard film on a soft body this mean falls where the film bends over its asperities (b/h above 1.2). What has
-flowed stays so: x is the largest up to this radius.
-What neighbours and the body below add to the approach is elastic, and less by the part f as the load is; the pressure
-in the middle tends from the elastic one to the mean of the spot, M = (2/π) x/X:
+Under a hard film on a soft body this mean falls where the film bends over its asperities (b/h above 1.2). A spot that
+has flowed does not become elastic again: x is the largest mean up to this radius. The part of the approach that comes
+from the neighbours and the body below is elastic, and is reduced by the factor f as the load is. The pressure in the
+middle tends from the elastic one to the mean of the spot, M = (2/π) x/X:
 
     q = f q_e,   g = t²/(1 + χ) - f (t² - g_e),   p_max/p* = f (M + (S - M)/(1 + τ)) + N,
     N = (2 q/π) arcsin t, S = p_max,e/p* - (2 q_e/π) arcsin t.
@@ -41,25 +41,25 @@ from .cell import cell_law as cell
 from .cell.family import half_space
 from .law import Bound, Curve, Law, inverse
 
-#: Hardness over yield strength, where only one of both is given (Jackson and Green, J. Tribol. 127, 2005, 343).
+#: Hardness over yield strength, used if a case has only one of them (Jackson and Green, J. Tribol. 127, 2005, 343).
 TABOR = 2.84
 #: Bounds of x_y. Above 1/2 the peak of a spot would fall while its load rises; below 1/5 the hardness is more than five
 #: times the yield strength, which no metal has.
 X_Y = (0.2, 0.5)
-#: Spots whose mean pressure is below this part of Hertz's have their first guess from a law of their own. It is low, so
-#: that a contact that stays elastic begins as that of the disc cell does.
+#: Spots whose mean pressure is below this part of Hertz's have a first guess of their own. It is so low that a contact
+#: that stays elastic begins like one of the disc cell.
 _FLOWING = 0.5
 
 
 def _scales(E, Nbar, Ra, hardness, yield_strength, nu):
-    """p*, A* of the disc cell; X and x_y."""
+    """p* and A* of the disc cell, X, and x_y."""
     p_star, A_star = disc_cell.scales(E, Nbar, Ra)
     hardness, x_y = _strengths(hardness, yield_strength, nu)
     return p_star, A_star, 2 * p_star / (np.pi * hardness), x_y
 
 
 def _strengths(hardness, yield_strength, nu):
-    """The hardness, and x_y; of hardness and yield strength one may be NaN."""
+    """The hardness, and x_y. Either the hardness or the yield strength may be NaN."""
     hardness, Y = (
         np.where(np.isnan(hardness), TABOR * yield_strength, hardness),
         np.where(np.isnan(yield_strength), hardness / TABOR, yield_strength),
@@ -74,7 +74,8 @@ def _allows(hardness, yield_strength, nu, **_):
 
 
 class Spot(NamedTuple):
-    """x and τ of a spot; f, its derivative by x, and 1 - f without cancellation: 1, 0, 0 where it is elastic."""
+    """x and τ of a spot; f; `slope`, df/dx; and `lost`, 1 - f without cancellation. The last three are 1, 0, 0 where
+    the spot is elastic."""
 
     x: np.ndarray
     tau: np.ndarray
@@ -96,7 +97,7 @@ def _flow(x, x_y):
 
 
 def _curve(y, X, x_y):
-    """The curve of the disc cell, and the part of yielding, which is exactly 0 where a spot is elastic."""
+    """The curve of the disc cell plus the changes by yielding, which are exactly 0 where a spot is elastic."""
     elastic, (_, tau, f, slope, lost) = disc_cell.spot_curve(y), _spot(y, X, x_y)
     sin = 1 / np.sqrt(1 + y * y)
     t, dx = y * sin, X * sin**3
@@ -115,8 +116,8 @@ def _peak(y, q, X, x_y):
 
 
 def _guess(q, X, x_y):
-    """That of the disc cell; where the spots flow, the sum of two roots of q without the elastic part: at small and at
-    large y."""
+    """The guess of the disc cell. Where the spots flow it is a sum of two terms: y as it is at small and at large q for
+    spots without elasticity."""
     y = disc_cell.spot_guess(q)
     return np.where(_spot(y, X, x_y).f < _FLOWING, np.maximum(y, np.sqrt(np.pi / 2 * X * q) + 2 * X * q), y)
 
@@ -130,13 +131,13 @@ def _from_pressure(q, X, x_y):
 
 
 def _yielded(X, x_y):
-    """λ at which the spots begin to yield, above 1 where none does."""
+    """λ at which the spots begin to yield; above 1 where they never do."""
     return (x_y / X) ** 2
 
 
 def _on_body(kernel, m, h, E, Nbar, Ra, **strengths):
-    """:class:`~solver.laws.law.Bound` of spots on the coated body: its own numbers are the rows of the families of the
-    disc cell, X, x_y and the λ at which spots begin to yield."""
+    """:class:`~solver.laws.law.Bound` of spots on the coated body. Its `own` are the rows of the families of the disc
+    cell, X, x_y, and the λ at which spots begin to yield."""
     p_star, A_star, X, x_y = _scales(E, Nbar, Ra, **strengths)
     rows = cell.rows_of("disc", kernel, m, h, Nbar)
     X, x_y = (np.asarray(v * np.ones(np.shape(E)))[:, None] for v in (X, x_y))
@@ -151,11 +152,11 @@ def _on_body(kernel, m, h, E, Nbar, Ra, **strengths):
 
 
 def _mean(y, rows, X):
-    """x, the mean pressure of elastic spots over the hardness, and d ln x/d ln y."""
+    """x, the mean pressure of elastic spots over the hardness, and d ln x/d ln y. x never falls with y."""
     P, dP = cell.exponent(rows, 0, y)
     t = np.minimum(y, cell.number(rows, "end"))
     ratio, slope = half_space(t)
-    x = X * y * np.exp(P - slope * np.log(y / t)) / ratio  # beyond the end a power of y
+    x = X * y * np.exp(P - slope * np.log(y / t)) / ratio  # beyond the end of the family it is a power of y
     top = np.where(y > cell.number(rows, "turn"), X * cell.number(rows, "top"), 0.0)
     return np.maximum(x, top), np.where(x < top, 0.0, 1 + dP - slope)
 
@@ -181,14 +182,14 @@ def _body_peak(y, q, rows, X, x_y, yields):
 
 
 def in_the_middle(y, rows, X, x_y, yields):
-    """The elastic p_max/p* (B,) of spots on the body at y (B, 1), and the part (B,) of the differences of pressure in a
-    spot that yielding leaves."""
+    """The elastic p_max/p* (B,) of spots on the body at y (B, 1), and the factor (B,) by which yielding reduces the
+    differences of pressure within a spot."""
     _, tau, f, _, _ = _flow(_mean(y, rows, X)[0], x_y)
     return cell.spot_peak(y, None, rows)[:, 0], (f / (1 + tau))[:, 0]
 
 
 def _body_guess(q, rows, X, x_y, yields):
-    """As :func:`_guess`: the law of flowing spots is that of any body."""
+    """As :func:`_guess`: flowing spots obey the same law on any body."""
     y, flows = cell.spot_guess(q, rows), np.sqrt(np.pi / 2 * X * q) + 2 * X * q
     f = _flow(_mean(y, rows, X)[0], x_y).f
     return np.where(f < _FLOWING, np.maximum(y, flows / np.hypot(1, flows)), y)

@@ -1,15 +1,15 @@
 """The micro laws of spherical asperities of random heights: normal, cut at ±c σ, uniform, and of a histogram.
 
 As in the disc cell, Eqs (6) and (7), a spot feels the others as a mean field: the uniform pressure p outside its cell.
-Each summit has its own approach and its own spot, and p is the mean over them: ``spread.py``. A is counted from the
-touch of the highest summit. Without a spread, σ = 0, the law is the disc cell. Few summits touch at the edge of the
-contact: p ~ A^(5/2) there, until A is about σ/c. Without a cut c there is no highest summit, and so no edge.
+Each summit has its own approach and its own spot, and p is the mean over them: ``spread.py``. A = 0 where the highest
+summit just touches. If all heights are equal, σ = 0, the law is the disc cell. Few summits touch at the edge of the
+contact: p ~ A^(5/2) there, until A is about σ/c. Without the cut c there would be no highest summit, and so no edge.
 
 q is the root of an equation at each y. So a law is tabulated when it is first used, once for each σ/A* and c. Many
-cases with one spread are fast; a batch with as many spreads as cases waits for as many tables.
+cases with one σ/A* are fast; a batch in which every case has its own waits for as many tables.
 
-On the coated body itself the spots are those of :mod:`.cell.summits`, and there is a table for each family of bodies
-too. It ends where λ is that at which the disc cell ends.
+On the coated body itself the spots are those of :mod:`.cell.summits`, and each family of bodies has a table of its own.
+The table ends at the λ at which the disc cell ends.
 """
 
 from collections.abc import Callable
@@ -29,21 +29,21 @@ from .cell.family import different, family
 from .cell.summits import SUMMIT, Lookup, summit
 from .law import Bound, Curve, Law, where_positive
 
-#: For σ/A* below this the power law of small pressures (`edge`) is that of equal heights.
+#: If σ/A* is below this, the power law of small pressures (`edge`) is that of equal heights.
 _ALIKE = 0.03
-#: Bytes of the tables that are kept, some 4,000 of normal heights, and how many are made at a time.
+#: Bytes of the tables that are cached, some 4,000 of normal heights, and number of tables that are made at a time.
 _MOST_BYTES, _AT_ONCE = 6.5e7, 64
-#: Largest relative error of A, λ and p_max by the tables (tests/laws/heights/test_heights.py). λ has it; A has 5e-6,
-#: and with uniform heights 3e-5. STEPPED is that of histograms, whose steps make corners in the curves (A has 1e-4);
-#: their tables have _FINE times as many knots.
+#: Largest relative error of A, λ and p_max that the tables cause (tests/laws/heights/test_heights.py). λ reaches it;
+#: the error of A is 5e-6, with uniform heights 3e-5. STEPPED is that of histograms, whose steps make corners in the
+#: curves (the error of A is 1e-4); their tables have _FINE times as many knots.
 ERROR, STEPPED, _FINE = 2e-4, 5e-4, 4
-#: Corners are sharp where few summits stand above many: where a share is over _RARE times the mean of those above it.
-#: The error then grows as this ratio to the power _SHARPER (tests/laws/heights/test_histograms.py).
+#: Corners are sharp where few summits stand above many: where a share is over _RARE times the mean of the shares above
+#: it. The error then grows as this ratio to the power _SHARPER (tests/laws/heights/test_histograms.py).
 _RARE, _SHARPER = 25.0, 1.7
-#: Points of the quadrature over a density, exact to rounding for the normal one (tests/laws/heights/test_touching.py),
-#: and how many cases have it at a time.
+#: Number of points of the quadrature over a density, which for the normal one is exact to rounding
+#: (tests/laws/heights/test_touching.py), and number of cases that are computed at a time.
 _ENOUGH, _ROWS = 32, 10_000
-#: On a coated body, Newton's steps on a table from the first guess, and the largest change of ln y in one.
+#: Number of Newton steps from the first guess on a table of a coated body, and the largest change of ln y in a step.
 _TO_TABLE, _LONGEST = 4, 3.0
 
 #: Standard deviation σ of the heights, in R; and c, the largest height above the mean, over σ.
@@ -54,17 +54,17 @@ UNIFORM = np.sqrt(3.0)
 
 
 class Symmetric(NamedTuple):
-    """A density of heights from c σ below their mean to c σ above it. x is the depth below the highest summit over σ; c
-    (B, 1).
+    """A density of heights from c σ below their mean to c σ above it. x is the depth below the highest summit, over σ;
+    the c of B cases is (B, 1).
 
-    shape : (x, c) -> density, of any shapes that broadcast
-    c : its value, if all cases have the same; None: it is the parameter `cut`
+    shape : (x, c) -> density; any shapes that broadcast
+    c : the c of all cases; None: it is the parameter `cut`
     """
 
     shape: Callable
     c: float | None = None
 
-    fine = 1  # how many times as many knots its tables have
+    fine = 1  # factor of the number of knots of its tables
 
     @property
     def parameters(self):
@@ -78,7 +78,7 @@ class Symmetric(NamedTuple):
         return self.shape(np.zeros_like(cut), cut)
 
     def edges(self, cut):
-        """(B, pieces + 1): where its smooth pieces end."""
+        """(B, pieces + 1): the x at which its smooth pieces end."""
         return np.concatenate([np.zeros_like(cut), 2 * cut], axis=1)
 
     def mean(self, cut):
@@ -87,8 +87,13 @@ class Symmetric(NamedTuple):
 
 
 class Histogram(NamedTuple):
-    """The density of a histogram: `shares`, in each of its bins of the width `step`, from the highest summits down; and
-    the mean `depth`. The methods are those of :class:`Symmetric`. x is in R and σ is 1; c has no meaning, and is 0."""
+    """The density of a histogram, with the methods of :class:`Symmetric`. x is in R and σ is 1; c has no meaning, and
+    is 0.
+
+    shares : the density in each bin, from the highest summits down
+    step : width of a bin
+    depth : the mean depth below the highest summit
+    """
 
     shares: tuple[float, ...]
     step: float
@@ -121,8 +126,8 @@ _kept = Kept(_MOST_BYTES)
 
 
 def _tables(density, field, sigma, cut):
-    """Tables (G, 2, KNOTS) of ln q and ln λ for the G different pairs of sigma and cut (B, 1), and the table of each
-    case (B,). A histogram has _FINE KNOTS."""
+    """Tables (G, 2, KNOTS) of ln q and ln λ for the G different pairs of sigma and cut (B, 1), and the index (B,) of
+    each case's table. A histogram has _FINE KNOTS knots."""
     # as complex numbers, pairs are sorted in a tenth of the time
     pairs, group = np.unique(np.concatenate([sigma, cut], axis=1).view(complex)[:, 0], return_inverse=True)
     keys = [(density, field, pair.real, pair.imag) for pair in pairs.tolist()]
@@ -131,7 +136,7 @@ def _tables(density, field, sigma, cut):
 
 
 def _computed(density, field, keys):
-    """The tables of these keys, some at a time: fine ones are larger, and of more pieces."""
+    """The tables of these keys, some at a time: fine ones are larger, and their densities have more pieces."""
     tables, at_once = [], _AT_ONCE // density.fine**2
     for begin in range(0, len(keys), at_once):
         s, c = np.array([key[2:] for key in keys[begin : begin + at_once]]).T[:, :, None]
@@ -146,7 +151,7 @@ def _relief(density, sigma, cut):
 
 
 def _looked_up(density, field, which, y, sigma, cut):
-    """q (B, m) if `which` is 0, λ if it is 1; and the derivative of its logarithm by ln y."""
+    """q (B, m) if `which` is 0, λ (B, m) if it is 1; and the derivative of its logarithm by ln y."""
     table, group = _tables(density, field, np.where(sigma > 0, sigma, 1.0), cut)
     step = spread.STEP * spread.KNOTS / table.shape[-1]
     value, slope = spread.look_up(np.ascontiguousarray(table[:, which]), group, y, step)
@@ -168,12 +173,12 @@ def _curve(density, field, y, sigma, cut):
 
 
 def _guess(density, field, q, sigma, cut):
-    """y with q(y) = q, roughly. A is that of the power law of small pressures, but no less than that of equal heights,
-    and no more than this and the depth of the mean plane together."""
+    """y with q(y) = q, roughly. It follows from an A by the power law of small pressures, which is kept between the A
+    of equal heights and that plus the depth of the mean plane."""
     level = disc_cell.spot_guess(np.maximum(q, 0.0))
     alike = disc_cell.spot_curve(np.maximum(level, 1e-300)).g
-    few = (1.25 * np.pi * sigma / density.top(cut) * np.maximum(q, 0.0)) ** 0.4
-    delta = np.clip(few, alike, alike + density.mean(cut) * sigma)
+    power_law = (1.25 * np.pi * sigma / density.top(cut) * np.maximum(q, 0.0)) ** 0.4
+    delta = np.clip(power_law, alike, alike + density.mean(cut) * sigma)
     return np.where(sigma > 0, spread.unknown(delta, q, _relief(density, sigma, cut)), level)
 
 
@@ -193,13 +198,13 @@ def _peak(density, field, y, q, sigma, cut):
 
 def _edge(density, field, sigma, cut):
     spread_out = sigma > _ALIKE
-    few = (1.25 * np.pi * sigma / density.top(cut)) ** 0.4
-    return np.where(spread_out, few, (np.pi / 2) ** (2 / 3)), np.where(spread_out, 0.4, 2 / 3)
+    gamma = (1.25 * np.pi * sigma / density.top(cut)) ** 0.4
+    return np.where(spread_out, gamma, (np.pi / 2) ** (2 / 3)), np.where(spread_out, 0.4, 2 / 3)
 
 
 def _touching(density, A, sigma=1.0, cut=None, **_):
-    """Share of the summits within A of the highest, of the shape of A and the parameters together, by quadrature over
-    each piece of the density."""
+    """Share of the summits that are at most A below the highest, by quadrature over each piece of the density. It has
+    the shape to which A and the parameters broadcast."""
     A, sigma, cut = np.broadcast_arrays(A, sigma, density.c if cut is None else cut)
     with np.errstate(all="ignore"):
         depths, cuts = (A / sigma).reshape(-1, 1), cut.reshape(-1, 1)
@@ -219,8 +224,8 @@ def _scales(density, field, E, Nbar, Ra, sigma=1.0, cut=None):
 
 
 class _Body(NamedTuple):
-    """The functions of the law of a density of heights on the coated body. The law's own numbers are sigma/A* and cut,
-    (B, 1), the rows of the disc cell, and of summits."""
+    """The functions of the law of a density of heights on the coated body. Its `own` numbers are sigma/A* and cut, (B,
+    1) each, the rows of the disc cell, and the rows of summits."""
 
     density: object
 
@@ -235,7 +240,7 @@ class _Body(NamedTuple):
         return Bound(law, p_star, A_star, (*numbers, cell.stacked(cells, index), cell.stacked(summits, index)))
 
     def tables(self, sigma, cut, rows, summits):
-        """As :func:`_tables`, one for each family with each sigma and cut."""
+        """As :func:`_tables`; there is a table for each family with each sigma and cut."""
         numbers = np.concatenate([np.where(sigma > 0, sigma, 1.0), cut, cell.number(rows, "digest")], axis=1)
         if len(numbers) and (numbers == numbers[0]).all():
             triples, first, group = numbers[:1], [0], np.zeros(len(numbers), dtype=int)
@@ -278,12 +283,12 @@ class _Body(NamedTuple):
         )
 
     def guess(self, q, *own):
-        """As :func:`_guess`, and then Newton's steps on the table."""
+        """As :func:`_guess`, followed by Newton steps on the table."""
         sigma, cut, rows, _ = own
         level = cell.spot_guess(q, rows)
         alike = cell.spot_curve(np.maximum(level, 1e-300), rows).g
-        few = (1.25 * np.pi * sigma / self.density.top(cut) * np.maximum(q, 0.0)) ** 0.4
-        delta = np.clip(few, alike, alike + self.density.mean(cut) * sigma)
+        power_law = (1.25 * np.pi * sigma / self.density.top(cut) * np.maximum(q, 0.0)) ** 0.4
+        delta = np.clip(power_law, alike, alike + self.density.mean(cut) * sigma)
         y = np.maximum(spread.unknown(delta, q, _relief(self.density, sigma, cut)), 1e-300)
         (table, group), goal = self.tables(*own), np.log(np.maximum(q, 1e-300))
         table = np.ascontiguousarray(table[:, 0])
@@ -312,7 +317,7 @@ class _Body(NamedTuple):
         return _edge(self.density, 1.0, sigma, cut)
 
     def end(self, *own):
-        """The largest q of the table, where its λ ends."""
+        """The largest q of the table, at which its λ ends."""
         table, group = self.tables(*own)
         last = np.argmax(np.diff(table[:, 1], axis=1) == 0, axis=1) - on_body.PAST
         most = np.exp(table[np.arange(len(table)), 0, last])[group, None]
@@ -328,7 +333,7 @@ def _of_heights(name, density, **rest):
 
 
 def law(name, density, field=1.0, **rest):
-    """:class:`~solver.laws.law.Law` of these heights; `field` 0: the asperities do not feel each other."""
+    """:class:`~solver.laws.law.Law` of heights with this density. `field` 0: the asperities do not feel each other."""
     parts = {"curve": _curve, "area": _area, "peak": _peak, "edge": _edge, "guess": _guess, "scales": _scales}
     parts = {key: partial(part, density, field) for key, part in parts.items()}
     rest = {"error": ERROR, "touching": partial(_touching, density), "rise": 1.1, "corners": True} | rest
@@ -338,8 +343,8 @@ def law(name, density, field=1.0, **rest):
 
 
 def histogram(name, z, share, version):
-    """:class:`~solver.laws.law.Law` of summits whose heights z (n,), in R, have the shares `share` (n,). z ascends in
-    equal steps; around each z there is a bin of that width, evenly filled."""
+    """:class:`~solver.laws.law.Law` of summits with the heights z (n,), in R, and their shares `share` (n,). z ascends
+    in equal steps. Around each z is a bin as wide as a step, in which the heights are evenly spread."""
     step = (z[-1] - z[0]) / (len(z) - 1)
     depth, shares = (z[-1] - z)[::-1] + step / 2, (share / (share.sum() * step))[::-1]
     bins = Histogram(tuple(shares.tolist()), step, float(depth @ shares * step))

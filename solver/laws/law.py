@@ -1,13 +1,13 @@
-"""The protocol of a micro law: all that the solver, its outputs and the derived quantities ask of one.
+"""The protocol of a micro law: everything that the solver, its outputs and the derived quantities need of a law.
 
-A micro law says what identical asperities do under a nominal pressure p: their additional displacement A[p], the
-relative contact area λ and the largest real pressure p_max. It is written in an unknown y > 0,
+A micro law gives the response of asperities to a nominal pressure p: their additional displacement A[p], the relative
+contact area λ and the largest real pressure p_max. It is written in an unknown y > 0,
 
-    p = p* q(y),   A = A* g(y),   λ = area(y),   p_max = p* peak(y),
+    p = p* q(y),   A = A* g(y),   λ = area(y),   p_max = p* peak(y).
 
-in which q and g are smooth and increase from 0 at y = 0, where g ~ y²: the solver's unknowns are the values of y at
-its nodes. A :class:`Law` holds these functions and the parameters they depend on; ``law.bind`` gives a :class:`Bound`,
-the law with the numbers of a batch of cases.
+q and g are smooth and increase from 0 at y = 0, where g ~ y². The solver's unknowns are the values of y at its nodes. A
+:class:`Law` has these functions and the parameters on which they depend. ``law.bind`` returns a :class:`Bound`, the law
+with the numbers of a batch of cases.
 """
 
 from collections.abc import Callable, Mapping
@@ -20,10 +20,12 @@ from numpy.typing import ArrayLike
 from ..numerics import batch
 from ..parameters import Parameter
 
-#: Most Newton steps of an inverse, far more than the laws of this package need; and the largest change of ln y in one.
+#: Most Newton steps of an inverse, far more than the laws of this package need; and the largest change of ln y in a
+#: step.
 _STEPS, _LONGEST = 100, 5.0
-#: A step of ln y below _LAST is the last: the next one would be below rounding. Where a law saturates, rounding leaves
-#: y less determined (tests/laws/test_micro.py): so a step below _ROUNDING that is not half the one before is the last.
+#: A step of ln y below _LAST is the last: the next one would be below rounding. Where a law saturates, rounding makes y
+#: less certain (tests/laws/test_micro.py). So a step below _ROUNDING is also the last if it is more than half of the
+#: step before.
 _LAST, _ROUNDING = 1e-9, 1e-3
 
 
@@ -44,7 +46,7 @@ class Curve(NamedTuple):
 
 
 class Spots(NamedTuple):
-    """A law at some pressure p: A (unit of R), λ and p_max (unit of p); arrays of the shape of p."""
+    """A law at some pressure p: A in the unit of R, λ, and p_max in the unit of p; arrays of the shape of p."""
 
     A: np.ndarray
     lam: np.ndarray
@@ -53,13 +55,14 @@ class Spots(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Law:
-    """One micro law. The functions get arrays y, q or g (B, m), and then all that `scales` returns beside p* and A*.
+    """One micro law. Its functions take arrays y, q or g (B, m), followed by `own`: all arrays that `scales` returns
+    after p* and A*.
 
-    To travel to worker processes a law must be picklable: of functions that have a name in a module.
+    A law that is sent to worker processes must be picklable: its functions must have names in a module.
 
     Attributes
     ----------
-    name : what a user writes for ``micro``
+    name : the word that a user writes for ``micro``
     parameters : name -> Parameter, with bounds, default, unit and words; each is an argument of `scales`
     scales : (E, **parameters) -> (p*, A*, *own); all (B,), in units R = E2* = 1. E is the modulus that the
         asperities feel: E1*, or E2* without a layer; over 1 + m under an elastic punch
@@ -68,30 +71,31 @@ class Law:
     peak : (y, q, *own) -> p_max/p* (13)
     edge : (*own) -> (gamma, beta) of g ~ gamma q^beta for small q; floats, or arrays that broadcast to (B, m)
     version : text that changes whenever the numbers of the law may change; part of the keys of its cases
-    rough : False of no asperities at all: A = 0, and the equation of the contact is linear in y = q
+    rough : False if there are no asperities at all: A = 0, and the equation of the contact is linear in y = q
     error : largest relative error of A, λ and p_max in a law that comes from a table, else 0; part of `model_error`
-    least, most : smallest and largest p/E that the law knows; contacts outside get no numbers
+    least, most : smallest and largest p/E for which the law has numbers; contacts outside get none
     corners : whether λ(y) has corners, for example where the lowest summits touch; Ar/An then has its own quadrature
     smears : whether it spreads the pressure of the neighbours evenly, and so errs where the spots merge
     touching : (A, **parameters) -> share of the summits that touch where the displacement is A; None: all do
-    poisson : whether `scales` and `allows` also get `nu`, Poisson's ratio of the layer, or of the body without one
+    poisson : whether `scales` and `allows` also get `nu`, Poisson's ratio of the layer, or of the body if there is no
+        layer
     allows : (**parameters) -> (B,) bool, whether the parameters of a case go together; None: always
     yielded : (*own) -> λ above which the spots have yielded; None: they never do
-    rise : how much the displacement of the asperities saves nodes on the mesh to begin with: 0.5 for power laws, 1.1
-        for a law that saturates, fitted to random cases. A wrong value costs time, and nothing else
-    from_pressure : (q, *own) -> y with q(y) = q >= 0. This and the next two may be left out: they are then found from
+    rise : how many nodes the asperities save on the first mesh: 0.5 for power laws, 1.1 for a law that saturates,
+        fitted to random cases. A wrong value only costs time
+    from_pressure : (q, *own) -> y with q(y) = q >= 0. This and the next two may be left out: y is then computed from
         `curve` and `edge`, which takes more time
     from_displacement : (g, *own) -> y with g(y) = g >= 0; NaN where g is larger than the law's limit
     guess : (q, *own) -> y with q(y) = q, roughly
-    on_body : (kernel, m, h, E, **parameters) -> what `bind` returns, of a law of asperities that feel the coated body
-        itself, not the half-space of its layer's material: `kernel`, that of B cases (solver/kernels/kernel.py), m and
-        h (B,), thickness of the first layer; E (B,), as that of `scales`. None: the law does not know the body
-    cell : the lattice of the cell of a spot on the body, "square", "hex" or "disc", or "summit" of spots of their own
-        loads; None where `on_body` is
+    on_body : (kernel, m, h, E, **parameters) -> Bound, as `bind`, for asperities that feel the coated body itself and
+        not a half-space of its layer's material. `kernel` is that of B cases (solver/kernels/kernel.py), m (B,) is
+        E1*/E3*, h (B,) the thickness of the first layer, E (B,) as in `scales`. None: asperities cannot feel the body
+    cell : the lattice of the cell of a spot on the body, "square", "hex" or "disc", or "summit" if spots have loads of
+        their own; None if `on_body` is None
     spot : (y, q, *own) -> b/Bbar of the largest spot; None: sqrt(λ)
-    end : (*own) -> largest p/p* that the law knows, which depends on the case; None: there is none
-    body : parameter -> number or word, lengths in m, of the coated body on which a table holds that was computed on
-        one: a study refuses contacts on another; None: a half-space, whatever lies under it
+    end : (*own) -> largest p/p* for which the law has numbers, if it depends on the case; None: there is no such limit
+    body : parameter -> number or word, lengths in m: the coated body on which a table was computed. A study refuses
+        contacts on another body. None: a half-space, whatever lies under it
     """
 
     name: str
@@ -124,7 +128,7 @@ class Law:
 
     @property
     def arguments(self) -> tuple[str, ...]:
-        """Names of the arguments of `scales` beside E."""
+        """Names of the arguments of `scales` other than E."""
         return (*self.parameters, *["nu"] * self.poisson)
 
     def bind(self, E: np.ndarray, **values: np.ndarray) -> "Bound":
@@ -140,8 +144,8 @@ class Law:
         Bound
         """
         p_star, A_star, *own = self.scales(E, **{name: values[name] for name in self.arguments})
-        one = np.ones(np.shape(E))
-        return Bound(self, p_star * one, A_star * one, tuple((v * one)[:, None] for v in own))
+        ones = np.ones(np.shape(E))
+        return Bound(self, p_star * ones, A_star * ones, tuple((v * ones)[:, None] for v in own))
 
     def at(self, p: ArrayLike, E: ArrayLike, **numbers: ArrayLike) -> Spots:
         """The law at a nominal pressure.
@@ -166,8 +170,8 @@ class Law:
 
 @batch.of_cases
 class Bound(NamedTuple):
-    """A law with the numbers of B cases: p* and A* (B,), and in `own` the other numbers, (B, 1) each, that its
-    functions need."""
+    """A law with the numbers of B cases: p* and A* (B,), and in `own` all other numbers that its functions take, (B, 1)
+    each."""
 
     law: Law
     p_star: np.ndarray
@@ -183,28 +187,29 @@ class Bound(NamedTuple):
         return self.law.curve(y, *self.own)
 
     def area(self, y, q):
-        """λ (B, m), Eq. (11), at y and q (B, m) of the same points."""
+        """λ (B, m), Eq. (11), at y and q (B, m), which must belong together."""
         return self.law.area(y, q, *self.own)
 
     def bent(self, y, q):
-        """(B,) bool: the cases whose λ bends, in corners or where spots begin to yield, at their y and q (B, m)."""
+        """(B,) bool: the cases in which λ, over the points with y and q (B, m), has a kink: a corner of the law, or the
+        place where spots begin to yield."""
         if self.law.yielded is None:
             return np.full(len(y), self.law.corners)
         return np.any(self.area(y, q) > self.law.yielded(*self.own), axis=1)
 
     def peak(self, y, q):
-        """p_max (B, m), Eq. (13), at y and q (B, m) of the same points."""
+        """p_max (B, m), Eq. (13), at y and q (B, m), which must belong together."""
         return self.p_star[:, None] * self.law.peak(y, q, *self.own)
 
     def at(self, p):
         """:class:`Spots` at the nominal pressures p (B, m) >= 0."""
         q = p / self.p_star[:, None]
         y = self.from_pressure(q)
-        g = np.where(y > 0, self.evaluate(y).g, y)  # at y = 0 a curve may be 0/0; NaN stays
+        g = np.where(y > 0, self.evaluate(y).g, y)  # at y = 0 a curve may be 0/0; NaN stays NaN
         return Spots(self.A_star[:, None] * g, self.area(y, q), self.peak(y, q))
 
     def guess(self, q):
-        """y (B, m) with q(y) = q, roughly: where a Newton iteration begins."""
+        """y (B, m) with q(y) = q, roughly: the start of a Newton iteration."""
         return self.law.guess(q, *self.own) if self.law.guess else self.from_pressure(q)
 
     def from_pressure(self, q):
@@ -225,24 +230,26 @@ class Bound(NamedTuple):
         return (np.broadcast_to(v, (len(self.p_star), 1))[:, 0] for v in self.law.edge(*self.own))
 
     def sparse(self, g):
-        """q (B, m) at g (B, m) by the power law of small pressures, g = gamma q^beta, whether g is small or not."""
+        """q (B, m) at g (B, m) by the power law of small pressures, g = gamma q^beta, even if g is not small."""
         gamma, beta = self.law.edge(*self.own)
         return (g / gamma) ** (1 / beta)
 
     def limit(self, new, old):
-        """`new`, y after a Newton step, limited to a fifth and to five times `old`: so it stays positive. Without
-        asperities the step is exact, and y may have any sign."""
+        """`new`, y after a Newton step, limited to the range from a fifth of `old` to five times `old`: so it stays
+        positive. Without asperities the step is exact, and y may have any sign."""
         return np.clip(new, 0.2 * old, 5.0 * old) if self.law.rough else new
 
 
 def inverse(value, target, y):
-    """y with value(y)[0] = target, by Newton on ln value against ln y, to a few units of rounding, each element by
-    itself; 0 where target <= 0, NaN where it is NaN or no y is found.
+    """y with value(y)[0] = target, to a few units of rounding, by Newton's method on ln value against ln y; each
+    element by itself. It is 0 where target <= 0, and NaN where target is NaN or the method does not converge.
 
-    Where a law bends sharply, Newton's method may swing to and fro. So a step longer than half of the one before goes
-    to the middle, in ln y, between the nearest y below and above the root, once both are known.
+    Where a law bends sharply, Newton's method may oscillate. So in place of a step longer than half of the one before,
+    y moves to the middle, in ln y, of the bracket of the root, once the bracket has both ends.
 
-    value : y -> (value, its derivative), increasing from 0; target : array; y : first guess, an array of its shape
+    value : y -> (value, its derivative), increasing from 0
+    target : array
+    y : first guess, an array of the shape of target
     """
     goal = np.where(target > 0, target, 1.0)
     y = np.where((target > 0) & (y > 0), y, 1.0)
@@ -263,7 +270,7 @@ def inverse(value, target, y):
 
 
 def log_step(value, target, y):
-    """The change of ln y in a Newton step on ln value against ln y; arguments as in :func:`inverse`."""
+    """The change of ln y by one Newton step on ln value against ln y; arguments as in :func:`inverse`."""
     now, slope = value(y)
     return np.log(target / now) * now / (slope * y)
 

@@ -1,11 +1,12 @@
-"""A micro law from a table of one's own, ``micro = "table:mine.csv"``; docs/model.md describes the file.
+"""A micro law from a user's table, ``micro = "table:mine.csv"``; docs/microscale.md describes the file.
 
-Smooth curves are laid near the rows. The law's `error` is the largest of two distances: of a row from the curve fitted
-to the others, and, between the rows, of the curve from one of a lower degree. Below the first row A is the power of p
-that goes through the first two rows. A table with the columns z and share is a histogram (``heights.py``).
+Smooth curves are fitted to the rows. The law's `error` is the larger of two distances: that of a row from the curve
+fitted to the other rows, and, between the rows, that of the curve from one of a lower degree. Below the first row A is
+the power of p that goes through the first two rows. A table with the columns z and share is a histogram
+(``heights.py``).
 
 A column "A [um]", with a unit, has lengths in place of multiples of R. A line "# scan: {...}" above the heading, which
-the law of a scan writes, has the error of the rows and the body on which they hold, in JSON.
+the law of a scan writes, has in JSON the error of the rows and the body for which they are valid.
 """
 
 import csv
@@ -24,46 +25,50 @@ from .tabulated import LawTable, fitted, law_of, t_of
 
 PREFIX = "table:"
 COLUMNS = ("p", "A", "lam", "p_max")
-#: What a law whose A is a length has as a parameter: the length, in the unit of R, that 1 in its column stands for.
+#: The parameter of a law whose A is a length: the length, in the unit of R, that 1 in its column stands for.
 LAW_UNIT = "law_unit"
 _LAW_UNIT = Parameter(
     interval="(0, inf)", powers=(0, 1), instead="", long_name="length that 1 in the table of the law stands for"
 )
-#: Units of length of the column A, in m; the beginning of the line that says what a law of a scan is.
+#: Units of length of the column A, in m.
 _UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9}
+#: A heading of A with a unit; and the beginning of the line with the error and the body of a scan's law.
 _WITH_UNIT, STATED = re.compile(r"A \[(\w+)\]"), "# scan: "
-#: Most bytes of the file. 10,000 rows of 17 digits are 0.9 MB; the time and memory of the fit grow with their number.
+#: Most bytes of the file. 10,000 rows of 17 digits are 0.9 MB; time and memory of the fit grow with the number of rows.
 LARGEST = 10_000_000
-#: Columns of a histogram, and most of its rows: the time of its first use grows with their number.
+#: Columns of a histogram, and its largest number of rows: the time of its first use grows with it.
 HEIGHTS, _MOST = ("z", "share"), 32
-#: A table of a law: its fewest rows, and the highest degree of a polynomial. A polynomial within _NEAR of the rows is
-#: near enough, and needs no higher degree; one farther than _FAR from a row is refused. Both are relative distances.
+#: For a table of a law: its smallest number of rows, and the highest degree of a polynomial. A polynomial that is
+#: within _NEAR of the rows needs no higher degree. A polynomial farther than _FAR from a row is refused. Both are
+#: relative distances.
 _FEWEST, _DEGREE, _NEAR, _FAR = 5, 14, 1e-4, 0.05
-#: So far the curves may be from the rows of a scan: these have steps where few points touch, and `error` says it.
+#: The largest distance of a curve from the rows of a scan. They have steps where few points touch; `error` includes it.
 _OF_SCAN = 0.3
-#: The lowest degree is taken that is at most this times as far from the rows as the best: higher ones follow the noise.
+#: The degree that is chosen is the lowest whose distance from the rows is at most this times the smallest one: higher
+#: degrees follow the noise.
 _HARDLY = 1.5
-#: The error of a curve between the rows is taken to be this times its distance from the curve one degree lower, at
-#: _STEPS points a gap. p may rise by the factor _GAP from row to row: in wider gaps both curves are wrong alike
-#: (tests/laws/test_own_table_range.py).
-_APART, _STEPS, _GAP = 2.0, 8, 30.0
-#: Curves of neighbouring degrees may be wrong alike. So the distance from curves of the next _HIGHER degrees counts, if
-#: they are as near the rows and have less than _PART coefficients a row; and so does _OF_ENDS times the distance of the
-#: first and the last row from the curve through the others. Chosen so that `error` encloses all tables of
-#: tests/laws/test_own_table_range.py; it encloses all 90 random ones of `python tools/errors/own_tables.py` too.
+#: The error of a curve between the rows is estimated as _MARGIN times its distance from the curve one degree lower, at
+#: _STEPS points in each gap. p may rise at most by the factor _GAP from row to row: in wider gaps both curves have the
+#: same error (tests/laws/test_own_table_range.py).
+_MARGIN, _STEPS, _GAP = 2.0, 8, 30.0
+#: Curves of neighbouring degrees may have the same error. So the distance from curves of the next _HIGHER degrees
+#: counts, if they are as near to the rows and have less than _PART coefficients a row. So does _OF_ENDS times the
+#: distance of the first and the last row from the curve through the others. They are chosen so that `error` encloses
+#: all tables of tests/laws/test_own_table_range.py; it also encloses all 90 random ones of
+#: `python tools/errors/own_tables.py`.
 _HIGHER, _PART, _OF_ENDS = 3, 0.5, 0.15
-#: Largest exponent of A(p) over the rows. A contact has at most 1; the rest is left to noise.
+#: Largest exponent of A(p) over the rows. In a contact it is at most 1; the rest allows for noise.
 _BENT = 1.05
-#: Where λ is below _LIGHT and A rises with an exponent below _ROUND (2/3 of round summits, 1 of flat ones), λ rises
-#: faster than p_max in all laws of this package (tests/laws/test_own_table.py): else the columns are exchanged.
+#: Where λ is below _LIGHT and A rises with an exponent below _ROUND (2/3 for round summits, 1 for flat ones), λ rises
+#: faster than p_max in all laws of this package (tests/laws/test_own_table.py). Otherwise the columns are exchanged.
 _ROUND, _LIGHT = 0.7, 0.5
 #: Exponents of the edge, A ~ p^β, that the curves can have.
 _BETA = (0.2, 1.5)
 
 
 def read(name):
-    """:class:`~solver.laws.law.Law` of the table that `name`, "table:" and a path, stands for; its version is a digest
-    of the numbers. Raises ValueError, with file, column and row."""
+    """:class:`~solver.laws.law.Law` of the table whose path follows "table:" in `name`. Its version is a digest of the
+    numbers. Raises ValueError, with file, column and row."""
     file = name.removeprefix(PREFIX)
     try:
         if "\n" in file:
@@ -73,13 +78,13 @@ def read(name):
         raise ValueError(f"{file}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:
         raise ValueError(f"{file}: is not UTF-8 (byte {error.start}): save it with the encoding UTF-8") from None
-    except (ValueError, RuntimeError, csv.Error) as error:  # RuntimeError: ~name/ of a user that there is not
+    except (ValueError, RuntimeError, csv.Error) as error:  # RuntimeError: ~name/ of a user who does not exist
         raise ValueError(f"{file}: {error}") from None
 
 
 def _text_of(path):
-    """The text of a file of numbers. Raises ValueError where it is no file, or too large; OSError where
-    it cannot be read."""
+    """The text of a file of numbers. Raises ValueError if it is not a file, or too large; OSError if it cannot be
+    read."""
     no_table = "a table is a text file of numbers"
     try:
         return content(path, LARGEST).decode("utf-8-sig")
@@ -93,7 +98,7 @@ def _text_of(path):
 
 @lru_cache(maxsize=16)
 def _of_text(name, text):
-    """The law of a table. It is kept, because a study asks for it several times."""
+    """The law of a table. It is cached, because a study needs it several times."""
     heading = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
     words = [word.strip() for word in heading.split(",")]
     if "share" in words:
@@ -108,7 +113,7 @@ def _of_text(name, text):
 
 
 def _stated(text):
-    """Error and body of the rows of a law of a scan, by its line of JSON; nothing of another table."""
+    """`error` and `body` of a scan's rows, from their line of JSON; an empty dictionary for any other table."""
     line = next((line for line in text.splitlines() if line.startswith(STATED)), None)
     if line is None:
         return {}
@@ -123,7 +128,7 @@ def _stated(text):
 
 
 def _histogram(name, z, share):
-    """The law of a histogram with the columns z and share (n,). Raises ValueError where it is of no use."""
+    """The law of a histogram with the columns z and share (n,). Raises ValueError if it cannot be used."""
     steps = np.diff(z)
     if len(z) > _MOST:
         raise ValueError(f"has {len(z)} rows: must have at most {_MOST}")
@@ -153,7 +158,7 @@ def _columns(text, names, fewest):
 
 
 def _number(name, i, row, heading):
-    """The number of the column `name` in the row i."""
+    """The number in the column `name` of row i."""
     if len(row) != len(heading):
         raise ValueError(f"row {i}: has {len(row)} cells, the heading {len(heading)}")
     cell = row[heading.index(name)].strip()
@@ -167,7 +172,7 @@ def _number(name, i, row, heading):
 
 
 def _check(p, A, lam, p_max):
-    """Raise ValueError where the rows cannot be those of a law."""
+    """Raise ValueError if the rows cannot be those of a law."""
     rules = (
         ("p", p[1:] > p[:-1], 2, "must be larger than that of the row before"),
         ("p", p[1:] <= _GAP * p[:-1], 2, f"is over {_GAP:g} times that of the row before: add rows between them"),
@@ -192,20 +197,21 @@ def _check(p, A, lam, p_max):
 
 
 def of_rows(name, text):
-    """:class:`~solver.laws.law.Law` of a table that a program has written; ValueError as of :func:`read`."""
+    """:class:`~solver.laws.law.Law` of a table that a program has written. Raises ValueError as :func:`read`."""
     return _of_text(name, text)
 
 
 def in_metres(law):
-    """Whether a law is a table whose A is a length."""
+    """Whether a law comes from a table whose A is a length."""
     return LAW_UNIT in law.parameters
 
 
 def fitted_law(name, p, A, lam, p_max, metres=False, error=0.0, body=None):
     """:class:`~solver.laws.law.Law` near the rows (n,) of a table that has been checked.
 
-    metres : whether A is in m, else in R; error : of the rows themselves, the curves may be so far from them; body :
-        on which they hold, parameter -> number or word, lengths in m
+    metres : whether A is in m; otherwise it is in R
+    error : error of the rows themselves; the curves may be as far from them
+    body : the body for which they are valid, parameter -> number or word, lengths in m
     """
     beta = np.clip(np.log(A[1] / A[0]) / np.log(p[1] / p[0]), *_BETA)
     s, q = 2 / beta - 1, p / p[-1]
@@ -239,13 +245,14 @@ def _scales_in_metres(p_star, A_star, E, law_unit):
 
 def _curve(column, t, q, X, power, allowed):
     """:class:`~solver.laws.tabulated.TableCurve` near the rows X (n,), of the lowest degree that is near enough, and
-    its largest error at and between them. ValueError where every degree is more than `allowed` away, or falls."""
+    its largest error at and between them. Raises ValueError if for every degree it is more than `allowed` away, or
+    falls."""
     degrees = range(min(_DEGREE, len(t) - 2) + 1)
-    tried = [fitted(t, q, X, degree, power=power, span=(t[0], t[-1])) for degree in degrees]
-    differences, tried = _apart([curve for curve, _ in tried], t), tried[1:]  # degree 1 is compared with degree 0
-    far = np.array([error[1:-1].max() for _, error in tried])  # no curve through the others tells the ends
+    fits = [fitted(t, q, X, degree, power=power, span=(t[0], t[-1])) for degree in degrees]
+    differences, fits = _differences([curve for curve, _ in fits], t), fits[1:]  # degree 1 is compared with degree 0
+    far = np.array([error[1:-1].max() for _, error in fits])  # without the ends, to which the other rows do not reach
     if far.min() > allowed:
-        row = int(np.argmax(tried[far.argmin()][1][1:-1])) + 2
+        row = int(np.argmax(fits[far.argmin()][1][1:-1])) + 2
         raise ValueError(
             f"column {column}, row {row}: is {100 * far.min():.0f} % off a smooth curve through the other rows: "
             f"at most {100 * allowed:.0f} % are allowed"
@@ -257,24 +264,25 @@ def _curve(column, t, q, X, power, allowed):
             f"column {column}, rows {row} and {row + 1}: smooth curves through the rows differ by "
             f"{100 * far.min():.0f} % between them: at most {100 * allowed:.0f} % are allowed: add rows there"
         )
-    falls = np.array([column == "A" and _falls(curve, t) for curve, _ in tried])
+    falls = np.array([column == "A" and _falls(curve, t) for curve, _ in fits])
     good = ~falls & (far <= max(_NEAR, _HARDLY * far[~falls].min(initial=np.inf))) & (far <= allowed)
     if not good.any():
         raise ValueError(f"column {column}: no smooth curve through the rows rises: add rows, or smooth them")
     best = int(np.argmax(good))
-    error = max(far[best], _OF_ENDS * tried[best][1][[0, -1]].max())
+    error = max(far[best], _OF_ENDS * fits[best][1][[0, -1]].max())
     for other in range(best + 1, best + 1 + _HIGHER):
-        if other < _PART * len(t) - 1 and other < len(tried) and at_rows[other] <= _HARDLY * far[best]:
-            error = max(error, _apart([tried[best][0], tried[other][0]], t).max())
-    return tried[best][0], float(error)
+        if other < _PART * len(t) - 1 and other < len(fits) and at_rows[other] <= _HARDLY * far[best]:
+            error = max(error, _differences([fits[best][0], fits[other][0]], t).max())
+    return fits[best][0], float(error)
 
 
-def _apart(curves, t):
-    """Errors (k - 1, m) of k curves of ascending degrees without the first, at _STEPS points a gap of the rows t."""
+def _differences(curves, t):
+    """_MARGIN times the differences (k - 1, m) of k curves from the curve before, at _STEPS points in each gap of the
+    rows t."""
     rows = np.arange(len(t))
     points = np.exp(np.interp(np.arange(0, len(t) - 1, 1 / _STEPS), rows, np.log(t)))
     V = np.array([curve.exponent(points)[0] for curve in curves])
-    return _APART * np.expm1(np.minimum(np.abs(np.diff(V, axis=0)), 9.0))  # far above _FAR, and no overflow
+    return _MARGIN * np.expm1(np.minimum(np.abs(np.diff(V, axis=0)), 9.0))  # 9 is far above _FAR, and does not overflow
 
 
 def _falls(quantity, t):

@@ -9,8 +9,8 @@ from ..parameters import Parameter
 from . import disc_cell
 from .law import Curve, Law
 
-#: With a small β the pressure at the edge is below the least float. _LEAST y is added to q, so that q increases there.
-#: Below _LOST this term is seen in the digits of q: a case with such a pressure in the centre has no p_max.
+#: With a small β the pressure at the edge is below the smallest float. _LEAST y is added to q, so that q increases even
+#: there. Below _LOST this term changes the digits of q: a case with such a pressure in the centre has no p_max.
 _LEAST, _LOST = 1e-295, 1e-270
 
 
@@ -40,7 +40,7 @@ def _peak(y, q, beta, ratio):
 
 LAW = Law(
     name="power_law",
-    #: Coefficient, without unit, and exponent.
+    #: B has no unit.
     parameters=disc_cell.PARAMETERS | {"B": Parameter(interval="[1e-8, 1e4]"), "beta": Parameter(interval="[0.01, 1]")},
     scales=_scales,
     curve=_curve,

@@ -9,12 +9,12 @@ from .disc_cell import displacement
 
 
 class Fit(NamedTuple):
-    """A power law A = B p^β fitted to the exact one.
+    """A power law A = B p^β, fitted to the exact law.
 
     Attributes
     ----------
     B, beta : factor (unit Ra/E1*^β), and exponent β
-    max_error : largest relative error |B p^β/A[p] - 1| over the interval of check
+    max_error : largest relative error |B p^β/A[p] - 1| over the interval `check`
     """
 
     B: float
@@ -23,7 +23,7 @@ class Fit(NamedTuple):
 
 
 def pressures(p_min, p_max, step, mesh):
-    """Abscissas of the fit, unit E1*: uniform with `step`, or as many points graded geometrically."""
+    """Abscissas of the fit in E1*: uniform with `step`, or equally many in geometric progression."""
     count = int(round((p_max - p_min) / step)) + 1
     return np.linspace(p_min, p_max, count) if mesh == "uniform" else np.geomspace(p_min, p_max, count)
 
@@ -71,7 +71,7 @@ def least_squares(p, A):
     """B and β of the least-squares fit A = B p^β to A (n,) at p (n,), which ascends."""
     from scipy.optimize import brentq  # imported here: it takes 0.3 s (python -X importtime), and only a fit needs it
 
-    scale = np.sqrt(p[0] * p[-1])  # powers of p/scale, so that B and β are not nearly dependent
+    scale = np.sqrt(p[0] * p[-1])  # the fit is in p/scale, so that B and β are not nearly dependent
     logarithm = np.log(p / scale)
 
     def best(beta):
@@ -81,8 +81,8 @@ def least_squares(p, A):
         return power, factor, A - factor * power
 
     def slope(beta):
-        """The misfit falls with β where this is positive, so its root is the best β. A root is found to rounding, a
-        minimum only to the square root of that."""
+        """A function of β that is positive where the misfit falls with β, so that its root is the best β. A root can be
+        computed to rounding, a minimum only to the square root of that."""
         power, _, rest = best(beta)
         return rest @ (power * logarithm)
 
@@ -92,7 +92,7 @@ def least_squares(p, A):
 
 
 def power_law_error(B, beta, Nbar_Ra2, check=(0.0025, 0.025)):
-    """Largest relative error |B p^β/A[p] - 1| of a power law over `check` (unit E1*), B in Ra/E1*^β."""
+    """Largest relative error |B p^β/A[p] - 1| of a power law over `check`, in E1*; B is in Ra/E1*^β."""
     p = np.linspace(*check, 2001)
     return float(np.max(np.abs(B * p**beta / displacement(p, 1.0, Nbar_Ra2, 1.0) - 1)))
 

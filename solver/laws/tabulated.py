@@ -1,14 +1,14 @@
-"""A micro law from the rows of a table: smooth, rising curves near the rows, with the ends that are known.
+"""A micro law from the rows of a table: smooth, rising curves near the rows, whose behaviour at both ends is imposed.
 
-The unknown y > 0 is chosen by q = y t^s with t = y/(1 + y), which goes from 0 to 1. For small y, q is y^(1 + s): with
-s = 2/β - 1, g ~ y² means g ~ q^β. For large y, q is y - s. A quantity that begins as t^m and tends to a limit by
+The unknown y > 0 is defined by q = y t^s with t = y/(1 + y), which goes from 0 to 1. For small y, q is y^(1 + s): with
+s = 2/β - 1, g ~ y² means g ~ q^β. For large y, q is y - s. A quantity X that begins as t^m and tends to a limit as
 exp(-rate q) is written
 
     X = 1/(1/limit + exp(-rate q - V(t))/t^m).
 
-V is then smooth up to both ends: a polynomial, by least squares. A spline through the rows would follow their noise,
-and a mesh would need more nodes to resolve it. For an X without a limit, `limit` is infinity and the rate 0. A/A*, λ
-and (p_max - p)/p* are such quantities.
+V is then smooth up to both ends, and is fitted by a polynomial. A spline through the rows would follow their noise, and
+a mesh would need more nodes to resolve it. For an X without a limit, `limit` is infinity and the rate 0. A/A*, λ and
+(p_max - p)/p* are such quantities.
 """
 
 from functools import partial
@@ -19,15 +19,16 @@ from numpy.polynomial import chebyshev, polynomial
 
 from .law import Curve, Law, inverse, where_positive
 
-#: Above this q, y is q to rounding.
+#: Above this q, y equals q to rounding.
 _LARGE = 1e30
 _TINY = np.finfo(float).tiny
 
 
 class TableCurve(NamedTuple):
-    """One X of the module, with m = `power`; V holds the coefficients of a polynomial in 2 t - 1, ascending.
+    """One quantity X of the module's equation, with m = `power`. V has the coefficients of a polynomial in 2 t - 1,
+    ascending.
 
-    span : the smallest and the largest t of the polynomial. Below, V is a straight line in t; above, V + m ln t is one.
+    span : the smallest and the largest t of the polynomial. Below it V is a straight line in t; above it V + m ln t is.
     """
 
     power: int
@@ -37,7 +38,7 @@ class TableCurve(NamedTuple):
     span: tuple[float, float] = (0.0, 1.0)
 
     def at(self, t, q):
-        """X at t and q of any shape."""
+        """X at t and q; any shape."""
         return 1 / (1 / self.limit + self.rest(t, q, self.exponent(t)[0]))
 
     def rest(self, t, q, V):
@@ -64,14 +65,14 @@ class TableCurve(NamedTuple):
         return V, slope
 
     def with_slope(self, t, q, dq):
-        """X, its rest, and d ln(1/rest)/dy; `dq` is dq/dy, and dt/dy = (1 - t)²."""
+        """X, :meth:`rest`, and d ln(1/rest)/dy; `dq` is dq/dy, and dt/dy = (1 - t)²."""
         V, dV = self.exponent(t)
         rest = self.rest(t, q, V)
         return 1 / (1 / self.limit + rest), rest, (self.power / t + dV) * (1 - t) ** 2 + self.rate * dq
 
 
 class LawTable(NamedTuple):
-    """The quantities of a law: A/A*, λ, and `above`, (p_max - p)/p*; and the exponent s of q = y t^s."""
+    """The quantities of a law: A/A*, λ, and (p_max - p)/p* (`above`); and the exponent s of q = y t^s."""
 
     A: TableCurve
     lam: TableCurve
@@ -86,12 +87,13 @@ class LawTable(NamedTuple):
 
 
 def fitted(t, q, X, degree, guides=((), (), 0.0), first=None, **form):
-    """:class:`TableCurve` near the rows X (n,) at t and q (n,), and its relative error at each row (n,): how far the
-    row is from the curve fitted to the other rows alone. Where rows are far apart, both this and the curve err much.
+    """:class:`TableCurve` near the rows X (n,) at t and q (n,), and its relative error (n,) at each row: the distance
+    of the row from the curve that is fitted to the other rows alone. Where the gaps between the rows are wide, both the
+    curve and this error may be wrong.
 
-    degree : of the polynomial
-    guides : t and V (k,) of guiding points where there are no rows, and their weight, small beside the rows' weights
-    first : X/t^power for t -> 0, if it is known; met exactly
+    degree : degree of the polynomial
+    guides : t and V (k,) at guiding points where there are no rows, and their weight, small beside those of the rows
+    first : the limit of X/t^power for t -> 0, which the curve meets exactly; None: it is free
     form : power, and rate, limit and span of the TableCurve
     """
     quantity = TableCurve(**{"rate": 0.0, "limit": np.inf} | form, V=np.zeros(1))
@@ -118,8 +120,8 @@ def t_of(q, s=2.0):
 
 
 def law_of(table, **rest):
-    """:class:`~solver.laws.law.Law` of a :class:`LawTable`, which can be pickled. `rest`: its name, its `scales` and
-    all else that the table does not say."""
+    """:class:`~solver.laws.law.Law` of a :class:`LawTable`; it can be pickled. `rest`: its name, its `scales` and
+    everything else that is not in the table."""
     functions = {"curve": _curve, "area": _area, "peak": _peak, "edge": _edge}
     functions |= {"from_pressure": _from_pressure, "from_displacement": partial(_from_displacement, _inverse(table))}
     return Law(**{name: partial(function, table) for name, function in functions.items()}, **rest)
@@ -151,7 +153,7 @@ def _from_pressure(table, q):
 
 
 def _root(q):
-    """y >= 0 with y³ = q (1 + y)², which is q = y t², by Cardano's formula. No terms cancel: y is right to a few units
+    """y >= 0 with y³ = q (1 + y)², that is q = y t², by Cardano's formula. No terms cancel: y is right to a few units
     of rounding."""
     bounded = np.minimum(q, _LARGE)
     t = np.cbrt(bounded * (0.5 + np.sqrt(0.25 + bounded / 27) + bounded / 3 * (1 + bounded / 9)))
@@ -159,7 +161,8 @@ def _root(q):
 
 
 def _inverse(table):
-    """ln(1/rest) of A and ln y at points of the curve, (2, n), ascending: interpolated, a first guess of y."""
+    """ln(1/rest) of A and ln y at points of the curve, (2, n), ascending: interpolation in it gives a first guess of
+    y."""
     t = np.append(np.geomspace(1e-6, 0.01, 40), np.linspace(0.01, 1, 400)[1:-1])
     y = t / (1 - t)
     rest = table.A.rest(t, table.pressure(y)[1], table.A.exponent(t)[0])
@@ -167,8 +170,8 @@ def _inverse(table):
 
 
 def _from_displacement(inverse_curve, table, g):
-    """y (B, m) at which A/A* is g. It is solved for 1/rest, which is g where A has no limit, and grows to infinity as g
-    comes near a limit."""
+    """y (B, m) at which A/A* is g. The equation is solved for 1/rest, which is g where A has no limit, and tends to
+    infinity where g tends to its limit."""
     A, g = table.A, np.asarray(g, dtype=float)
     odds = 1 / (1 / np.where(g < A.limit, g, np.nan) - 1 / A.limit)
 

@@ -1,4 +1,4 @@
-"""Mistakes in a law of somebody else: in its declaration, and in its functions at a few of its cases."""
+"""A search for mistakes in a user's law: in its declaration, and in its functions at a few of its cases."""
 
 import traceback
 from contextlib import contextmanager
@@ -12,27 +12,28 @@ from ..parameters import Parameter, allowed, ends
 from .law import Curve, Law
 from .own_table import PREFIX
 
-#: The y (cases, points) of a trial: three cases, at different y. At _ZERO times these, q and g must be below _NEAR
-#: times what they are there: they rise as y², or faster. Numbers below _TINY may have fewer digits than others.
+#: The y (cases, points) of a trial: three cases at different y. At _ZERO times these y, q and g must be below _NEAR
+#: times their values at these y, since they rise as y² or faster. Numbers below _TINY may have fewer digits than
+#: others.
 _Y = np.array([[0.9], [1.0], [1.1]]) * np.geomspace(1e-3, 10, 13)
 _ZERO, _NEAR, _TINY = 1e-6, 1e-3, 1e-290
-#: Half the step of ln y over which a derivative is compared, and the largest relative error of it: the laws of this
-#: package have less than 1e-5 (tests/laws/test_trial.py).
+#: Half the step of ln y of a difference with which a derivative is compared, and the largest relative error of the
+#: derivative: in the laws of this package it is less than 1e-5 (tests/laws/test_trial.py).
 _STEP, _WRONG = 1e-3, 1e-3
 #: A curve that changes by less than _FLAT over the step is flat: its derivative is rounding. So is a fall by less than
 #: _ROUNDING from one y to the next.
 _FLAT, _ROUNDING = 1e-6, 1e-9
-#: The part of the points that must be wrong, since a curve may have a corner near some.
+#: A law is refused if more than this part of the points is wrong: a curve may have a corner near some points.
 _PART = 0.25
-#: Largest relative error of q or g of an inverse.
+#: Largest relative error of q or g at the y that an inverse returns.
 _INVERSE = 1e-6
-#: Laws whose functions have been tried.
+#: The laws whose functions have been tried.
 _TRIED: WeakSet[Law] = WeakSet()
 _trying = shared_lock()
 
 
 def untried(law):
-    """Whether a law is somebody else's, and its functions have not been tried."""
+    """Whether a law is a user's, and its functions have not been tried."""
     if not law.version or law.name.startswith(PREFIX):
         return False
     with _trying:
@@ -42,8 +43,8 @@ def untried(law):
 def try_out(law, E, parameters):
     """Try the functions of a law that is :func:`untried` at some of its cases: see :func:`tried`.
 
-    That takes a seventh of a millisecond, once a process. Without it a law with a wrong derivative gives a dP/dD that
-    is 2 % off, as converged (tests/laws/test_trial.py).
+    This takes a seventh of a millisecond, once in a process. Without it a law with a wrong derivative gives a dP/dD
+    that is 2 % off, with the status of a converged case (tests/laws/test_trial.py).
     """
     if untried(law):
         tried(law, E, parameters)
@@ -53,7 +54,8 @@ def try_out(law, E, parameters):
 
 @contextmanager
 def going_on():
-    """Functions of somebody else, which must not end Python: RuntimeError in place of SystemExit and its like."""
+    """Context in which a user's functions cannot end Python: it raises RuntimeError in place of SystemExit and its
+    like."""
     try:
         yield
     except (Exception, KeyboardInterrupt):
@@ -64,7 +66,7 @@ def going_on():
 
 
 def declaration(law):
-    """The mistake in the declaration of the parameters of a law, a text; "" if there is none."""
+    """A sentence about the first mistake in the declaration of a law's parameters; "" if there is none."""
     if not isinstance(law.parameters, dict):
         return "parameters must be a dictionary, name -> Parameter"
     for name, parameter in law.parameters.items():
@@ -89,16 +91,16 @@ def _is_interval(text):
 
 @np.errstate(all="ignore")
 def tried(law, E, values):
-    """Try a law at three of its cases: of modulus E (B,) and its parameters, name -> (B,).
+    """Try a law at three of its cases; E (B,) is their modulus, `values` their parameters, name -> (B,).
 
-    It finds slips that would make a wrong number look right, or end deep in the solver; NaN is none, for such a case
-    gets a status. Raises ValueError: a function of the law raises, or gives something of a wrong shape; q or g do not
-    increase from 0; a derivative or an inverse is not that of the curve.
+    The trial finds mistakes that would make a wrong number look right, or raise an error deep in the solver. NaN is not
+    a mistake: such a case gets a status. Raises ValueError if a function of the law raises or returns something of a
+    wrong shape, if q or g do not increase from 0, or if a derivative or an inverse is not that of the curve.
     """
     places = np.linspace(0, len(E) - 1, len(_Y)).astype(int)
     E, values = E[places], {name: values[name][places] for name in law.arguments}
     bound, curve, area = _shapes(law, E, values)
-    # no contact is beyond full contact, or where p is above E: there a law may be what it likes
+    # no contact is beyond full contact or has p above E: a law may return anything there
     here = (area <= 1) & (bound.p_star[:, None] * curve.q <= E[:, None])
     small, above, below = (_curve(law, y, bound.own) for y in (_ZERO * _Y, _Y * np.exp(_STEP), _Y * np.exp(-_STEP)))
     for name, inverse in (("q", "from_pressure"), ("g", "from_displacement")):
@@ -118,7 +120,8 @@ def tried(law, E, values):
 
 
 def _shapes(law, E, values):
-    """The law bound to its cases, and curve and area at _Y, if all of its functions return arrays as they must."""
+    """The law bound to its cases, its curve, and its area at _Y. Raises ValueError if one of its functions does not
+    return arrays of the right shape."""
     parts = _called(law, "scales", E, **values)
     if not (isinstance(parts, (tuple, list)) and len(parts) >= 2 and all(np.shape(v) in ((), E.shape) for v in parts)):
         _refuse(law, "scales must return p*, A* and what else the functions need, each of the shape of E")
@@ -135,7 +138,8 @@ def _shapes(law, E, values):
 
 
 def _compare(law, rule, numbers, checked, values):
-    """Refuse a law if two arrays differ at too many of the points that are `checked`."""
+    """Refuse a law if two arrays differ at too many of the points where `checked`. numbers : the right values, those of
+    the law, and their largest relative difference."""
     right, stated, most = numbers
     checked = checked & np.isfinite(right) & np.isfinite(stated)
     wrong = checked & (np.abs(stated - right) > most * np.abs(right))
@@ -178,10 +182,11 @@ def _called(law, name, *arguments, **named):
         raise ValueError(f"micro law {law.name}: {name} raises {type(error).__name__}: {error}{where}") from error
 
 
-def _refuse(law, reason, given=None, where=None):
-    """Raise the ValueError of a slip, of the first case and the first y of `where`."""
-    if given is not None:
+def _refuse(law, reason, parameters=None, where=None):
+    """Raise the ValueError of a mistake, with the first y and the parameters of the first case at which `where` is
+    True."""
+    if parameters is not None:
         case, point = np.argwhere(where)[0]
-        numbers = {"y": _Y[case, point]} | {name: values[case] for name, values in given.items()}
+        numbers = {"y": _Y[case, point]} | {name: values[case] for name, values in parameters.items()}
         reason += " (at " + ", ".join(f"{name} = {value:.3g}" for name, value in numbers.items()) + ")"
     raise ValueError(f"micro law {law.name}: {reason}")

@@ -1,1 +1,2 @@
-"""Cases by the name of their base; how far a cheap model is from the exact one; the base "auto", chosen by that."""
+"""Cases by the name of their base; the error of cheap models against the exact one; and the base "auto", which chooses
+a model by that error."""

@@ -1,8 +1,8 @@
-"""The base "auto": each case is solved once, on the cheapest model whose error a closed form shows to be small enough.
+"""The base "auto": each case is solved once, on the cheapest model whose error is small enough by a closed form.
 
-The models are in docs/accuracy.md. Before anything is solved, the error of each against the rough contact on the exact
-layer is bounded, from h/a and A[p(0)]/a² at the first guess of the radius (:func:`bounds`). The bound of the model that
-is chosen becomes `model_error`.
+The models are in docs/accuracy.md. Before anything is solved, :func:`bounds` gives an upper bound of the error of each
+model against the rough contact on the exact layer, from h/a and A[p(0)]/a² at the first guess of the radius. The bound
+of the chosen model becomes `model_error`.
 """
 
 from dataclasses import replace
@@ -19,17 +19,17 @@ from ..solution import Model, Solution
 from ..status import Status
 from .named import closed_form, solve_named, with_model_error
 
-#: In random cases the true error is at most 0.86 of each bound that follows (`python tools/errors/margins.py 3000 2`).
+#: In random cases the true error is at most 0.86 times each of these bounds (`python tools/errors/margins.py 3000 2`).
 #: The error of the thin layer is at most _THIN times its closed form, which is that of a smooth punch.
 _THIN = 4.0
-#: Where h/a is above _THICKEST, the error of leaving out the body under a thick layer is at most _ALONE times
-#: (a/h) ∫|L - 1| du. Below, that bound would be too large to be of use, unless n is almost 1.
+#: If h/a is above _THICKEST, the error by leaving out the body under a thick layer is at most _ALONE times
+#: (a/h) ∫|L - 1| du. Otherwise that bound would be too large to be of use, unless n is almost 1.
 _ALONE, _THICKEST = 0.8, 1.0
-#: The error of leaving out the asperities is at most this times (A[p(0)]/a²)^0.75 at given P, a or D. The exponent is
-#: 2/(3 - β) where that is less, for asperities of A ~ p^β with β < 1/3: in a ring at the edge, (A/a²)^(2/(3 - β)) wide,
-#: they yield more than the body.
+#: The error by leaving out the asperities is at most this times (A[p(0)]/a²)^0.75 at given P, a or D. For asperities
+#: with A ~ p^β and β < 1/3 the exponent is 2/(3 - β), which is smaller: in a ring at the edge, (A/a²)^(2/(3 - β)) wide,
+#: they are more compliant than the body.
 _ASPERITIES = {"P": 5.0, "a": 7.0, "D": 4.0}
-#: A bound is of first order: above this it is not trusted, and its model is not taken, whatever `accuracy` is.
+#: A bound is of first order. Above this it is not trusted, and its model is not chosen, whatever `accuracy` is.
 _TRUSTED = 0.3
 #: Nodes u and weights of ∫ · du by the trapezoidal rule in ln u. They are few: 10 % are enough for a bound.
 _U = np.exp(np.linspace(np.log(1e-3), np.log(25.0), 14))
@@ -40,7 +40,7 @@ _SMOOTH = (Model.SMOOTH_LAYER_ALONE, Model.SMOOTH_THIN_LAYER)
 
 def cheapest(problem, x):
     """:class:`Solution` of cases of the base "auto", in the units of the problem, each on the cheapest model whose
-    bound is within its accuracy. Where that model fails, the exact layer is solved. x : (m,) radii."""
+    bound is within its accuracy. If that model fails, the case is solved on the exact layer. x : (m,) radii."""
     scaled = dimensionless(problem).but(model_check="closed_form")
     pieces, left = [], np.ones(len(problem), dtype=bool)
     for micro in np.unique(problem.micro):
@@ -62,9 +62,9 @@ def cheapest(problem, x):
 
 
 def bounds(part):
-    """Model -> bound (B,) of its largest relative error over a, P, D, p0, p_max, Ar_An, the cheapest model first, for
-    cases of one micro law. Closed forms at the first guess of the radius; tests/models/test_auto.py compares them with
-    the exact layer."""
+    """Model -> bound (B,) of its largest relative error over a, P, D, p0, p_max, Ar_An, for cases of one micro law; the
+    cheapest model is the first. The bounds are closed forms at the first guess of the radius. tests/models/test_auto.py
+    compares them with the exact layer."""
     cases = as_cases(part.but(base="layered"))
     a = guess_radius(cases)
     h_a, material = part.h / a, (part.n, part.nu1, part.nu2, part.bonding == "bonded")

@@ -12,15 +12,15 @@ _QUANTITIES = ("a", "D", "p0", "p_max", "lam0", "A0")
 
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN
 def estimate(problem):
-    """Name -> (B,) of a, D, p0, p_max, lam0, A0 in units R = E2* = 1, as they are where the iteration begins. D is the
-    least that it can be, the height of the punch at r = a.
+    """Name -> (B,), for a, D, p0, p_max, lam0, A0 in units R = E2* = 1, by the first guess of the iteration. D is its
+    lower bound, the height of the punch at r = a.
 
-    problem : :class:`~solver.problem.Problem` with R = E2 = 1; all bases count as "layered", and asperities as if they
-        stood on a half-space
+    problem : :class:`~solver.problem.Problem` with R = E2 = 1. Every base counts as an exact layer or stack, and
+        asperities as if they stood on a half-space
 
-    NaN of cases that the solver refuses, of flat punches, and of micro laws that are not of this package. Under given
-    loads a of 97 % of 300 random contacts is right to a factor of 2 (tests/physical/words/test_far_outside.py).
-    """
+    They are NaN for cases that the solver refuses, for flat punches, and for micro laws that are not of this package.
+    At given loads, a is right to a factor of 2 in 97 % of 300 random contacts
+    (tests/physical/words/test_far_outside.py)."""
     base = np.where(is_stack(problem.base), "stack", "layered")
     scaled = dimensionless(problem.but(base=base, asperities_on="half_space"))
     usable, estimates = ~refused(problem, scaled), {name: np.full(len(problem), np.nan) for name in _QUANTITIES}

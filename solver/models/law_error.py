@@ -1,9 +1,9 @@
-"""Where the numbers of a micro law are wrong: pressures that it does not know, in part or in all, and what the laws of
-asperities leave out on a coated body (docs/model.md, Asperities on the coated body).
+"""The errors of micro laws: pressures outside their range, and effects of a coated body that they leave out
+(docs/coated_body.md).
 
-Asperities that feel the body are right except for three things: the pressure of a spot is a mean over the angle, the
-neighbours have no places in the disc cell, and they are a mean where heights are random. Asperities on a half-space of
-the layer's material, where their pitch is above h, err by all that the body changes.
+The law of asperities that feel the body has three errors: the pressure of a spot is a mean over the angle, the
+neighbours have no places in the disc cell, and they are a mean if heights are random. The law of asperities on a
+half-space of the layer's material leaves out the whole effect of the body, which counts where their pitch is above h.
 """
 
 from dataclasses import replace
@@ -21,53 +21,56 @@ from ..problem import far_apart
 from ..scaling import dimensionless, law_of, of_one_law
 from ..status import Status
 
-#: Radii r/a at which the pressure is compared with the range, whatever profile is asked for. They are denser near the
-#: edge, where a hard film presses most.
+#: Radii r/a at which the pressure is compared with the range of the law, whatever profiles the caller wants. They are
+#: denser near the edge, where a hard film presses most.
 _S = np.append(np.geomspace(1e-5, 0.09, 40), np.linspace(0.1, 1, 41))
 RADII = np.sqrt((1 - _S) * (1 + _S))
-#: Pitches that are above MOST h by no more than this are left to the law.
+#: A pitch that exceeds MOST h by a relative _EPS at most is rounding, and the law still covers it.
 _EPS = 1e-9
-#: Each of so many of these is enough for the largest pressure, of asperities that feel the body.
+#: For asperities that feel the body, every _FEW-th of the RADII is enough for the largest pressure.
 _FEW = 4
-#: Near the edge p is below the first row of a table, p1, and A and λ are guesses. That changes a, P, D, p(0), p_max and
-#: Ar/An by at most _GUESSED (p1/p(0))^_STEEPNESS. Random tables (`python tools/errors/own_tables.py`) need at most
-#: 0.205 for _GUESSED; a table of random heights needs more than 0.25 (tests/laws/test_own_table_range.py).
+#: Near the edge p is below p1, the pressure of the first row of a table, and A and λ are guesses. That changes a, P, D,
+#: p(0), p_max and Ar/An by at most _GUESSED (p1/p(0))^_STEEPNESS. Random tables (`python tools/errors/own_tables.py`)
+#: need at most 0.205 for _GUESSED; a table of random heights needs more than 0.25
+#: (tests/laws/test_own_table_range.py).
 _GUESSED, _STEEPNESS = 0.4, 1.2
-#: The mean over the angle errs by this part, times 2 λ to a power, in A, λ or p_max of resolved cells
-#: (tests/models/test_errors_on_layers.py): of a square lattice, and of a hexagonal one, whose waves the disc cell has.
+#: (factor, power): the error by the mean over the angle is the factor times (2 λ)^power, in A, λ or p_max, compared
+#: with resolved cells (tests/models/test_errors_on_layers.py). One pair is for a square lattice, the other for a
+#: hexagonal one, whose waves the disc cell has.
 _SQUARE, _HEX = (0.03, 3.5), (1e-3, 4.0)
 _ANGULAR = {"square_lattice": _SQUARE}
-#: The law that stands for one without a body of its own, as the power law is fitted to it, and for those that have no
-#: places of the neighbours; and the lattice with which it is compared.
+#: _DISC stands for a law that does not know the body, as the power law, which is fitted to it, and for laws without
+#: places of the neighbours; _LATTICE is compared with it.
 _DISC, _LATTICE = "disc_cell", "hex_lattice"
-#: Random heights of the standard deviation _WIDE A* are deeper by _DEEPER A* than resolved ones, those of less by its
-#: square, without a layer and on one. λ and p_max err by up to _OF_LAMBDA from _LITTLE A* on (docs/validate.md;
-#: tests/laws/heights/test_heights_on_body.py). _WIDE stands for that of a histogram.
+#: With random heights of the standard deviation _WIDE A*, D is larger by _DEEPER A* than with resolved ones, without a
+#: layer and on one; the difference is proportional to the standard deviation above _WIDE A*, and to its square below.
+#: The error of λ and p_max is up to _OF_LAMBDA from _LITTLE A* on (docs/validate.md;
+#: tests/laws/heights/test_heights_on_body.py). A histogram counts as one of _WIDE A*.
 _WIDE, _DEEPER, _LITTLE, _OF_LAMBDA = 0.3, 0.04, 0.1, 0.08
-#: A graded layer is cut in few sublayers below asperities: A, λ and p_max err by at most this times ln of the largest
-#: over the smallest modulus (tests/stacks/test_felt.py).
+#: Below asperities a graded layer is cut into only a few sublayers. The error of A, λ and p_max is at most this times
+#: ln of the largest over the smallest modulus (tests/stacks/test_felt.py).
 _CUT = 5e-3
-#: An error is at most this: beyond, it says that the number means nothing.
+#: Largest error that is reported: from there on the number means nothing.
 _MOST = 30.0
 
 
 def has_yield(problem):
-    """(B,) bool: the cases whose micro law has spots that yield."""
+    """(B,) bool: the cases with a micro law whose spots yield."""
     return one_of(problem.micro, [name for name, law in problem.known.laws.items() if law.yielded])
 
 
 def radii_of(problem, all_of_them=False):
-    """Radii r/a (m,) at which the pressure is compared with the range of the laws of a problem. There are none where
-    these know all pressures, and few where they end at full spots alone; `all_of_them`: all RADII, whatever they
-    know."""
+    """Radii r/a (m,) at which the pressure is compared with the range of the laws of a problem. There are none if the
+    laws cover all pressures, and few if only asperities that feel the body limit them. `all_of_them`: all RADII in any
+    case."""
     if all_of_them or _laws(problem):
         return RADII
     return RADII[::_FEW] if problem.feels_layer().any() else RADII[:0]
 
 
 def outside_law(problem, solution):
-    """(B,) bool: p(0) is below the range of the law, or p(0) or a pressure of the profile is above it; NaN is within.
-    `solution` is in the units of `problem`."""
+    """(B,) bool: whether p(0) is below the range of the law, or p(0) or a pressure of the profile is above it. NaN
+    counts as inside. `solution` is in the units of `problem`."""
     outside = np.zeros(len(problem), dtype=bool)
     for law in _laws(problem):
         index, p0, E = _of_law(problem, solution, law)
@@ -77,13 +80,13 @@ def outside_law(problem, solution):
 
 
 def without_family(problem):
-    """(B,) bool: the pitch is so many times the thickness of the layer that no law of asperities on a body knows it."""
+    """(B,) bool: whether the pitch is too many times the thickness of the layer for any law of asperities on a body."""
     return problem.Nbar * (MOST * problem.h) ** 2 < 1 - _EPS
 
 
 def beyond_end(problem, solution):
-    """(B,) bool: cases with numbers of which p(0) or a pressure of the profile is beyond the end of the law of spots
-    that feel the body, and all cases whose law ends at once. `solution` is in the units of `problem`, whose bases have
+    """(B,) bool: solved cases in which p(0) or a pressure of the profile is beyond the end of their law of spots that
+    feel the body, and all cases whose law has its end at 0. `solution` is in the units of `problem`, whose bases have
     names."""
     past_end = np.zeros(len(problem), dtype=bool)
     felt = np.flatnonzero(problem.feels_layer())
@@ -97,7 +100,7 @@ def beyond_end(problem, solution):
 
 
 def edge_error(problem, solution):
-    """(B,): relative error of contacts because their law begins at a pressure > 0; 0 where it does not."""
+    """(B,): relative error of contacts because the range of their law begins at a pressure above 0; else 0."""
     error = np.zeros(len(problem))
     for law in _laws(problem):
         index, p0, E = _of_law(problem, solution, law)
@@ -106,14 +109,14 @@ def edge_error(problem, solution):
 
 
 def _laws(problem):
-    """The laws of the problem that have a range."""
+    """The laws of the problem with a limited range."""
     present = set(problem.micro.tolist())
     return [law for law in problem.known.laws.values() if law.name in present and (law.least > 0 or law.most < np.inf)]
 
 
 def _of_law(problem, solution, law):
-    """Index, p(0) and the modulus E that the asperities feel, of the cases of a law. Where p(0) is not known, under a
-    point, the largest pressure of the profile stands for it."""
+    """Index, p(0), and the modulus E that the asperities feel, for the cases of a law. Under a point, where p(0) is
+    unknown, the largest pressure of the profile stands for it."""
     index = np.flatnonzero(problem.micro == law.name)
     part = problem.take(index)
     E = part.E2 * np.where(is_bare(part.base), 1.0, layer_modulus(part.n)) / (1 + part.m)
@@ -122,12 +125,12 @@ def _of_law(problem, solution, law):
 
 
 def left_out(problem, solution):
-    """(B,) relative error of what asperities leave out of the coated body they stand on: the largest of p_max, λ and
-    D. 0 of smooth cases, of laws that do not know the asperities, and on a half-space where their pitch is at most h.
-    `solution` and problem have one unit."""
+    """(B,) relative error because of effects of the coated body that the law of asperities leaves out: the largest of
+    those of p_max, λ and D. It is 0 for smooth cases, for laws without Nbar and Ra, and for asperities on a half-space
+    with a pitch of at most h. `solution` is in the units of the problem."""
     error = np.zeros(len(problem))
     felt = problem.feels_layer()
-    # to the error of "auto" this one is added where its law could feel the body; that of a thin layer is left as it is
+    # the base "auto" has this error too if its law could feel the body; the thin layer does not have it
     there = (is_exact(problem.base) | problem.can_feel()) & np.isfinite(problem.Ra) & problem.rough()
     index = np.flatnonzero(there & np.isfinite(solution.P) & (felt | far_apart(problem.Nbar, problem.h)))
     if not len(index):
@@ -142,8 +145,8 @@ def left_out(problem, solution):
 
 
 def last_fraction(problem):
-    """(B,): the largest contact fraction λ that the law of asperities on their coated bodies knows; 0 where it knows
-    none, NaN of asperities that do not feel the body, and inf of laws without an end."""
+    """(B,): the largest contact fraction λ that the law of asperities on their coated body covers; 0 if it covers none,
+    NaN for asperities that do not feel the body, and inf for laws without an end."""
     fraction = np.full(len(problem), np.nan)
     felt = np.flatnonzero(problem.feels_layer())
     scaled = dimensionless(problem.take(felt))
@@ -156,11 +159,11 @@ def last_fraction(problem):
 
 
 def _largest(solution):
-    """p(0) (B,), or where it is not known the largest pressure of the profile."""
+    """p(0) (B,), or the largest pressure of the profile where p(0) is unknown."""
     return np.where(np.isnan(solution.p0), np.fmax.reduce(solution.p, axis=1, initial=np.nan), solution.p0)
 
 
-@np.errstate(all="ignore")  # of pressures that are not known
+@np.errstate(all="ignore")  # unknown pressures are NaN
 def _of_felt(part, solution):
     """The error (B,) of asperities that feel the body, in units R = E2* = 1."""
     name = str(part.micro[0])
@@ -175,7 +178,7 @@ def _of_felt(part, solution):
 
 
 def _of_heights(part, solution):
-    """The error (B,) because the neighbours of a summit are a mean: where one stands high they carry less than that."""
+    """The error (B,) because the neighbours of a summit are a mean: those of a high summit carry less than the mean."""
     A_star = 1 / (np.pi * part.Nbar * part.Ra)
     spread = np.nan_to_num(part.sigma / A_star, nan=_WIDE)
     deeper = _DEEPER * np.minimum((spread / _WIDE) ** 2, spread / _WIDE) * A_star / solution.D
@@ -183,9 +186,9 @@ def _of_heights(part, solution):
 
 
 def _of_disc(part, lam, solution):
-    """The error (B,) because the neighbours of a spot have no places, at the contact fractions lam (B,): by a cell on a
-    half-space. They lift the surface under the spots by a part of p/E that depends on λ, and hardly on the body; where
-    this is a larger part of A than on a half-space, λ and p_max err by as much more."""
+    """The error (B,) because the neighbours of a spot have no places, at the contact fractions lam (B,), from a cell on
+    a half-space. The neighbours lift the surface under a spot by a part of p/E that depends on λ, and hardly on the
+    body. If this is a larger part of A than on a half-space, the errors of λ and p_max grow by the same factor."""
     y = np.sqrt(lam / (1 - lam))
     ones = np.ones(len(lam))
     disc, lattice = (LAWS[name].bind(ones, Nbar=ones, Ra=ones) for name in (_DISC, _LATTICE))
@@ -201,7 +204,7 @@ def _of_disc(part, lam, solution):
 
 @np.errstate(all="ignore")
 def _of_half_space(part, solution):
-    """The error (B,) of asperities on a half-space though their pitch is above h, in units R = E2* = 1."""
+    """The error (B,) of asperities on a half-space although their pitch is above h, in units R = E2* = 1."""
     part = part.but(asperities_on="half_space")
     if part.known.laws[str(part.micro[0])].on_body is None:
         part = part.but(micro=_DISC)

@@ -1,8 +1,8 @@
 """The error of a cheap model against the exact layer with its asperities, estimated from the cheap solution.
 
-From this solution Newton's method solves two equations on a coarse mesh under the same control, the exact one and the
-cheap one. The estimate is the sum of the largest relative changes over a, P, D, p(0), p_max, Ar/An in both: the second
-is what the mesh misses.
+Starting from this solution, Newton's method solves two equations on a coarse mesh under the same control, the exact one
+and the cheap one. For each the largest relative change over a, P, D, p(0), p_max, Ar/An counts, and the estimate is
+their sum: the second is the error of the mesh.
 """
 
 from dataclasses import replace
@@ -27,7 +27,7 @@ def judged(problem, x):
     """:class:`Solution` of thin layers, in the units of the problem, with the `model_error` of `model_check`
     "first_order".
 
-    problem : all of base "thin_layer" or "thin_stack"; x : (m,) radii
+    problem : cases of the bases "thin_layer" and "thin_stack"; x : (m,) radii
     """
     pieces, scaled = [], dimensionless(problem)
     exact = scaled.but(base=exact_of(scaled.base))
@@ -46,10 +46,10 @@ def judged(problem, x):
 
 def distance(cases, cheap, p):
     """Relative difference (B,) of a cheap solution from the solution of `cases` on NODES nodes; inf where Newton's
-    method, which starts from the cheap one, does not find it.
+    method, which starts from the cheap solution, does not converge.
 
     One step is not enough: on a layer that is nearly incompressible the exact pressure at the edge is several times
-    the thin layer's, and a step finds only a part of that (tests/models/test_first_order.py).
+    that of the thin layer, and a step covers only a part of the difference (tests/models/test_first_order.py).
 
     cases : in units R = E2* = 1; cheap : the cheap solution in the same units
     p : (B, NODES), its nominal pressure at the nodes ``mesh_of(NODES).x``

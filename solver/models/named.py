@@ -1,4 +1,4 @@
-"""Cases whose base has a name, each by the cheapest way that solves it."""
+"""Cases whose base is named, each solved by the cheapest way for it."""
 
 from dataclasses import replace
 
@@ -23,7 +23,7 @@ _BY_NAME = {
 
 
 def model_of(problem):
-    """:class:`Model` (B,) int8 of cases whose base is named; NONE of "auto"."""
+    """:class:`Model` (B,) int8 of cases whose base is named; NONE for "auto"."""
     used, rough = np.zeros(len(problem), dtype=np.int8), problem.rough()
     for index in alike(problem.base):
         model = _BY_NAME.get(str(problem.base[index[0]]))
@@ -33,8 +33,8 @@ def model_of(problem):
 
 
 def solve_named(problem, x):
-    """:class:`Solution` of cases whose base has a name, in the units of the problem. The `model_error` of thin layers
-    is that of `model_check` "closed_form".
+    """:class:`Solution` of cases whose base is named, in the units of the problem. Thin layers have the `model_error`
+    of `model_check` "closed_form".
 
     problem : its parameters need not be within their bounds, but no smooth case has the scheme "picard"; x : (m,) radii
     """
@@ -49,25 +49,24 @@ def solve_named(problem, x):
 
 
 def with_model_error(problem, solution):
-    """The solution with a `model_error` of at least :func:`~.law_error.edge_error`. Cases at pressures that their
-    law does not know lose their numbers. `solution` and result are in the units of the problem."""
+    """The solution with a `model_error` of at least :func:`~.law_error.edge_error`. Cases whose pressures are outside
+    the range of their law lose their numbers. `solution` and the result are in the units of the problem."""
     error = np.maximum(solution.model_error, edge_error(problem, solution))
     return replace(solution, model_error=error).refused(outside_law(problem, solution), Status.OUTSIDE_LAW)
 
 
 def error_of_law(problem):
-    """(B,): the relative error of the tables of the micro laws themselves, which asperities that feel the body do not
-    have."""
+    """(B,): the relative error of the tables of the micro laws themselves; 0 for asperities that feel the body."""
     tabulated = sum(law.error * (problem.micro == name) for name, law in problem.known.laws.items())
     return np.where(problem.feels_layer(), 0.0, tabulated)
 
 
 def closed_form(problem, a):
-    """Estimated relative error (B,) of the thin-layer model, as if asperities did not yield, by
+    """Estimated relative error (B,) of the thin-layer model, as if asperities were rigid, by
     :func:`~solver.models.thin_layer_error.largest_error`; NaN where the thin-layer equation does not apply.
 
-    `a` (B,) are its contact radii, in the unit of `problem.h`. The estimate is made for a rigid punch. Under an elastic
-    one its value at given a, the largest of the three, is taken for each control.
+    `a` (B,) are its contact radii, in the unit of `problem.h`. The estimate is for a rigid punch. Under an elastic
+    punch its value at given a, the largest of the three, counts for each control.
     """
 
     def error(part, radius, control):
@@ -75,18 +74,18 @@ def closed_form(problem, a):
             control, part.h / radius, part.n, part.nu1, part.nu2, part.bonding == "bonded", part.rough()
         )
 
-    errors, yields = error(problem, a, problem.control), np.flatnonzero(problem.m > 0)
-    if len(yields):
-        errors[yields] = error(problem.take(yields), a[yields], "a")
+    errors, elastic = error(problem, a, problem.control), np.flatnonzero(problem.m > 0)
+    if len(elastic):
+        errors[elastic] = error(problem.take(elastic), a[elastic], "a")
     return errors
 
 
 def _with_model(problem, solution):
-    """The solution with its `model_used`, and its `model_error` without that of the range of the law."""
+    """The solution with its `model_used`, and with its `model_error` without the part of the range of the law."""
     solved = np.isfinite(solution.P) & np.isfinite(solution.D)
     error = np.where(solved & ~on_springs(problem.base), 0.0, np.nan)
-    judged = np.flatnonzero(solved & is_thin_layer(problem.base))
-    if len(judged):
-        part = problem if len(judged) == len(problem) else problem.take(judged)
-        error[judged] = closed_form(part, solution.a[judged])
+    thin = np.flatnonzero(solved & is_thin_layer(problem.base))
+    if len(thin):
+        part = problem if len(thin) == len(problem) else problem.take(thin)
+        error[thin] = closed_form(part, solution.a[thin])
     return replace(solution, model_used=model_of(problem), model_error=error + error_of_law(problem))

@@ -7,16 +7,18 @@ from .law_error import RADII, has_yield
 
 #: The places s² = 1 - (r/a)² of the profile, ascending from the edge.
 _S2 = (1 - RADII) * (1 + RADII)
-#: Between two radii ln s² is a polynomial of ln λ through this many of them, all on the elastic side of the bound, at
-#: which λ bends. Of 40 random contacts the largest error was 9e-7, with two on each side 4e-6.
+#: Between two radii ln s² is a polynomial of ln λ through this many of the radii. All of them are on the elastic side
+#: of the bound, where λ has a kink. In 40 random contacts the largest error was 9e-7; with two radii on each side,
+#: 4e-6.
 _POINTS = 4
 
 
 def plastic_share(problem, lam):
-    """(B,): the share of pi a² on which the spots have yielded; NaN of a law that has none, and where λ is NaN.
+    """(B,): the share of pi a² on which the spots have yielded; NaN for a law whose spots do not yield, and where λ is
+    NaN.
 
-    lam : (B, m), λ at the radii RADII. Under a point that of the axis is not known: if the spots at the next radius
-        have yielded, those on the axis have
+    lam : (B, m), λ at the radii RADII. Under a point λ on the axis is unknown: if the spots at the next radius have
+        yielded, those on the axis have too
     """
     share = np.full(len(problem), np.nan)
     yielding = np.flatnonzero(has_yield(problem))

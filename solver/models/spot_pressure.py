@@ -1,4 +1,5 @@
-"""The pressure in the spots of asperities that feel their bodies: where it is largest, and whether it is below 0."""
+"""The pressure in the spots of asperities that feel their bodies: its maximum and the place of that, and whether it is
+below 0 somewhere."""
 
 import numpy as np
 
@@ -9,20 +10,21 @@ from ..laws.cell.peak import NARROW, U
 from ..laws.cell.summits import SUMMIT
 from ..scaling import dimensionless, felt_body, law_of, of_one_law
 
-#: On one layer the largest pressure stays in the middle where n is at most this: L - 1 is nowhere above 1.2 there, and
-#: it leaves at 1.6 (solver/laws/cell/peak.py).
+#: On one layer with n up to this, the largest pressure stays in the middle: L - 1 is at most 1.2 there, and the largest
+#: pressure leaves the middle at 1.6 (solver/laws/cell/peak.py).
 _HARD = 2.0
-#: The pressure in the middle of a spot falls below 0 where n is about 1e5, in no case yet where it is 1e4
+#: The pressure in the middle of a spot falls below 0 if n is about 1e5. With n = 1e4 it never does
 #: (tests/laws/cell/test_peak.py).
 _LIFTS = 1e4
 
 
 def pressure_in_spots(problem, solution, lam0):
-    """p_spot and r_spot (2, B): the largest pressure in the central spot, and its radius over that of the spot; NaN
-    where asperities do not feel the body. `solution` is in the units of `problem`; lam0 : (B,), λ in the centre.
+    """p_spot and r_spot (2, B): the largest pressure in the central spot, and the radius of its place over that of the
+    spot; NaN where asperities do not feel the body. `solution` is in the units of `problem`; lam0 : (B,), λ in the
+    centre.
 
-    Of random heights the spot is that of the highest summit. Where spots yield the pressure in the ring exceeds that of
-    the middle by as much less as the middle does its mean.
+    If heights are random, the spot is that of the highest summit. Where spots yield, the difference between the ring
+    and the middle is reduced by the same factor as that between the middle and the mean.
     """
     felt = problem.feels_layer() & np.isfinite(solution.p_max)
     answers = np.where(felt, [solution.p_max, np.zeros(len(problem))], np.nan)
@@ -44,8 +46,8 @@ def pressure_in_spots(problem, solution, lam0):
 
 
 def lifts_off(problem, lam):
-    """(B,) bool: the pressure is below 0 inside of a spot; lam : (B,), the largest λ of the contact. It is not
-    looked for under random heights."""
+    """(B,) bool: whether the pressure is below 0 inside some spot; False for random heights, where it is not computed.
+    lam : (B,), the largest λ of the contact."""
     lifted, felt = np.zeros(len(problem), dtype=bool), problem.feels_layer()
     problem = problem.but(base=named(problem.base))
     for index, part, body in _of_one_law(problem, felt & _may_be_hard(problem, _LIFTS)):
@@ -61,8 +63,8 @@ def _may_be_hard(problem, hard=_HARD):
 
 
 def _of_one_law(problem, some):
-    """Yield indices of `some` (B,) of the cases that have one law and base, these in units R = E2* = 1, and their
-    bodies."""
+    """Yield, for each law and base among the cases `some` (B,) bool: their indices, the cases in units R = E2* = 1, and
+    their bodies."""
     index = np.flatnonzero(some)
     scaled = dimensionless(problem.take(index))
     for rows in of_one_law(scaled):
@@ -71,8 +73,8 @@ def _of_one_law(problem, some):
 
 
 def largest_radius(part, body, lam0, p0):
-    """Radius (B,) of the largest spot in the centre, in l, of cases of one law in units R = E2* = 1; body : theirs;
-    lam0, p0 : (B,), λ and p in the centre."""
+    """Radius (B,), in l, of the largest spot in the centre, for cases of one law in units R = E2* = 1. body : their
+    body; lam0, p0 : (B,), λ and p in the centre."""
     if part.known.laws[str(part.micro[0])].cell != SUMMIT:
         return np.sqrt(lam0 / np.pi)
     bound = law_of(part, body)
@@ -82,8 +84,8 @@ def largest_radius(part, body, lam0, p0):
 
 
 def _wide_spots(part, body, b, hard=_HARD):
-    """Yield rows of cases of one family whose pressure may be largest beside the middle, and the
-    :class:`~solver.laws.cell.members.Member`. b : (B,), in l."""
+    """Yield the rows of cases of one family whose largest pressure may be outside the middle, and the
+    :class:`~solver.laws.cell.members.Member`. b : (B,), radii of spots in l."""
     pitch = 1 / (body.h * np.sqrt(part.Nbar))
     wide = np.flatnonzero(b * pitch > NARROW)
     if not len(wide):

@@ -1,7 +1,8 @@
-"""Graded layers: the answers are those of more and more uniform sublayers, extrapolated.
+"""Graded layers: the answers with more and more uniform sublayers are extrapolated.
 
-With m sublayers in each octave of the depth the answers are off by a series of even powers of 1/m. So two or three of
-them, each of twice as many sublayers, are extrapolated (Romberg's scheme); the last change is the error.
+With m sublayers in each octave of the depth, the error of the answers is a series of even powers of 1/m. So two or
+three answers, each with twice as many sublayers as the one before, are extrapolated (Romberg's scheme). The last change
+is the error.
 """
 
 from dataclasses import replace
@@ -12,23 +13,23 @@ from ..solution import JUDGED, PULLS, Solution
 from ..status import Status
 from .named import solve_named
 
-#: Numbers of sublayers in each octave, one after the other.
+#: The numbers of sublayers in each octave, in turn.
 _COUNTS = (2, 4, 8, 16, 32)
-#: Powers of 1/m that are taken out: 1/m² and 1/m⁴.
+#: Number of powers of 1/m that are eliminated: 1/m² and 1/m⁴.
 _ORDERS = 2
-#: Numbers that are extrapolated; the rest are those of the last sublayers.
+#: Numbers that are extrapolated; all others are those of the last solution.
 _NUMBERS = (*JUDGED, "A0", "dP_dD", *PULLS, "p", "lam")
-#: Those whose last change is the error; of cases that stick P_off and D_off are among them.
+#: Numbers whose last change is the error; for cases with adhesion P_off and D_off are among them.
 _JUDGED = (*JUDGED, "P_off", "D_off")
-#: p(0) of contacts that stick counts as at least this part of the load of pull-off over the area.
+#: For contacts with adhesion, a change of p(0) is relative to at least this part of the pull-off load over the area.
 _LEAST = 0.1
-#: Statuses of cases that have numbers; of the last, those of pull-off and pull-in.
+#: Statuses of cases that have numbers; those with the last status have only the numbers of pull-off and pull-in.
 _SOLVED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET, Status.PULLED_OFF)
 
 
 def solve_graded(problem, x):
     """:class:`Solution` of cases of the base "stack" with graded layers, in the units of the problem. Their `error` is
-    that of the last solution and the last change of the extrapolated numbers. x : (m,) radii."""
+    the sum of that of the last solution and the last change of the extrapolated numbers. x : (m,) radii."""
     size, left = (len(problem), len(x)), np.arange(len(problem))
     whole, rows = Solution.of(*size, status=Status.TOLERANCE_NOT_MET), []
     for count in _COUNTS:
@@ -47,7 +48,7 @@ def solve_graded(problem, x):
 
 
 def _extrapolated(rows, rtol):
-    """The last of the solutions `rows`, extrapolated; its error is inf where there is one only."""
+    """The last of the solutions `rows`, extrapolated; its error is inf if there is only one."""
     last, change, of_profile = rows[-1], np.zeros(len(rtol)), np.zeros(len(rtol))
     numbers = {}
     for name in _NUMBERS:
@@ -70,8 +71,8 @@ def _extrapolated(rows, rtol):
 
 
 def _change(values, before, last, name):
-    """Relative change (B,) of extrapolated numbers: 0 where there is none, or the `last` solution has no number. That
-    of a load, a depth or a p(0) of contacts that stick is relative to those of pull-off at least."""
+    """Relative change (B,) of extrapolated numbers; 0 where nothing changes or the `last` solution has no number. For
+    contacts with adhesion the change of a load, a depth or a p(0) is relative to at least that of pull-off."""
     change = np.abs(values / before - 1)
     if name in ("P", "D", "p0", "p_max"):
         off = np.abs(last.D_off if name == "D" else last.P_off)
@@ -82,12 +83,12 @@ def _change(values, before, last, name):
 
 
 def _limits(values):
-    """The extrapolated number of a sequence, and that without its last member."""
+    """The extrapolated number of a sequence, and the extrapolated number without its last member."""
     columns = [values]
     for order in range(1, min(_ORDERS, len(values) - 1) + 1):
         before = columns[-1]
         columns.append([b + (b - a) / (4.0**order - 1) for a, b in zip(before, before[1:], strict=False)])
-    best = np.where(np.isfinite(columns[-1][-1]), columns[-1][-1], values[-1])  # where that is not infinite
+    best = np.where(np.isfinite(columns[-1][-1]), columns[-1][-1], values[-1])  # infinite numbers stay as they are
     if len(values) == 1:
         return best, best
     return best, columns[-1][-2] if len(columns[-1]) > 1 else columns[-2][-2]

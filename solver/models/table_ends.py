@@ -9,13 +9,13 @@ from ..shapes.table import PREFIX
 from ..status import Status
 from .named import solve_named
 
-#: A contact radius so near to the last row stands for the last row; rtol of the load of a contact up to there.
+#: Part of the last radius that stands for the last radius; and rtol of the contact with that radius.
 _LAST, _ROUGHLY = 1 - 1e-9, 1e-4
 
 
 def beyond_table(scaled, solution):
-    """(B,) bool: cases whose contact would reach beyond the last row of their table. Where load or depth are given and
-    the case was not solved, they are compared with those of a contact up to there.
+    """(B,) bool: whether the contact would reach beyond the last row of the table of its shape. If the load or depth is
+    given and the case was not solved, it is compared with that of a contact up to the last row.
 
     scaled : the problem in units R = E2* = 1
     """

@@ -1,11 +1,12 @@
-"""How far the thin-layer model is from the exact layer, for a smooth punch: a closed form that can be worked by hand.
+"""The error of the thin-layer model against the exact layer, for a smooth punch: a closed form that can be worked out
+by hand.
 
-docs/accuracy.md has the formula, and how right it is. For h << a the contact of the thin layer is wider by κ h,
+docs/accuracy.md has the formula and its accuracy. For h << a the contact of the thin layer is wider by κ h,
 
     κ = (1/π) ∫₀^∞ ln[(A1 + A2 u)/L(u)] du/u²,
 
-so that at given radius its load is wrong by -m κ h/a, m = d ln P/d ln a. For h >> a its load tends to
-(3π/(32 A2)) (a/h) of the true one. The estimate is the simplest fraction with both limits;
+so that at given radius the relative error of its load is -m κ h/a, m = d ln P/d ln a. For h >> a its load tends to
+(3π/(32 A2)) (a/h) times the true one. The estimate is the simplest fraction with both limits;
 tests/models/test_thin_layer_error.py compares it with the solver.
 """
 
@@ -24,26 +25,27 @@ _STEP = 0.5
 _U = np.exp(np.arange(-16.0, 36.0, _STEP))
 #: Number of these points below u = 45. Beyond, L - 1 < e^-90: L is 1 and is not evaluated.
 _NEAR = int(np.sum(_U < 45.0))
-#: Smallest x0, the fitted number of :func:`_terms`. The fit falls below 0, where the estimate would have a pole, for
-#: stiff layers without friction (n > 1.33) and soft bonded ones that are nearly incompressible. All values from 0.2 to
-#: 0.5 serve alike (test_materials_beyond_the_fit in tests/models/test_thin_layer_error.py).
+#: Smallest x0, the fitted number of :func:`_terms`. For stiff layers without friction (n > 1.33) and for soft bonded
+#: layers that are nearly incompressible, the fit falls below 0, where the estimate would have a pole. All values from
+#: 0.2 to 0.5 do equally well (test_materials_beyond_the_fit in tests/models/test_thin_layer_error.py).
 _LEAST_LENGTH = 0.3
-#: The least |κ| of :func:`largest_error`, under a smooth punch and under asperities, over the integral of the absolute
-#: value: in some bonded materials long waves and short ones cancel in κ, but not in the terms of second order.
-#: Asperities weigh the waves differently. With this least value, and the factor of the base "auto", bounds are larger
-#: than the errors (test_kappa_of_waves_that_cancel in tests/models/test_waves_that_cancel.py).
+#: The smallest |κ| in :func:`largest_error`, over the integral of the absolute value, under a smooth punch and under
+#: asperities. In some bonded materials long and short waves cancel in κ, but they do not cancel in the terms of second
+#: order, nor under asperities, which weight the waves differently. With these values, and the factor of the base
+#: "auto", bounds are larger than the errors (test_kappa_of_waves_that_cancel in
+#: tests/models/test_waves_that_cancel.py).
 _UNCANCELLED, _UNDER_ASPERITIES = 0.1, 0.25
-#: A bonded layer that is nearly incompressible is softer than its springs, for it is squeezed out sideways. Then the
-#: error is at least (L/(A1 + A2 u))^power - 1, at u = wave h/a: wave and power of each control, fitted to random layers
-#: (test_squeezed_layers of tests/models/test_thin_layer_error.py).
+#: A bonded layer that is nearly incompressible is softer than its springs, because it is squeezed out sideways. Then
+#: the error is at least (L/(A1 + A2 u))^power - 1 at u = wave h/a. These are (wave, power) for each control, fitted to
+#: random layers (test_squeezed_layers of tests/models/test_thin_layer_error.py).
 _SQUEEZED = {"P": (2.0, 0.5), "a": (3.5, 0.9), "D": (2.0, 1.0)}
-#: Largest |ln n| of the table of κ without friction, beyond the bounds of n. If integrated for each case, κ would take
-#: longer than the whole solution of a smooth case on a thin layer.
+#: Largest |ln n| of the table of κ without friction; it is beyond the bounds of n. Integrating κ for each case would
+#: take longer than the whole solution of a smooth case on a thin layer.
 _RANGE = 25.0
 
 
 class ThinLayerError(NamedTuple):
-    """Relative errors of the thin-layer model: of the load P at given radius, of the radius a at given load."""
+    """Relative errors of the thin-layer model: of the load P at given radius, and of the radius a at given load."""
 
     P: np.ndarray
     a: np.ndarray
@@ -51,8 +53,8 @@ class ThinLayerError(NamedTuple):
 
 @one_blas_thread()
 def edge_shift(n, nu1, nu2, bonded):
-    """κ: by how many thicknesses h the contact is wider on the thin layer than on the exact layer, for h << a; to about
-    1e-6. Where κ < 0 it is narrower. NaN where the thin-layer equation does not apply (A2 <= 0).
+    """κ, to about 1e-6. For h << a the radius of the contact is larger by κ h on the thin layer than on the exact
+    layer, or smaller if κ < 0. NaN where the thin-layer equation does not apply (A2 <= 0).
 
     Arguments as those of :func:`~solver.kernels.closed_form.layered_kernel`.
 
@@ -78,9 +80,10 @@ def _shift_and_size(n, nu1, nu2, bonded):
 
 
 def _different(columns):
-    """The different ones of the columns (k, B), in ascending order, and the place (B,) of each among them.
+    """The distinct columns among `columns` (k, B), in ascending order, and the place (B,) of each column among them.
 
-    As `numpy.unique(axis=1)`, in a twentieth of the time, which was a sixth of that of thin cases (B = 8,000).
+    It does the same as `numpy.unique(axis=1)` in a twentieth of the time, which had been a sixth of the time for thin
+    cases (B = 8,000).
     """
     order = np.lexsort(columns[::-1])
     ordered = columns[:, order]
@@ -92,8 +95,8 @@ def _different(columns):
 
 @lru_cache(maxsize=1)
 def _without_friction():
-    """κ without friction as a cubic spline over ln n, right to 1e-8; Poisson ratios change nothing there."""
-    from scipy.interpolate import CubicSpline  # here, for it takes 0.4 s (python -X importtime) and few solves need it
+    """κ without friction as a cubic spline over ln n, right to 1e-8. It does not depend on Poisson ratios."""
+    from scipy.interpolate import CubicSpline  # imported here: it takes 0.4 s (python -X importtime), and few need it
 
     ln_n = np.linspace(-_RANGE, _RANGE, 1001)
     none = np.zeros_like(ln_n)
@@ -117,8 +120,8 @@ def thin_layer_error(h_a, n, nu1=0.3, nu2=0.3, bonded=False):
     h_a : x = h/a > 0, thickness of the layer over the true contact radius
     n, nu1, nu2, bonded : the layer, as in :func:`edge_shift`; all broadcast
 
-    P_thin/P is right to 30 % where A2 almost vanishes (ν1 > ν2). Asperities soften the edge: with them the error at h/a
-    < 0.3 is smaller.
+    If A2 almost vanishes (ν1 > ν2), P_thin/P is right only to 30 %. Asperities soften the edge: with them the error at
+    h/a < 0.3 is smaller.
 
     >>> error = thin_layer_error(0.5, 0.5)
     >>> print(f"{error.P:.2f} {error.a:.2f}")
@@ -133,19 +136,19 @@ def largest_error(control, h_a, n, nu1, nu2, bonded, rough=False):
     """Estimated relative error of the thin-layer model: the largest over a, P, D, p(0), p_max and Ar/An; NaN where the
     thin-layer equation does not apply.
 
-    For true errors above 0.001 of a smooth sphere, 0.23 to 9 times the true one (tests/models/test_thin_layer_error.py
-    and test_auto.py), most often 1 to 2 times. Under asperities that yield more than the layer it may be a hundred
-    times too large.
+    For a smooth sphere with a true error above 0.001, the estimate is 0.23 to 9 times the true error, most often 1 to 2
+    times (tests/models/test_thin_layer_error.py and test_auto.py). Under asperities that are more compliant than the
+    layer it may be a hundred times too large.
 
     control : "P", "a" or "D", the quantity that is given, which has no error itself
     h_a, n, nu1, nu2, bonded : as in :func:`thin_layer_error`; rough : whether the punch has asperities
 
-    P/P_thin - 1 has a term of the edge and a term of thick layers. Where these cancel in P, other quantities are still
-    wrong: so their sizes are added. At given a the term of the edge counts in full, for it changes the load; at given P
-    or D it changes the radius, and counts 1/m times. Where the contact of the thin layer is the narrower one (κ < 0),
-    p(0) is twice as wrong as the radius: 2/m times. In some bonded materials long waves and short ones cancel in κ, but
-    not under asperities, which weigh them differently: there κ is no less than a part of the integral without the
-    signs.
+    P/P_thin - 1 has a term of the edge and a term of thick layers. Where these cancel in P, other quantities still have
+    errors: so their absolute values are added. At given a the term of the edge counts in full, since it changes the
+    load. At given P or D it changes the radius, and counts 1/m times; if the contact of the thin layer is the narrower
+    one (κ < 0), the error of p(0) is twice that of the radius, and it counts 2/m times. In some bonded materials long
+    and short waves cancel in κ, but not in other effects: so |κ| counts as at least a part of the integral of the
+    absolute value (_UNCANCELLED, _UNDER_ASPERITIES).
     """
     edge, far, m = _terms(h_a, n, nu1, nu2, bonded, np.where(rough, _UNDER_ASPERITIES, _UNCANCELLED))
     inwards = np.where(edge < 0, 2, 1)
@@ -157,7 +160,7 @@ def largest_error(control, h_a, n, nu1, nu2, bonded, rough=False):
 
 
 def _squeezed(wave, power, h_a, *material):
-    """The error of layers that are squeezed out, below 0 of others. NaN or below 0 without springs."""
+    """The error of layers that are squeezed out; for others it is below 0. Without springs it is NaN or below 0."""
     u, n, nu1, nu2, bonded = np.broadcast_arrays(wave * np.asarray(h_a, dtype=float), *material)
     error, i = np.zeros(u.shape), np.nonzero(bonded)
     if len(i[0]):
@@ -168,7 +171,7 @@ def _squeezed(wave, power, h_a, *material):
 
 def _terms(h_a, n, nu1, nu2, bonded, least=0.0):
     """The term of the edge and the term of thick layers, whose sum is P/P_thin - 1; and m = d ln P/d ln a. `least` is
-    the least |κ|, over the integral of the absolute value."""
+    the smallest |κ|, over the integral of the absolute value."""
     x = np.asarray(h_a, dtype=float)
     kappa, size = _shift_and_size(n, nu1, nu2, bonded)
     g = 32 / (3 * np.pi) * thin_layer_coefficients(n, nu1, nu2, bonded)[1]

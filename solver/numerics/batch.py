@@ -1,8 +1,8 @@
-"""Batches: B cases side by side, in arrays whose first axis is the case. Parts of them, their union, cases that are
-alike, and the loop over cases that have not ended.
+"""Batches: B cases side by side, in arrays whose first axis is the case. Here are sub-batches, their union, the groups
+of cases that are alike, and the loop over the cases that have not ended.
 
-A batch is a named tuple or a dataclass that is decorated by :func:`of_cases`. Its arrays, in tuples too, have B rows;
-parts that have a method `take` are batches themselves; whatever else is there is the same for all cases.
+A batch is a named tuple or a dataclass that is decorated by :func:`of_cases`. Its arrays have B rows, and so have the
+arrays in its tuples. A field that has a method `take` is a batch itself. Every other field is the same for all cases.
 """
 
 from dataclasses import fields, is_dataclass
@@ -30,13 +30,13 @@ def take(batch: Any, index: Any) -> Any:
     Any : a batch of the same kind
     """
     values = batch if isinstance(batch, tuple) else [getattr(batch, name) for name in _names(type(batch))]
-    # most are arrays: a call for each would take as long as the rest
+    # most values are arrays: calling a function for each would take as long as everything else here
     rows = [value[index] if isinstance(value, np.ndarray) else _rows(value, index) for value in values]
     return type(batch)(*rows)
 
 
 def of_cases(kind):
-    """Class decorator: a named tuple or a dataclass is a batch, and has :func:`take` for a method."""
+    """Class decorator that makes a named tuple or a dataclass a batch: :func:`take` becomes its method."""
     kind.take = take
     return kind
 
@@ -50,14 +50,16 @@ def _rows(value, index):
 
 
 def is_batch(value):
-    """Whether a value has rows of cases, and is no array: numbers of numpy have a method `take` too."""
+    """Whether a value that is not an array has rows of cases. Scalars of numpy have a method `take` too, and are no
+    batches."""
     return hasattr(value, "take") and not isinstance(value, np.generic)
 
 
 def join(parts, places=None, **fixed):
-    """The batch of the `parts`, each at its `places` (b,) in it; one after another if there are none.
+    """The batch that the `parts` make up. Each part goes to its `places` (b,) in the batch; without `places` the parts
+    follow one another.
 
-    fixed : field -> its value in the whole batch, which then is not put together from those of the parts
+    fixed : field -> its value in the whole batch, in place of one put together from those of the parts
     """
     order = slice(None) if places is None else np.argsort(np.concatenate(places))
     return _joined(parts, order, places, fixed)
@@ -71,35 +73,35 @@ def _joined(parts, order, places, fixed=()):
         return tuple(_joined(each, order, places) for each in zip(*parts, strict=True))
     if not is_batch(first):
         return first
-    if hasattr(kind, "assemble"):  # its rows are in groups
+    if hasattr(kind, "assemble"):  # a batch whose rows are in groups
         return kind.assemble(parts, places)
     columns = ([getattr(part, name) for part in parts] for name in _names(kind))
     named = zip(_names(kind), columns, strict=True)
     return kind(*[fixed[name] if name in fixed else _joined(column, order, places) for name, column in named])
 
 
-def march(step, active, *carried, most=None):
-    """Repeat a step on the cases `active` (b,), indices: those that have ended leave, the others go on. The indices of
-    those that still go on after `most` steps.
+def march(step, active, *states, most=None):
+    """Repeat a step on the cases `active` (b,), indices, until they have ended. A case that has ended leaves. Returns
+    the indices of the cases that have not ended after `most` steps.
 
-    step : ``step(active, *carried) -> ended, *carried``: which of the cases (b,) have ended, bool, and what the next
-        step carries, arrays and batches of these cases. Without anything carried, ``step(active) -> ended``
-    most : number of steps; None: until all have ended
+    step : ``step(active, *states) -> ended, *states``. `ended` (b,) bool marks the cases that have ended; `states` are
+        arrays and batches of these cases, which the next step receives. Without states, ``step(active) -> ended``
+    most : largest number of steps; None: no limit
     """
     while len(active) and most != 0:
-        ended, *carried = step(active, *carried) if carried else (step(active),)
+        ended, *states = step(active, *states) if states else (step(active),)
         most = None if most is None else most - 1
         if ended.all():
             return active[:0]
         if ended.any():
             left = np.flatnonzero(~ended)
-            active, carried = active[left], [_rows(values, left) for values in carried]
+            active, states = active[left], [_rows(values, left) for values in states]
     return active
 
 
 def alike(*columns):
-    """The cases that are alike in all `columns`, arrays (B,) of words or whole numbers: a list of indices (b,), each
-    ascending."""
+    """Groups of cases that agree in all `columns`, arrays (B,) of words or whole numbers. Returns a list of indices
+    (b,), each ascending."""
     parts = [np.arange(len(columns[0]))] if len(columns[0]) else []
     for column in columns:
         parts = [rows for index in parts for rows in _split(column[index], index)]

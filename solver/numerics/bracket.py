@@ -6,22 +6,22 @@ from .batch import march
 
 
 def false_position(evaluate, start, tolerance):
-    """Root of an increasing function of each of B cases by false position (Illinois) from a bracket around `start`: the
-    last x (B,) of each case, and the function there (B,).
+    """Roots of one increasing function for each of B cases, by false position (Illinois) from a bracket around `start`.
+    Returns the last x (B,) of each case, and the function there (B,).
 
-    evaluate : ``evaluate(x, index) -> g`` at x (b,) for the cases `index` (b,), which may hold a case twice. A case
-        whose g is NaN is given up
-    start : (B,); the bracket begins as start ± 0.1, and its ends move outwards, by steps that double, until they
-        enclose the root
-    tolerance : (B,); a case is done, and not evaluated again, when abs(g) or the width of its bracket is below this
+    evaluate : ``evaluate(x, index) -> g`` at x (b,) for the cases `index` (b,), in which a case may occur twice. A case
+        whose g is NaN is abandoned
+    start : (B,); the bracket begins as start ± 0.1. Its ends move outwards by steps that double until they enclose the
+        root
+    tolerance : (B,); a case is done when abs(g) or the width of its bracket is below this
     """
     (low, high), (g_low, g_high) = _outwards(evaluate, start)
     return between(evaluate, low, high, g_low, g_high, tolerance)
 
 
 def between(evaluate, low, high, g_low, g_high, tolerance):
-    """The same from the ends `low`, `high` (B,) of a bracket, which it narrows in place, and the function there. A case
-    whose function is NaN at an end is given up."""
+    """As :func:`false_position`, from a bracket with the ends `low`, `high` (B,) and the function there, `g_low`,
+    `g_high` (B,). All four are changed in place. A case whose function is NaN at an end is abandoned."""
     x, g = high.copy(), g_high.copy()
     was_below = np.full(len(low), np.nan)
 
@@ -31,7 +31,7 @@ def between(evaluate, low, high, g_low, g_high, tolerance):
         x[active] = np.where((guess > lo) & (guess < hi), guess, 0.5 * (lo + hi))
         g[active] = value = evaluate(x[active], active)
         below = value < 0
-        share = np.where(below == was_below[active], 0.5, 1.0)  # an end that stays for the second time counts half
+        share = np.where(below == was_below[active], 0.5, 1.0)  # the value at an end that stays twice is halved
         g_high[active], g_low[active] = np.where(below, share * gh, value), np.where(below, value, share * gl)
         was_below[active] = below
         low[active], high[active] = np.where(below, x[active], lo), np.where(below, hi, x[active])
@@ -43,8 +43,8 @@ def between(evaluate, low, high, g_low, g_high, tolerance):
 
 
 def turns_between(width, ends, slopes):
-    """(...) bool: the cubic polynomial through both `ends` of an interval, low and high, with the `slopes` there, which
-    have the same sign, turns within; `width` is that of the interval."""
+    """(...) bool: whether the cubic polynomial with the values `ends`, (low, high), and the `slopes` at the ends of an
+    interval turns within the interval. Both slopes must have one sign. `width` is the length of the interval."""
     (low, high), mean = slopes, (ends[1] - ends[0]) / width
     # the slope of the polynomial is low + linear t + quadratic t², 0 <= t <= 1
     quadratic, linear = 3 * (low + high - 2 * mean), 2 * (3 * mean - 2 * low - high)
@@ -69,8 +69,8 @@ def _outwards(evaluate, start):
 
 
 def secant(evaluate, start, steps=12, reach=1.0):
-    """Root x (B,) of a function that is nearly straight, of each of B cases, by the secant method from `start` (B,): to
-    1e-13 in x. NaN where so many `steps`, none longer than `reach`, do not end there.
+    """Root x (B,) of a nearly straight function of each of B cases, to 1e-13 in x, by the secant method from `start`
+    (B,). No step is longer than `reach`. A case that needs more than `steps` steps has NaN.
 
     evaluate : as of :func:`false_position`
     """

@@ -1,6 +1,6 @@
-"""Values that take long to make and are kept: in a cache, or with their object; and the lock that threads share.
+"""Caches for values that take long to make, a property that is computed once, and the lock that threads share.
 
-A process that is forked while threads compute can go on with all of it.
+All of them still work in a process that is forked while threads compute.
 """
 
 import os
@@ -11,9 +11,9 @@ import numpy as np
 
 
 def shared_lock():
-    """A lock that a forked process can take whichever thread held it: the fork waits until it is free.
+    """A lock that a forked process can always take: the fork waits until no thread holds it.
 
-    For locks that live as long as the process and are held for moments.
+    It is meant for locks that live as long as the process and are held only for moments.
     """
     lock = RLock()
     if hasattr(os, "register_at_fork"):
@@ -22,10 +22,10 @@ def shared_lock():
 
 
 class once:
-    """A property that is computed when it is first asked for, and kept with its object.
+    """A property that is computed when it is first read, and then stored in its object.
 
-    Until Python 3.12 `functools.cached_property` has one lock for all objects of a class. Threads that compute wait
-    there for each other, and a process that is forked meanwhile waits for good (4 of 25 did).
+    Until Python 3.12 `functools.cached_property` has one lock for all objects of a class. Threads wait there for each
+    other, and a process that is forked meanwhile waits for ever (4 of 25 did).
     """
 
     def __init__(self, make):
@@ -42,23 +42,23 @@ class once:
 
 
 class Kept:
-    """A cache of values by their keys. The latest used are kept, as many as have arrays of at most `most` bytes
-    together, but at least one. An array that several values share counts once. Several threads may use it at the same
-    time."""
+    """A cache: key -> value. It keeps the values used last, as long as their arrays together take at most `most` bytes,
+    and always at least one value. An array that several values share counts once. Several threads may use a cache at
+    the same time."""
 
-    _lock = shared_lock()  # of all of them: it is held for microseconds
+    _lock = shared_lock()  # one lock for all caches: it is held for microseconds
 
     def __init__(self, most):
         self.most, self.nbytes = most, 0
         self._values, self._uses = OrderedDict(), Counter()
 
     def get(self, key, make):
-        """The value of `key`, from ``make()`` if it is not kept: an array, or a tuple or list of such values."""
+        """The value of `key`, from the cache or else from ``make()``: an array, or a tuple or list of such values."""
         return self.several([key], lambda _: [make()])[0]
 
     def several(self, keys, make):
         """The values of different `keys`, in their order; ``make(missing)`` returns those of the keys that are not
-        kept."""
+        in the cache."""
         with self._lock:
             values = {key: self._values[key] for key in keys if key in self._values}
             for key in values:
@@ -79,7 +79,7 @@ class Kept:
             self._count(self._values.popitem(last=False)[1], -1)
 
     def values(self):
-        """All that are kept, the latest used last."""
+        """All values in the cache, the one used last at the end."""
         with self._lock:
             return list(self._values.values())
 

@@ -7,13 +7,14 @@ from .batch import join
 from .mesh import mesh_of, panel_mesh
 
 LADDER = (6, 8, 12, 16, 22, 32, 48, 64, 96)
-#: (rtol, nodes): the mesh to begin on for this rtol and larger ones, where nothing else is known. Below the last: 32.
+#: (rtol, nodes): the mesh to begin on for this rtol and larger ones, where nothing else is known. Below the smallest
+#: rtol it is 32 nodes.
 _START = ((1e-3, 6), (1e-5, 8), (3e-7, 12), (3e-8, 16), (1e-9, 22))
 #: The estimated error is this times the distance to the next finer mesh, since the finer mesh has an error too
 #: ("margin" of tests/rough/errors/test_error_bars.py).
 MARGIN = 2.0
-#: Unknowns that are solved together. With more of them they would leave the processor's cache, with fewer the time of
-#: the calls would count.
+#: Number of unknowns that are solved together. More of them would not fit into the processor's cache. With fewer, the
+#: time of numpy's calls would count.
 STACK = 40_000
 
 
@@ -29,12 +30,14 @@ def first_rung(wanted):
 
 
 def next_rung(n):
-    """Number of nodes of the next finer mesh: of the ladder; beyond its end, half as many nodes more."""
+    """Number of nodes of the next finer mesh: the next rung of the ladder, and beyond its end half as many nodes
+    again."""
     return next((m for m in LADDER if m > n), n + n // 2)
 
 
 def finer_mesh(mesh):
-    """The next finer :class:`.mesh.Mesh`: of the ladder; or, of several panels, these with a third more nodes."""
+    """The next finer :class:`.mesh.Mesh`: for one panel the next rung of the ladder, for several the same panels with a
+    third more nodes."""
     if len(mesh.breaks) == 2:
         return mesh_of(next_rung(mesh.n))
     return panel_mesh(mesh.order + mesh.order // 3, mesh.breaks)
@@ -43,13 +46,15 @@ def finer_mesh(mesh):
 def climb(rtol, nodes, solve_on, first=None, order=None):
     """Let every case climb to the mesh that meets its tolerance rtol (B,).
 
-    Returns a list of (index, answer), one for each stack that was solved. The last one with a case has its answer.
+    Returns a list of (index, answer), one for each stack that was solved. A case may occur in several stacks: the
+    answer of the last of them counts.
 
-    nodes : (B,) int, a fixed mesh, or 0: begin on `first`
+    nodes : (B,) int, the number of nodes of a fixed mesh, or 0: begin on `first`, and climb
     solve_on : ``solve_on(index, n, start) -> error, finer, answer`` solves the cases `index` on n nodes. `start` is the
-        `finer` of the mesh before, None on the first. error (b,): estimated errors, NaN where there is no use in going
-        on. finer: a batch with which the next finer mesh begins, or None. answer: passed on as it is
-    first : (B,) int, the mesh to begin on; None: chosen by rtol
+        `finer` of the coarser mesh before, and None on the first mesh. error (b,): estimated errors, NaN where a finer
+        mesh would be of no use. finer: the batch from which the next finer mesh starts, or None. answer: returned
+        unchanged
+    first : (B,) int, number of nodes of the first mesh; None: chosen by rtol
     order : (B,) int, permutation of the cases; neighbours in it are solved together
     """
     rung = np.where(nodes > 0, nodes, start_nodes(rtol) if first is None else first)
@@ -71,7 +76,8 @@ def climb(rtol, nodes, solve_on, first=None, order=None):
 
 
 def _together(climbing, n):
-    """The stacks (index, start) on n nodes of the `climbing` cases, (index, start), that come from the mesh before."""
+    """The stacks, (index, start), on n nodes. `climbing` has the cases that come from the coarser mesh, pairs of the
+    same kind."""
     index, start = np.concatenate([rows for rows, _ in climbing]), climbing[0][1]
     if start is not None:
         start = join([begin for _, begin in climbing])

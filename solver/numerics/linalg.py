@@ -1,18 +1,19 @@
-"""Stacks of small linear systems: one matrix for all, or one for each, and for each a diagonal that is added."""
+"""Stacks of small linear systems. Their matrices are one for all systems, or one for each; to each a diagonal of its
+own is added."""
 
 import numpy as np
 
-#: Fewest systems that are eliminated together, and most unknowns of each. With fewer systems or more unknowns LAPACK,
-#: which solves one by one, is faster.
+#: Fewest systems that are eliminated together, and most unknowns of each. With fewer systems or more unknowns, LAPACK
+#: is faster, which solves the systems one by one.
 _FEWEST, _LARGEST = 200, 32
 
 
 def solve_stack(K, diagonal, rhs):
-    """x (B, n, k) of (K + diag(diagonal)) x = rhs: K (B or 1, n, n), diagonal (B, n), rhs (B, n, k). A singular system
-    has NaN, and does not spoil the others.
+    """The solution x (B, n, k) of (K + diag(diagonal)) x = rhs: K (B or 1, n, n), diagonal (B, n), rhs (B, n, k). A
+    singular system has NaN, and does not spoil the others.
 
-    Large stacks are eliminated without exchange of rows: the systems of an elastic body do not need it, since no number
-    grows. Systems with a pivot that is not positive are left to LAPACK.
+    Large stacks are eliminated without exchanging rows: the systems of an elastic body do not need it, since their
+    numbers do not grow during elimination. LAPACK solves the systems that have a pivot which is not positive.
     """
     size, n, _ = rhs.shape
     if size < _FEWEST or n > _LARGEST:
@@ -26,7 +27,7 @@ def solve_stack(K, diagonal, rhs):
 
 
 def _eliminate(K, diagonal, rhs):
-    """Solution (B, n, k) by LU decomposition of all systems at once, and (B,) bool: all pivots are positive."""
+    """Solution (B, n, k) by LU decomposition of all systems at once, and (B,) bool: whether all pivots are positive."""
     size, n, columns = rhs.shape
     system = np.empty((n, n + columns, size))
     system[:, :n], system[:, n:] = K.transpose(1, 2, 0), rhs.transpose(1, 2, 0)

@@ -1,4 +1,5 @@
-"""Profiles of graded layers: how the modulus goes from the top of a layer to its bottom, by a word or by a table."""
+"""Profiles of graded layers: how the modulus changes from the top of a layer to its bottom, given by a word or by a
+table."""
 
 import csv
 import hashlib
@@ -16,7 +17,7 @@ WORDS = ("uniform", "exponential", "linear")
 GRADED = WORDS[1:]
 #: "table:" and the path of a CSV file is a profile too.
 PREFIX = "table:"
-#: Most rows of a table, most bytes of the file, and its least and largest modulus.
+#: Most rows of a table, most bytes of its file, and the smallest and the largest modulus that it may have.
 _ROWS, _LARGEST, _LEAST, _MOST = 10_000, 10_000_000, 1e-9, 1e9
 
 
@@ -30,8 +31,8 @@ class Profile(NamedTuple):
 def read(word):
     """The :class:`Profile` of a word "table:FILE".
 
-    The file has two columns, z/h from 0 to 1 and E*/E2* > 0; lines that begin with "#" and a line of words are left
-    out. ValueError for a file that cannot be used.
+    The file has two columns, z/h from 0 to 1 and E*/E2* > 0. Lines that begin with "#" and a heading of words are
+    skipped. Raises ValueError for a file that cannot be used.
     """
     path = word.removeprefix(PREFIX)
     try:
@@ -61,8 +62,8 @@ def is_number(text):
 
 
 def identity(word, tables):
-    """Text that tells a profile from all others: the word, and of one of the `tables` (word -> :class:`Profile`) its
-    numbers."""
+    """Text that tells a profile from all others: its word, or for one of the `tables` (word -> :class:`Profile`) a
+    digest of its numbers."""
     if word not in tables:
         return word
     return f"{PREFIX} {hashlib.sha256(np.concatenate(tables[word]).astype('<f8').tobytes()).hexdigest()}"

@@ -1,5 +1,5 @@
-"""Nodes, weights, interpolation and singular product integration on [0, 1], and over the panels of a mesh for many
-targets at once; nothing about contact.
+"""Nodes, weights and interpolation on [0, 1], and integrals with a singularity, on [0, 1] and over the panels of a mesh
+for many targets at once.
 
 Barycentric interpolation is that of Berrut & Trefethen, SIAM Review 46 (2004) 501.
 """
@@ -12,14 +12,16 @@ import numpy as np
 
 from .special import radau_points
 
-#: Number of subpanels towards a singularity, each a quarter as long as the one before. Beyond them one is left, on
+#: Number of subpanels towards a singularity, each a quarter as long as the one before. A last subpanel follows them, on
 #: which the variable is x = t^_POWER: in t the integrand is smooth.
 _PANELS, _POWER = 16, 8
-#: Numbers of subpanels towards a singularity outside. They are few different ones, so that many pairs share a rule.
+#: Numbers of subpanels towards a singularity outside the panel. There are only a few of them, so that many pairs share
+#: a rule.
 _FEWER = (0, 1, 2, 3, 4, 6, 8, 11, _PANELS)
-#: Points on a subpanel that the singularity needs; a polynomial as a factor needs more.
+#: Points that the singularity needs on a subpanel. A polynomial factor needs more.
 _LEAST = 14
-#: Most numbers of a piece, points times nodes of a panel: 1 MB, enough that the time of numpy's calls does not count.
+#: Most numbers of a piece, points times nodes of a panel. They are 1 MB: enough that the time of numpy's calls does not
+#: count.
 _TOGETHER = 131_072
 
 
@@ -32,8 +34,8 @@ def gauss_legendre(n):
 
 @lru_cache(maxsize=64)
 def radau_nodes(n):
-    """Gauss-Radau nodes (n,) on [0, 1], ascending, the last one exactly 1. Their rule has the weight function 1 and is
-    exact to degree 2n - 2."""
+    """Gauss-Radau nodes (n,) on [0, 1], ascending; the last one is exactly 1. Their rule has the weight function 1 and
+    is exact to degree 2n - 2."""
     return _frozen(np.append((radau_points(n) + 1) / 2, 1.0))
 
 
@@ -65,8 +67,9 @@ def lagrange(nodes, points):
 
 
 def panels_towards(gap, length):
-    """How many subpanels (...) of :func:`log_rule` an interval of `length` needs if the singularity is `gap` before it,
-    one of _FEWER: the last one is at most three times as long as it is distant, as the others are."""
+    """The number (...) of subpanels of :func:`log_rule`, one of _FEWER, for an interval of `length` with the
+    singularity at the distance `gap` before it. The last subpanel, like the others, is then at most three times as long
+    as it is distant from the singularity."""
     with np.errstate(divide="ignore"):
         wanted = np.log(length / (3 * gap)) / np.log(4.0)
     return np.array(_FEWER)[np.minimum(np.searchsorted(_FEWER, wanted), len(_FEWER) - 1)]
@@ -77,10 +80,11 @@ def log_rule(n, everywhere=False, panels=_PANELS):
     """Rule on [0, 1] for a logarithm or a root at 0 times a polynomial of degree 2 (n - _LEAST): distances from 0 and
     weights. Its relative error is below 3^(-2 _LEAST).
 
-    Each subpanel is a quarter as long as the one before. The zeros of the polynomial lie densest at an end, so that it
-    changes its sign half as often on each next subpanel: so each next one has fewer points. If another factor of the
-    integrand varies near 0, as under a film, `everywhere` gives every subpanel `n` points. Fewer `panels` are enough if
-    the singularity is before 0, by at least a third of the last subpanel, [0, 4^-panels].
+    Each subpanel is a quarter as long as the one before. The zeros of a polynomial lie densest at an end of its
+    interval, so that it changes sign half as often from one subpanel to the next: each has fewer points than the one
+    before. If another factor of the integrand varies near 0, as under a film, `everywhere` gives every subpanel `n`
+    points. Fewer `panels` are enough if the singularity lies before 0, at a distance of at least a third of the last
+    subpanel, [0, 4^-panels].
     """
     least = n if everywhere else min(n, _LEAST)
     distance, weight = [], []
@@ -101,10 +105,10 @@ def _frozen(array):
 class Piece(NamedTuple):
     """Rules of g points each, for r pairs of a target and a panel, on one side of the targets.
 
-    `row`, `panel` (r,): the pairs, each once
-    `sign`: +1 where s' > s, -1 where s' < s
-    `gap`, `weight` (r, g): |s' - s| to full relative precision, and the weights of ∫ · ds'
-    `local`: where the points are on their panel, from 0 to 1: (r, g), or (1, g) if the targets are outside their panels
+    row, panel : (r,), index of the target and of the panel of each pair; no pair occurs twice
+    sign : +1 where s' > s, -1 where s' < s
+    gap, weight : (r, g), |s' - s| to full relative precision, and the weights of ∫ · ds'
+    local : places of the points on their panel, from 0 to 1; (r, g), or (1, g) if the targets are outside their panels
     """
 
     row: np.ndarray
@@ -127,12 +131,12 @@ def against(values, basis):
 def pieces(s, breaks, order, near=None, swings=None):
     """Yield each :class:`Piece` of targets s (m,) and polynomials of `order` nodes on the p panels between `breaks`.
 
-    A panel farther from the target than its own length has a plain Gauss rule. A nearer one, and each side of one that
-    contains the target, is divided into subpanels towards the target (:func:`.quadrature.log_rule`), as many as the
-    distance asks for.
+    A panel farther from the target than its own length has a plain Gauss rule. A nearer panel is divided into subpanels
+    that shrink towards the target (:func:`.quadrature.log_rule`); their number follows from the distance. So is each
+    side of a panel that contains the target.
 
     near : (m, p) bool, the pairs that count; None: all
-    swings : (m, p) bool, the pairs on whose panel another factor of the integrand swings, even far from the target.
+    swings : (m, p) bool, the pairs on whose panel another factor of the integrand oscillates, even far from the target.
         Such a panel has all subpanels. With `swings`, the subpanels of every pair have equally many points
     """
     low, high = np.array(breaks[:-1]), np.array(breaks[1:])
@@ -147,7 +151,7 @@ def pieces(s, breaks, order, near=None, swings=None):
         kinds = 2 * np.where(ahead >= length, -1, towards) + (ahead < 0)
         for kind in np.unique(kinds[there]).tolist():
             rows, panels = np.nonzero(there & (kinds == kind))
-            count, inside = divmod(kind, 2)  # of subpanels; -1 of a panel that is far
+            count, inside = divmod(kind, 2)  # count: number of subpanels, -1 for a panel that is far
             # 12 or 14 points are for the singularity, the others for a polynomial of degree order - 1
             rule = (
                 gauss_legendre(12 + order // 2) if count < 0 else log_rule(14 + order // 2, swings is not None, count)

@@ -1,7 +1,7 @@
-"""Functions of scipy.special, which is imported when one of them is first asked for: ``special.j0(x)``.
+"""Functions of scipy.special, which is imported when one of them is first used: ``special.j0(x)``.
 
-Importing it takes as long as solving some thousand contacts (`make start`), and nothing but tables of layers, stresses
-and meshes beyond the ladder need it. K and the Radau nodes of the ladder are here without it.
+Importing it takes as long as solving some thousand contacts (`make start`). Only tables of layers, stresses and meshes
+beyond the ladder need it. K and the Radau nodes of the ladder are available here without it.
 """
 
 import math
@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-#: Coefficients of Cephes' approximation of K, which scipy has: K = P(x) - log(x) Q(x), the highest powers first.
+#: Coefficients, the highest powers first, of Cephes' approximation of K, K = P(x) - log(x) Q(x), which scipy uses too.
 _P = (
     *(1.37982864606273237150e-4, 2.28025724005875567385e-3, 7.97404013220415179367e-3, 9.85821379021226008714e-3),
     *(6.87489687449949877925e-3, 6.18901033637687613229e-3, 8.79078273952743772254e-3, 1.49380448916805252718e-2),
@@ -23,10 +23,11 @@ _Q = (
     *(2.39089602715924892727e-2, 3.01204715227604046988e-2, 3.73774314173823228969e-2, 4.88280347570998239232e-2),
     *(7.03124996963957469739e-2, 1.24999999999870820058e-1, 4.99999999999999999821e-1),
 )
-#: Below this x K is log(4) - log(x)/2 to the last digit.
+#: Below this x, K is log(4) - log(x)/2 to the last digit.
 _LEAST = 1.11022302462515654042e-16
 FILE = files(__package__) / "radau.csv"  # which may be in a zip file
-#: Of more numbers scipy's K is quicker, its import included: this one takes 0.2 µs a number, scipy's 0.02 µs.
+#: For more numbers than this, scipy's K is quicker, its import included: this one takes 0.2 µs a number, scipy's
+#: 0.02 µs.
 _MOST = 100_000
 
 
@@ -41,9 +42,9 @@ def __getattr__(name: str) -> Any:
 def ellipkm1(x: np.ndarray, many: bool = False) -> np.ndarray:
     """The complete elliptic integral of the first kind K, of the complementary parameter x in (0, 1], any shape.
 
-    It has the bits of `scipy.special.ellipkm1`, so it does not matter which one is used: the logarithm is that of the C
-    library, since numpy's own may be rounded otherwise. `many`: other calls follow, with more than _MOST numbers in
-    all.
+    The result equals that of `scipy.special.ellipkm1` bit for bit, so it does not matter which one is used. Hence the
+    logarithm of the C library: numpy's own may be rounded differently. `many`: other calls follow, with more than _MOST
+    numbers in all.
     """
     if many or x.size > _MOST:
         return import_module("scipy.special").ellipkm1(x)

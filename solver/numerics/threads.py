@@ -15,10 +15,10 @@ from threadpoolctl import LibController, ThreadpoolController
 
 
 class _OfTheProcess:
-    """For libraries with one number of threads for the whole process: it is 1 from the first enter to the last exit.
+    """For libraries with one number of threads for the whole process: it is 1 from the first entry to the last exit.
 
-    Calls of several threads overlap. If each restored the number that it found, 1 would stay for good: a second call
-    finds the 1 of the first, and restores it after the first has ended.
+    Calls of several threads overlap. If each call restored the number that it had read, 1 could stay for ever: a second
+    call reads the 1 that the first has set, and restores it after the first has ended.
     """
 
     def __init__(self, libraries: list[LibController]):
@@ -47,16 +47,16 @@ class _OfTheProcess:
         self._before.clear()
 
     def _forked(self) -> None:
-        """A forked process has none of the threads that were computing."""
+        """Start anew in a forked process, which has none of the threads that were computing."""
         self._lock, self._inside = Lock(), 0
         self._restore()
 
 
 def _set(library: LibController, count: int) -> None:
-    """Set the number of threads of a library, from whichever thread.
+    """Set the number of threads of a library, whichever thread calls.
 
-    From version 3.8 on, threadpoolctl obeys the thread alone that was first to set the number of a whole process. Here
-    this is switched off: the lock and the count of :class:`_OfTheProcess` do instead.
+    From version 3.8 on, threadpoolctl obeys only the thread that was the first to set the number of a whole process.
+    Here this is switched off: the lock and the count of :class:`_OfTheProcess` take its place.
     """
     let_go = getattr(library, "clear_controlling_thread", lambda force: None)
     let_go(force=True)
@@ -68,7 +68,7 @@ def _set(library: LibController, count: int) -> None:
 def _blas() -> tuple[_OfTheProcess, ThreadpoolController]:
     """The loaded BLAS libraries: those with one number of threads for the process, and those with one for each
     thread."""
-    with warnings.catch_warnings():  # about OpenMP libraries that the user's program has loaded: not our affair
+    with warnings.catch_warnings():  # they are about OpenMP libraries of the user's program, which is not our affair
         warnings.simplefilter("ignore")
         blas = ThreadpoolController().select(user_api="blas")
     of_threads = blas.select(threading_layer="openmp")

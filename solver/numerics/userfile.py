@@ -1,6 +1,7 @@
-"""The one door through which a file of a user is opened: a pipe is not waited for, nothing endless fills the memory.
+"""The only place where a user's file is opened: the program never waits for a pipe, and nothing endless fills the
+memory.
 
-Tables, curves, scans, lists of materials and study files come through it (tests/repository/test_user_files.py).
+Tables, curves, scans, lists of materials and study files are opened here (tests/repository/test_user_files.py).
 """
 
 import errno
@@ -14,7 +15,7 @@ from pathlib import Path
 
 #: Most bytes of a text, unpacked. Its rows take some ten times as much memory while they are read.
 LARGEST_TEXT = 200_000_000
-#: Most bytes of a file of an instrument, and of all that is packed in it.
+#: Most bytes of a file of an instrument, and of everything packed in it.
 LARGEST = 2_000_000_000
 _GZIP, _ZIP = b"\x1f\x8b", b"PK\x03\x04"
 
@@ -30,11 +31,11 @@ class TooLarge(ValueError):
 def opened(path, most=LARGEST):
     """The file, open for reading bytes.
 
-    Raises :class:`NoFile` for a pipe, which would be waited for, and for a device, which may have no end;
-    :class:`TooLarge` for more than `most` bytes; OSError where it cannot be opened, a folder among them. The messages
-    do not name the file.
+    Raises :class:`NoFile` for a pipe, for which the program would wait, and for a device, which may have no end;
+    :class:`TooLarge` for more than `most` bytes; OSError for a path that cannot be opened, or that leads to a folder.
+    The messages do not name the file.
     """
-    _check(Path(path).stat(), most)  # before it is opened: to open a device may do something
+    _check(Path(path).stat(), most)  # first, because opening a device may have an effect
     number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     try:
         _check(os.fstat(number), most)  # it may have become a pipe
@@ -47,25 +48,25 @@ def opened(path, most=LARGEST):
 def content(path, most=LARGEST):
     """The bytes of a file. Raises as `opened`."""
     with opened(path, most) as file:
-        # no more than its size: files of /proc, some of which have no end, have the size 0
+        # reads no more than the size: files of /proc, some of which have no end, have the size 0
         return file.read(os.fstat(file.fileno()).st_size)
 
 
 def begins(path, most=LARGEST, size=65_536):
-    """The first bytes of a file, unpacked where gzip has packed them. Raises as `opened`."""
+    """The first bytes of a file, unpacked if gzip has packed them. Raises as `opened`."""
     with opened(path, most) as file:
         raw = file.read(size)
     if raw.startswith(_GZIP):
         try:
             return gzip.GzipFile(fileobj=io.BytesIO(raw)).read1(size)
-        except (OSError, EOFError, zlib.error):  # who reads it all says so
+        except (OSError, EOFError, zlib.error):  # `unpacked`, which reads the whole file, reports the damage
             return b""
     return raw
 
 
 def unpacked(raw, most=LARGEST):
-    """The bytes of a file, unpacked where gzip has packed them. Raises ValueError for a damaged packing, and
-    :class:`TooLarge` for more than `most` bytes, of which no more are unpacked."""
+    """The bytes of a file, unpacked if gzip has packed them. Raises ValueError for a damaged archive, and
+    :class:`TooLarge` for more than `most` bytes; no more than these are unpacked."""
     if raw.startswith(_GZIP):
         try:
             raw = gzip.GzipFile(fileobj=io.BytesIO(raw)).read(most + 1)
@@ -79,21 +80,21 @@ def unpacked(raw, most=LARGEST):
 def checked(path, most=LARGEST):
     """The path of a file that a library may open. Raises as `opened`, :class:`TooLarge` also for a file in a zip."""
     with opened(path, most) as file:
-        begins = file.read(len(_ZIP))
+        magic = file.read(len(_ZIP))
         file.seek(0)
-        if begins == _ZIP:
+        if magic == _ZIP:
             try:
                 with zipfile.ZipFile(file) as archive:
                     size = sum(member.file_size for member in archive.infolist())
             except (OSError, ValueError, NotImplementedError, zipfile.BadZipFile):
-                size = 0  # the library says what is wrong
+                size = 0  # the library will report what is wrong
             if size > most:
                 raise TooLarge(f"has {size} bytes once unpacked: must have at most {most}")
     return Path(path)
 
 
 def _check(status, most):
-    """Raise for the `os.stat_result` of no plain file, or of one that is too large."""
+    """Raise if `status`, an `os.stat_result`, is not that of a plain file, or if the file is too large."""
     if stat.S_ISDIR(status.st_mode):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
     if not stat.S_ISREG(status.st_mode):

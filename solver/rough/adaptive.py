@@ -1,9 +1,9 @@
 """Newton's method, for each case on the mesh that meets its tolerance.
 
-A case whose estimated error is above its tolerance goes on to the next finer mesh. It begins there at the state by
-which the error was estimated. Cases that the finest mesh does not resolve are solved on panels, one by one. So are
-those of a punch whose profile is no smooth function of r², from the beginning: there two polynomials may be wrong
-alike.
+A case whose estimated error is above its tolerance goes on to the next finer mesh. It starts there from the state by
+which the error was estimated. Cases that the finest mesh does not resolve are solved on panels, one by one. If the
+profile of the punch is not a smooth function of r², two polynomials may have the same error: such cases are solved on
+panels from the beginning.
 """
 
 from dataclasses import replace
@@ -33,14 +33,14 @@ from .start import first_guess, guess_radius, nodes_wanted
 #: Panels are halved until the last coefficients on each are small against rtol. If the error is then still above rtol,
 #: they are halved until these coefficients are small against this times rtol.
 _FINER = 0.03
-#: The table of :class:`.answer.Verdict`: which cases go to panels when no finer mesh follows, and the status of those
-#: that end. A verdict that is not there leaves the status as it is.
+#: The table of :class:`.answer.Verdict` in code: the verdicts that send a case to panels when no finer mesh follows,
+#: and the status of a case that ends. A verdict that is not in _ENDS leaves the status as it is.
 _TO_PANELS = (Verdict.LIFTED, Verdict.OPEN, Verdict.STUCK, Verdict.COARSE)
 _ENDS = dict.fromkeys((Verdict.FLOOR, Verdict.STUCK, Verdict.COARSE), Status.TOLERANCE_NOT_MET)
 _ENDS[Verdict.SPENT] = Status.BUDGET_SPENT
-#: How a contact ends that may be on another branch than the first guess, at smaller radii, where load and depth do not
-#: rise with the radius throughout; the parts of the first guess at which it is looked for; and the largest L of a
-#: kernel under which they do rise.
+#: Load and depth may not rise with the radius everywhere, and the solution may be on a branch at smaller radii than the
+#: first guess. _LOST are the statuses after which such a branch is searched for, _NEARER the parts of the guessed
+#: radius at which the search starts, and _SOFT the stiffness of a kernel up to which load and depth always rise.
 _LOST = (Status.LIFT_OFF, Status.BUDGET_SPENT, Status.ITERATION_LIMIT, Status.DIVERGED)
 _NEARER, _SOFT = (0.5, 0.25, 0.1), 2.0
 
@@ -48,8 +48,10 @@ _NEARER, _SOFT = (0.5, 0.25, 0.1), 2.0
 def solve_newton(cases, rtol, nodes, limit, x):
     """:class:`~solver.solution.Solution` of a batch of one law on one body, in units R = E2* = 1.
 
-    rtol : (B,); nodes : (B,) int, 0: chosen by rtol; limit : int, Newton steps on each mesh, 0: the method's own;
-    x : (m,), radii of the profiles.
+    rtol : (B,), tolerances
+    nodes : (B,) int, number of nodes; 0: chosen by rtol
+    limit : int, most Newton steps on each mesh; 0: the limit of the method
+    x : (m,), radii of the profiles
     """
     size, free = len(rtol), nodes == 0
     direct = free & (limit == 0) & ~cases.shape.even
@@ -67,7 +69,7 @@ def solve_newton(cases, rtol, nodes, limit, x):
         answered = answer(iterated, x, Goal(rtol[index], before[index], free[index], finer, spent))
         error = answered.solution.error
         before[index] = np.where(free[index] & may_be_error(answered.tension, error), np.inf, error)
-        error = np.where(answered.verdict == Verdict.COARSE, np.inf, np.nan)  # on to the next mesh, or not
+        error = np.where(answered.verdict == Verdict.COARSE, np.inf, np.nan)  # inf sends a case to the next mesh
         return error, answered.finer, answered._replace(finer=None)
 
     rungs = climb(rtol, nodes, on_mesh, first_rung(nodes_wanted(cases, rtol, a)), cases.body.order(a))
@@ -79,8 +81,8 @@ def solve_newton(cases, rtol, nodes, limit, x):
 
 
 def _split(cases, settings, direct, limit, x):
-    """:class:`~solver.solution.Solution` of a batch of which the cases `direct` (B,) bool begin on panels. `settings` :
-    rtol, nodes (B,)."""
+    """:class:`~solver.solution.Solution` of a batch in which the cases `direct` (B,) bool begin on panels. `settings`:
+    rtol and nodes, (B,) each."""
     rest, pieces, size = np.flatnonzero(~direct), [], len(direct)
     if len(rest):
         pieces.append((rest, solve_newton(cases.take(rest), *(v[rest] for v in settings), limit, x)))
@@ -99,14 +101,14 @@ def _split(cases, settings, direct, limit, x):
 
 
 def _has_branches(case):
-    """Whether more than one radius may have the load or depth of a case, as under a hard layer, which bends."""
+    """Whether more than one radius may have the load or depth of a case, as on a hard layer, which bends."""
     kernel = case.body.kernel
     return case.control != "a" and kernel is not None and kernel.stiffness[0] > _SOFT
 
 
 def _together(rungs, size, points):
-    """:class:`.answer.Answer` of `size` cases from those on all meshes, (index, answer): the last one of each case,
-    with the steps of all."""
+    """:class:`.answer.Answer` of `size` cases from the answers on all meshes, (index, answer) each. A case has its last
+    answer, and the sum of the steps on all its meshes."""
     count, tension, gap = np.zeros(size, int), np.zeros(size), np.zeros(size, bool)
     verdict = np.zeros(size, np.int8)
     for index, answered in rungs:
@@ -117,7 +119,7 @@ def _together(rungs, size, points):
 
 
 def _ended(solution, verdict):
-    """The solution with its final status: that of the `verdict` (B,), :class:`.answer.Verdict`."""
+    """The solution with the final status that follows from the `verdict` (B,), :class:`.answer.Verdict`."""
     status, has_numbers = solution.status.copy(), solution.status != Status.DIVERGED
     for ending, last_status in _ENDS.items():
         status[(verdict == ending) & has_numbers] = last_status
@@ -127,10 +129,10 @@ def _ended(solution, verdict):
 
 
 def _on_panels(case, before, rtol, x, left, nearer=1.0):
-    """:class:`~solver.solution.Solution` of one case on panels of its own, with `left` of its budget; or that of
-    `before`, the :class:`.answer.Answer` on the finest mesh, if its error is smaller.
+    """:class:`~solver.solution.Solution` of one case on panels of its own, or the solution of `before`, its
+    :class:`.answer.Answer` on the finest mesh, if that has the smaller error. `left` is the rest of its budget.
 
-    Each round has finer panels, and a verdict (:func:`.answer.after_panels`).
+    Each round has finer panels and a verdict (:func:`.answer.after_panels`).
     """
     best, count, at = before.solution, before.solution.iterations, None
     verdict = before_panels(before)
@@ -144,7 +146,7 @@ def _on_panels(case, before, rtol, x, left, nearer=1.0):
         if same or not iterated.closed[0]:
             verdict = unfinished(verdict, spent)
             if same and iterated.closed[0]:
-                break  # no finer panels than those before
+                break  # this round has no finer panels than the round before
             continue
         clear, at = at is not None and verdict != Verdict.LIFTED, iterated.at
         answered = answer(iterated, x)

@@ -1,13 +1,14 @@
-"""The discrete equation of a batch of cases of one micro law on one body: its groups X, Y, Z, residual, derivatives.
+"""The discrete equation of a batch of cases of one micro law on one body: its groups X, Y, Z, its residual and its
+derivatives.
 
 With p = p* q(y), A = A* g(y), x = r/a and s = sqrt(1 - x²), Eq. (4) divided by a²/2 is
 
     X K[q] + Y q + Z g - s² = 0,    X = 8 p*/(π a E),  Y = 2 C p*/a²,  Z = 2 A*/a²        (R = E2* = 1)
 
-at the nodes of the mesh. Under a punch of another shape its drop stands for s² (:mod:`.punch`). The control
-(load, radius or depth) is one more equation. The unknowns are y at the nodes and η = ln a. The body has E, the springs
-C and K (:mod:`..body.operator`); the law has p*, A*, q, g (:mod:`..laws.law`). At the edge of the contact q is 0, as
-polynomials in s are by themselves.
+at the nodes of the mesh. Under a punch of another shape its drop replaces s² (:mod:`.punch`). The control (load, radius
+or depth) is one more equation. The unknowns are y at the nodes and η = ln a. E, the compliance C of springs and K
+belong to the body (:mod:`..body.operator`); p*, A*, q and g belong to the law (:mod:`..laws.law`). At the edge of the
+contact q is 0.
 """
 
 from dataclasses import dataclass
@@ -22,30 +23,35 @@ from ..numerics.kept import once
 from ..shapes.shape import Shape, has_radius
 from .punch import largest, punch_of
 
-#: A pressure below this part of the largest counts as none.
+#: A pressure below this part of the largest counts as 0.
 _NOTHING = 1e-16
-#: An iteration has closed (it has found its solution) when the residual is below _CLOSED, or below this part of the
-#: error of the operator, or is the rounding of a soft layer.
+#: An iteration has closed, that is, found its solution, when the residual is below _CLOSED, or below _OF_OPERATOR times
+#: the error of the operator, or no larger than the rounding error on a soft layer.
 _CLOSED, _OF_OPERATOR = 1e-13, 1e-2
-#: A residual above this is too large for any operator: whether the iteration has closed is then known without the error
-#: of the operator. It is far above what closes an iteration with the worst operator
+#: A residual above this is too large for any operator: the iteration has not closed, and the error of the operator need
+#: not be computed. It is far above the residual that closes an iteration with the worst operator
 #: (tests/rough/extremes/test_extremes.py).
 _OPEN = 1e-5
-#: Rounding of the residual of a soft layer, times its softness. In its operator the terms of the half-space and L - 1
-#: nearly cancel: rounding moves the pressure, and so the load, the more the softer the layer. The residual scatters
-#: from step to step: half are below 0.5 eps, few above 20 eps (tests/rough/test_equation.py).
+#: Rounding error of the residual on a soft layer, times its softness. In its operator the terms of the half-space and
+#: of L - 1 nearly cancel. The softer the layer, the more rounding moves the pressure, and so the load. The residual
+#: scatters from step to step: half of them are below 0.5 eps, few above 20 eps (tests/rough/test_equation.py).
 _ROUNDING = 20 * np.finfo(float).eps
-#: Rounding of the radius, over its distance from a flat end of the punch: a - b counts, and η = ln a. The
-#: residual of a frustum of b = 0.012 scatters by 2.5e-13 where a/(a - b) is 1100, by 1 eps of that.
+#: Rounding error of the residual near a flat end of radius b of the punch, times (a - b)/a: the height of the edge
+#: depends on a - b, and the unknown is ln a. With a frustum of b = 0.012 and a/(a - b) = 1100 the residual scatters by
+#: 2.5e-13, which is 1 eps times 1100.
 _OF_RADIUS = 16 * np.finfo(float).eps
-#: The paper's scheme may leave no pressure in the centre, and 0/0 is no error.
+#: The paper's scheme may leave no pressure in the centre; 0/0 is then no error.
 _TINY = np.finfo(float).tiny
 
 
 @batch.of_cases
 class Cases(NamedTuple):
-    """A batch of B cases of one body, micro law and shape in units R = 1, E2* = 1: the `control` "P", "a" or "D" of the
-    whole batch, the law, body and shape with their numbers, and the controlled `value` (B,)."""
+    """A batch of B cases of one kind of body, micro law and shape in units R = 1, E2* = 1.
+
+    control : "P", "a" or "D", the same for the whole batch
+    law, body, shape : each with its numbers
+    value : (B,), the value of the control
+    """
 
     control: str
     law: Bound
@@ -60,13 +66,13 @@ class Cases(NamedTuple):
 
     @property
     def is_flat(self):
-        """Whether the contact radius is that of the punch, whatever the load."""
+        """Whether the contact radius is that of the punch under any load."""
         return bool(has_radius(self.shape).all())
 
 
 @batch.of_cases
 class Unknowns(NamedTuple):
-    """Unknowns: y (B, n) of the micro law at the nodes, and η = ln a (B,)."""
+    """The unknowns: y (B, n) of the micro law at the nodes, and η = ln a (B,)."""
 
     y: np.ndarray
     eta: np.ndarray
@@ -75,8 +81,13 @@ class Unknowns(NamedTuple):
 @batch.of_cases
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """The equation of `cases` at a state: the operator of the body and the curve of the law there, the groups X, Y, Z
-    (B, 1), K q and the residual F at the nodes (B, n), and edge @ q (B,); both with the part of the edge."""
+    """The equation of `cases` at a state.
+
+    operator, curve : of the body and of the law at this state
+    X, Y, Z : (B, 1), groups
+    Kq, F : (B, n), K q and the residual at the nodes
+    edge_q : (B,), edge @ q
+    """
 
     cases: Cases
     state: Unknowns
@@ -95,8 +106,8 @@ class Evaluation:
 
     @once
     def G(self):
-        """Residual of the control, (B,): the logarithm of the controlled quantity over its given value. The load is
-        that of Eq. (5), the depth that of Eq. (3) at r = a."""
+        """Residual of the control, (B,): the logarithm of the controlled quantity over its given value. The load is by
+        Eq. (5), the depth by Eq. (3) at r = a."""
         return control_residual(self.cases, self.state.eta, self.X, self.curve.q, self.edge_q, self.mesh)
 
     @once
@@ -111,26 +122,26 @@ class Evaluation:
 
     @once
     def gap(self):
-        """(B, n): height over a²/2 of asperities above the surface, where they bear no pressure because the pressure
-        around them presses the surface away; else 0."""
+        """(B, n): height of the asperities above the surface, over a²/2, where they bear no pressure because the
+        pressure around them pushes the surface away; else 0."""
         q = self.curve.q
-        if q.min(initial=np.inf) > _NOTHING * q.max(initial=0.0):  # quick to see, and true of most batches
+        if q.min(initial=np.inf) > _NOTHING * q.max(initial=0.0):  # a quick test, which most batches pass
             return np.zeros(q.shape)
         bare = (q >= 0) & (q < _NOTHING * q.max(axis=1, keepdims=True))
         return np.where(bare, np.maximum(self.F - self.Z * self.curve.g, 0.0), 0.0)
 
     @once
     def residual(self):
-        """Largest residual of a case (B,): of the equation, over the largest right-hand side, and of the control. The
-        equation need not hold where asperities without pressure hang over the surface."""
+        """The larger residual (B,) of two: that of the equation, over the largest right-hand side, and that of the
+        control. The equation need not hold where asperities hang over the surface without pressure."""
         F = np.abs(self.F)
         F[self.gap > 0] = 0.0
         return np.maximum(F.max(axis=1) / largest(self.cases.punch, np.exp(self.state.eta)), np.abs(self.G))
 
     @once
     def floor(self):
-        """Error (B,) that no estimate may go below: rounding, of a small p(0) under a plate too, and the error of the
-        operator itself."""
+        """The lower bound (B,) of any estimated error: the error of the operator itself, and rounding, which may be
+        large in a small p(0) under a plate."""
         q = self.curve.q
         rounded = self.cases.body.rounding() * q.max(axis=1)
         centre = rounded / np.maximum(np.abs(q[:, -1]), np.maximum(rounded, _TINY))
@@ -139,7 +150,7 @@ class Evaluation:
 
     @property
     def closed(self):
-        """(B,) bool: the residual is so small that only rounding and the error of the operator are left."""
+        """(B,) bool: whether the residual is so small that only rounding and the error of the operator are left."""
         closed = self.residual < _CLOSED
         near = np.flatnonzero(~closed & (self.residual < _OPEN))
         if len(near):
@@ -158,7 +169,8 @@ def _floor(body, a, nodes):
 
 
 def _near_flat(cases, a):
-    """Rounding (B,) of the height of an edge of radius a (B,) next to a flat end; 0 of a punch without one."""
+    """Rounding error (B,) of the height of the edge of a contact of radius a (B,) near a flat end of the punch; 0 for a
+    punch without one."""
     if cases.is_flat:
         return np.zeros(len(a))
     b = cases.shape.least()
@@ -173,8 +185,8 @@ def groups(cases, eta):
 
 
 def evaluate(cases, state, mesh, near=None, curve=None):
-    """:class:`Evaluation` of `cases` at `state`. `near`: their operator at another state or on another mesh, of which
-    what still holds is used again. `curve`: that of their law at `state`, if it is at hand."""
+    """:class:`Evaluation` of `cases` at `state`. `near`: their operator at another state or on another mesh, from which
+    everything that is still valid is reused. `curve`: that of their law at `state`, if it has been computed."""
     X, Y, Z = groups(cases, state.eta)
     curve, a = cases.law.evaluate(state.y) if curve is None else curve, np.exp(state.eta)
     operator = cases.body.at(a, mesh, near)
@@ -207,8 +219,8 @@ def control_gradient(control, ev):
 
 
 def jacobian(ev):
-    """d (B, n) of dF/dq = X (K + diag(d)) at fixed η; and dF/dη over X (B, n) at fixed q. By q and not by y, because
-    the operator is linear in q."""
+    """d (B, n) in dF/dq = X (K + diag(d)) at fixed η; and dF/dη over X, (B, n), at fixed q. The derivatives are by q
+    and not by y, because the operator is linear in q."""
     diagonal = ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
     drop_slope = ev.cases.punch.drop_slope(np.exp(ev.state.eta), ev.mesh.s)
     dF_deta = ev.slopes[0] - ev.Kq - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g) / ev.X - drop_slope / ev.X

@@ -1,6 +1,6 @@
 """The error of a solution on a mesh: its distance to the solution on the next finer mesh.
 
-One Newton step on the finer mesh stands for the solution there: it begins so close that it nearly arrives.
+One Newton step on the finer mesh stands for the solution there: it starts so close that it nearly reaches it.
 """
 
 from dataclasses import replace
@@ -14,54 +14,57 @@ from . import newton
 from .equation import Evaluation, Unknowns, evaluate, groups
 from .results import cornered, interpolate, judged_difference, pointed, quantities
 
-#: No mesh sees how λ rises between the edge and the node next to it. With λ and s at that node, this ring adds about λ
-#: s² to Ar/An. Where that matters, the error of Ar/An is at most 5.3 times λ s²/2
+#: No mesh resolves the rise of λ between the edge and the first node. With λ and s at that node, this ring adds about
+#: λ s² to Ar/An. Where that matters, the error of Ar/An is at most 5.3 times λ s²/2
 #: (`python tools/errors/error_bars.py`; one such case is "ring" of tests/rough/errors/test_error_bars.py).
 #: The estimate is at least _UNSEEN times λ s²/2.
 _UNSEEN = 8.0
-#: This error is counted if λ at the node next to the edge is above this.
+#: This error is counted if λ at the first node is above _RISEN.
 _RISEN = 0.05
-#: Near the edge asperities yield more than the body, in a ring that both meshes may miss. The estimate of such cases is
-#: multiplied by this. Without the factor 10 % of these extreme cases on 6 nodes have an error above the estimate, with
-#: it 3 % (`python tools/errors/error_bars.py`). "blind" of tests/rough/errors/test_error_bars.py needs it.
+#: In a ring near the edge asperities are more compliant than the body. If both meshes may miss this ring, the estimate
+#: is multiplied by _BLIND. Without the factor, 10 % of these extreme cases on 6 nodes have an error above the estimate;
+#: with it, 3 % (`python tools/errors/error_bars.py`). "blind" of tests/rough/errors/test_error_bars.py needs it.
 _BLIND = 3.0
-#: In such a ring both meshes may also agree on the edge by chance, but not on the pressures near it
-#: (:func:`_moved_edge`). Where this and the estimate are of one size, both may be too small: if the edge moves by δ a,
-#: Ar/An and P change by 2 δ and 3 δ. So the smaller of the two counts _BOTH times: "edge" and "edge, a given" of the
-#: same tests.
+#: In such a ring both meshes may also agree on the place of the edge by chance, but they do not agree on the pressures
+#: near it (:func:`_moved_edge`). If the estimates from both are about equal, both may be too small: if the edge moves
+#: by δ a, Ar/An and P change by 2 δ and 3 δ. So the smaller of the two is multiplied by _BOTH: "edge" and "edge, a
+#: given" of the same tests.
 _BOTH = 2.0
 #: In the centre the pressures of two meshes may agree by chance: in the case "centre" of
 #: tests/rough/errors/test_error_bars.py to a twentieth of their error. So on meshes of one panel any change of the
-#: pressure where s is above this counts. Several panels may enclose a corner there.
+#: pressure where s is above _MIDDLE counts. Several panels may enclose a corner there.
 _MIDDLE = 0.9
-#: Tolerance of the solution between its nodes, where the step on the finer mesh begins. Changes below it are no errors.
+#: Tolerance of the solution between its nodes, from which the step on the finer mesh starts. Changes below it are no
+#: errors.
 _NEAR = 1e-8
-#: The quadratures of two meshes may agree by chance, if λ rises sharply inside the contact. It may, if λ in the centre
-#: is above _SATURATED or the exponent of the displacement below _SHARP. Then Ar/An is compared with another rule, which
-#: has _TIMES as many points on each panel as the mesh has nodes, and _MORE: "saturated" and "quadratures" of
-#: tests/rough/errors/test_error_bars.py. With _SATURATED = 0.3 `python tools/errors/error_bars.py` prints
-#: the same.
+#: If λ rises sharply inside the contact, the quadratures of two meshes may agree by chance. λ may rise so if λ in the
+#: centre is above _SATURATED, or if the exponent of the displacement is below _SHARP. Then Ar/An is compared with
+#: another rule, which has on each panel _TIMES as many points as the mesh has nodes, and _MORE: "saturated" and
+#: "quadratures" of tests/rough/errors/test_error_bars.py. With _SATURATED = 0.3 `python tools/errors/error_bars.py`
+#: prints the same.
 _SATURATED, _SHARP = 0.7, 0.45
 _TIMES, _MORE = 2, 4
-#: If the exponent of the displacement is below this, λ rises sharply where pressure begins. Then Ar/An is compared with
-#: the quadrature for corners: "steep" of tests/rough/errors/test_error_bars.py. Panels enclose that place.
+#: If the exponent of the displacement is below STEEP, λ rises sharply where the pressure begins. Then Ar/An is compared
+#: with the quadrature for corners: "steep" of tests/rough/errors/test_error_bars.py. Panels enclose that place.
 STEEP = 0.1
-#: Under a law with corners two meshes may agree by chance. So the error also counts the load that the mesh misses
-#: between its nodes: the sum over the contact, in which opposite signs cancel, and _CHANCE times the largest sum from
-#: the edge to any radius (test_random_heights of tests/rough/errors/test_error_bars.py).
+#: Under a law with corners two meshes may agree by chance. So the error includes the load that the mesh misses between
+#: its nodes: its sum over the contact, in which opposite signs cancel, and _CHANCE times the largest sum from the edge
+#: to any radius (test_random_heights of tests/rough/errors/test_error_bars.py).
 _CHANCE = 1 / 2
 #: For each control: the largest relative change of the judged quantities of a smooth contact, over that of its radius.
 _OF_RADIUS = {"a": 3.0, "P": 1.0, "D": 1.0}
-#: Both meshes miss a ring at the edge where asperities or springs yield more than the body, if their compliance over
-#: the body's is below RING s² at the first node s. The error is then at most this times :func:`added_in_ring`, for each
-#: control (tests/rough/errors/test_rings.py; test_accuracy.py for smooth punches on springs).
+#: In a ring at the edge, asperities or springs are more compliant than the body. Both meshes miss it if the compliance
+#: over that of the body is below RING s² at the first node s. The error is then at most :func:`added_in_ring` times the
+#: number of ENCLOSING for the control (tests/rough/errors/test_rings.py; test_accuracy.py for smooth punches on
+#: springs).
 RING, ENCLOSING = 16.0, {"a": 0.5, "P": 0.2, "D": 0.25}
 
 
 class Refined(NamedTuple):
     """One Newton step on the next finer mesh.
 
-    start, end : the equation there at the interpolated solution, and after the step, by :func:`nearby`
+    start : the equation on that mesh at the interpolated solution
+    end : the equation after the step, by :func:`nearby`
     numbers : the quantities after the step
     dP_dD : (B,), in E2* R
     """
@@ -75,9 +78,9 @@ class Refined(NamedTuple):
 def refine(ev, coarse):
     """:class:`Refined` of the equation at a solution with the quantities `coarse`.
 
-    Where λ bends (:meth:`~solver.laws.Bound.bent`), Ar/An is the coarse one plus the change by the step on the finer
-    mesh. That the two meshes see the bends differently is no error: such cases have another quadrature
-    (:func:`~.results.cornered`).
+    If λ has a kink (:meth:`~solver.laws.Bound.bent`), Ar/An is that of the coarse mesh plus the change by the step on
+    the finer mesh. The difference between the quadratures of the two meshes at the kink is no error: such cases have
+    another quadrature (:func:`~.results.cornered`).
     """
     fine, law = finer_mesh(ev.mesh), ev.cases.law
     bent = law.bent(ev.state.y, ev.curve.q)
@@ -93,8 +96,8 @@ def refine(ev, coarse):
 
 
 def nearby(ev, state):
-    """:class:`~solver.rough.equation.Evaluation` at a state near that of `ev`: good for
-    :func:`~solver.rough.results.quantities`, but not for F. The operator and the law are taken to first order."""
+    """:class:`~solver.rough.equation.Evaluation` at a state near that of `ev`, with the operator and the law to first
+    order. It is valid for :func:`~solver.rough.results.quantities`; its F is still that of `ev`."""
     dy, old = state.y - ev.state.y, ev.curve
     curve = old._replace(q=old.q + old.dq * dy, g=old.g + old.dg * dy)
     edge_q = ev.operator.at_edge(curve.q) + ev.slopes[1] * (state.eta - ev.state.eta)
@@ -108,10 +111,10 @@ def estimate(ev, coarse, refined):
         first = np.searchsorted(start.mesh.s, _MIDDLE)
         around = np.abs(refined.end.curve.q - start.curve.q)[:, first:].max(axis=1) / ev.curve.q[:, -1]
         counts = around > np.maximum(change, _NEAR)
-        if ev.curve.q.min() <= 0:  # where there is tension, the centre alone judges whether the punch lifts off
+        if ev.curve.q.min() <= 0:  # with tension, only the centre itself decides whether the punch lifts off
             counts &= ev.curve.q.min(axis=1) > 0
         change = np.where(counts & ~pointed(ev.cases), around, change)
-    if not ev.cases.law.rough:  # asperities show that a mesh is too coarse for the edge, by how they yield there
+    if not ev.cases.law.rough:  # with asperities, their compliance at the edge shows whether the mesh is too coarse
         unseen = ev.cases.body.unseen(np.exp(ev.state.eta), ev.mesh.s[0])
         change = np.maximum(change, _OF_RADIUS[ev.cases.control] * unseen)
     error = np.maximum(margin(ev) * change, ev.floor)
@@ -126,13 +129,14 @@ def estimate(ev, coarse, refined):
 
 
 def _moved_edge(refined):
-    """By how much of the radius (B,) the step on the finer mesh seems to move the edge, at the node where that is most.
+    """The distance (B,) by which the step on the finer mesh moves the edge, over the radius: the largest of estimates
+    at all nodes.
 
-    Let the edge move by δ a. Near it the pressure, q ~ s, changes by δ/s² of itself where the body yields most. Where
-    the asperities yield most, their displacement, g ~ s², changes by 2 δ/s². So s² times both changes, each weighed by
-    its share of the right-hand side, is δ or a little more. From node to node these numbers cannot cancel, as they do
-    in the radius. Under a hard plate the pressure inside a ring is nearly 0, and its relative changes say nothing:
-    there the pressure is taken to be at least 0.02 s² of the largest.
+    Let the edge move by δ a. Where the body is more compliant than the asperities, the pressure near the edge, q ~ s,
+    has the relative change δ/s². Where the asperities are more compliant, their displacement, g ~ s², has the relative
+    change 2 δ/s². So s² times both changes, each weighted by its share of the right-hand side, is δ or a little more.
+    These numbers cannot cancel from node to node, as they do in the radius. Under a hard plate the pressure inside a
+    ring is nearly 0, and its relative changes mean nothing. So the pressure counts as at least 0.02 s² of the largest.
     """
     start, end, s2 = refined.start.curve, refined.end.curve, refined.start.mesh.s**2
     share = np.clip(refined.start.Z * start.g / refined.start.drop, 0.0, 1.0)
@@ -142,8 +146,8 @@ def _moved_edge(refined):
 
 
 def _missed_ring(ev):
-    """Bound (B,) of the error by a ring at the edge, so narrow that neither mesh sees how asperities and springs yield
-    there; 0 where they see it."""
+    """Bound (B,) of the error by a ring at the edge that is too narrow for both meshes, and in which asperities and
+    springs are compliant; 0 where the meshes resolve the ring."""
     s1, q1, bound = ev.mesh.s[0], ev.curve.q[:, 0], np.zeros(len(ev.state.eta))
     body = ev.X[:, 0] * ev.cases.body.softness(np.exp(ev.state.eta) * s1**2)
     springs, asperities = ev.Y[:, 0] / body, ev.Z[:, 0] * ev.curve.g[:, 0] / (body * q1)
@@ -156,11 +160,11 @@ def _missed_ring(ev):
 
 
 def added_in_ring(t, s1, beta=1.0):
-    """Relative change (B,) of a and the like by a compliance in the ring between the edge and the first node s1. Its
-    ratio to the compliance of the body is t (s/s1)^(β-1), with t (B,).
+    """Relative change (B,) of a, and the like, by a compliance in the ring between the edge and the first node s1. The
+    compliance over that of the body is t (s/s1)^(β-1), with t (B,).
 
-    The change is 2 ∫ t (s/s1)^(β-1) ds/s from about the s where the compliance is s² to s1. Below that s, in a ring at
-    the edge, it is more than the body's. With β = 1, for springs, the change is t ln(1 + s1²/2t).
+    The change is 2 ∫ t (s/s1)^(β-1) ds/s up to s1, from about the s at which that ratio is s². Below that s the
+    compliance exceeds that of the body. With β = 1, for springs, the change is t ln(1 + s1²/2t).
     """
     end = 2 * (t / s1**2) ** (2 / (3 - beta))
     wide, less = np.log1p(1 / end), (1 - beta) / 2
@@ -169,21 +173,21 @@ def added_in_ring(t, s1, beta=1.0):
 
 
 def margin(ev):
-    """The factor (B,) by which an error may be larger than the change on the finer mesh."""
+    """The factor (B,) by which an error may exceed the change on the finer mesh."""
     return np.where(_blind(ev), _BLIND * MARGIN, MARGIN)
 
 
 def _blind(ev):
-    """(B,) bool: the share of the asperities is small at the first node already, so the mesh misses the ring where it
-    is large."""
+    """(B,) bool: whether the share of the asperities in the right-hand side is small even at the first node, so that
+    the mesh misses the ring in which it is large."""
     return ev.cases.law.rough & (ev.Z[:, 0] * ev.curve.g[:, 0] / ev.drop[:, 0] < 0.5)
 
 
 def profile_error(ev, refined, rows, x):
-    """Estimated error (b,) of the profiles at the radii x (m,) of the cases `rows` (b,), over the largest p or λ. It is
-    what the step on the finer mesh changes at its nodes, most of which lie between the others. A smooth punch has no
-    pressure at the edge: so the value of the polynomial through the nodes is an error there too. Under a point, the
-    nodes nearer to the axis than the least of the radii do not count."""
+    """Estimated error (b,) of the profiles of the cases `rows` (b,) at the radii x (m,), over the largest p or λ. It is
+    the change by the step on the finer mesh at the nodes of that mesh, most of which lie between those of the other.
+    Under a smooth punch the pressure at the edge is 0, so the value there of the polynomial through the nodes is an
+    error too. Under a pointed punch, nodes nearer to the axis than the smallest x do not count."""
     law = ev.cases.law.take(rows)
     start, end = refined.start, refined.end
     seen = slice(None, max(1, _outside(start.mesh, x)) if pointed(ev.cases)[rows].any() else None)
@@ -197,16 +201,16 @@ def profile_error(ev, refined, rows, x):
 
 
 def _outside(mesh, x):
-    """Number of nodes at radii above the least of x (m,) that is not 0."""
+    """Number of nodes whose radii are at least the smallest x (m,) above 0."""
     return np.count_nonzero(mesh.x >= np.min(x[x > 0], initial=1.0))
 
 
 def completed(ev, Ar_An, error, rows):
-    """Ar/An (b,) of the cases `rows` (b,), and their relative error (b,) with the part that both meshes may miss.
+    """Ar/An (b,) of the cases `rows` (b,), and their relative error (b,), including the part that both meshes may miss.
 
     Ar_An : (B,), by the quadrature of the nodes; error : (B,), of :func:`estimate`
 
-    Where λ bends, Ar/An has a quadrature of its own.
+    If λ has a kink, Ar/An has a quadrature of its own.
     """
     area, error = Ar_An[rows], error[rows]
     if not ev.cases.law.rough or not len(rows):
@@ -229,10 +233,11 @@ def _with_bends(ev, area, error, rows):
 
 
 def _without_bends(ev, area, error, rows):
-    """:func:`completed` of cases `rows` whose λ does not bend.
+    """:func:`completed` for the cases `rows`, whose λ has no kink.
 
-    If λ has risen before the first node, _UNSEEN counts the missed part. Where λ may rise sharply, Ar/An is
-    compared with another quadrature; where the displacement hardly depends on the pressure, with one for corners too.
+    If λ has risen before the first node, _UNSEEN counts the missed part. If λ may rise sharply, Ar/An is compared with
+    another quadrature. If the displacement hardly depends on the pressure, it is also compared with the quadrature for
+    corners.
     """
     law, mesh = ev.cases.law.take(rows), ev.mesh
     ends = law.area(ev.state.y[rows][:, [0, -1]], ev.curve.q[rows][:, [0, -1]])

@@ -1,12 +1,14 @@
-"""Rough contacts of flat punches: Newton's method on q at the nodes and ln τ, where τ a²/2 is how far asperities yield
-at the edge; each case on panels that shrink to the edge and are halved where its pressure asks it.
+"""Rough contacts of flat punches: Newton's method on q at the nodes and ln τ, where τ a²/2 is the displacement of the
+asperities at the edge. Each case has panels of its own, which shrink towards the edge and are halved where its pressure
+needs it.
 
-The profile is 0, and the pressure does not vanish at the edge. With the displacement taken relative to that of the
-edge, as everywhere, the equation at all nodes is
+The profile is 0, and the pressure does not vanish at the edge. As everywhere, the displacement is relative to that of
+the edge. The equation at all nodes is
 
     X K[q] + Z g = τ,       D = (a²/2) (τ + X edge @ q),
 
-that of a punch whose drop is τ. Here τ is unknown and a is given: elsewhere it is the other way round.
+like that of a punch whose drop is τ. Here τ is unknown and a is given; under other punches a is unknown and the drop is
+given.
 """
 
 from dataclasses import dataclass
@@ -28,22 +30,22 @@ from .error import completed
 from .panels import GOALS, ORDER, resolve
 from .results import interpolate, judged_difference, profiles, quantities
 
-#: Most steps on a mesh, and the residual, over 2D/a², at which only rounding is left. It is not over τ, which is far
-#: less than the displacement where asperities hardly yield. Under laws that are tables the residual stays higher, next
-#: to the edge, where the pressure grows without bound; up to _STALLED that is let pass, as a part of the error.
+#: Most steps on a mesh, and the residual, over 2D/a², at which only rounding is left. It is not over τ: τ is far less
+#: than the displacement where asperities are stiff. Under laws that are tables, the residual stays larger near the
+#: edge, where the pressure grows without bound. Up to _STALLED this is accepted, and counts as a part of the error.
 LIMIT, _CLOSED, _STALLED = 60, 1e-13, 1e-7
-#: Ends in s of the panels to begin with.
+#: Ends in s of the first panels.
 _START = (0.0, *(0.4**k for k in range(7, 0, -1)), 0.7, 1.0)
-#: A gap higher than this times a²/2 is real and no rounding, as in :mod:`.answer`.
+#: A gap higher than this times a²/2 is real, not rounding, as in :mod:`.answer`.
 _GAP = 1e-9
-#: Rounding of the answers, for each node.
+#: Rounding error of the answers, for each node.
 _ROUNDING, _TINY = 4 * np.finfo(float).eps, np.finfo(float).tiny
 
 
 @batch.of_cases
 class AsFlat(NamedTuple):
-    """A flat `shape` as the :class:`~solver.rough.punch.Punch` whose drop is `tau` (B,) at any radius. It needs no
-    first guess."""
+    """A flat `shape` as a :class:`~solver.rough.punch.Punch` whose drop is `tau` (B,) at any radius. It has no first
+    guesses of the radius, which is known."""
 
     tau: np.ndarray
     shape: Shape
@@ -81,8 +83,8 @@ class AsFlat(NamedTuple):
 
 
 def first_guess(case, a, mesh):
-    """:class:`~solver.rough.equation.Evaluation` of one `case` to begin with, at the radius a (1,): 1/q is the sum of
-    the 1/q of a smooth punch and of asperities alone."""
+    """The first :class:`~solver.rough.equation.Evaluation` of one `case`, at the radius a (1,): 1/q is the sum of the
+    1/q of a smooth punch and of asperities alone."""
     eta, softness, s = np.log(a), case.body.softness(a), mesh.s
     X, _, Z = groups(case, eta)
     value = case.value[:, None]
@@ -115,17 +117,17 @@ def _linear(ev, right):
     return solve_stack(ev.operator.K, diagonal, right)
 
 
-def misses(ev):
-    """Largest residual (1,): of the equation over 2D/a², where asperities do not hang over the surface, and of the
-    control."""
+def residual_of(ev):
+    """The larger residual (1,) of two: that of the equation, over 2D/a², except where asperities hang over the surface,
+    and that of the control."""
     scale = ev.cases.shape.tau + np.abs(ev.X[:, 0] * ev.edge_q)
     return np.maximum(np.where(ev.gap > 0, 0.0, np.abs(ev.F)).max(axis=1) / scale, np.abs(ev.G))
 
 
 @batch.of_cases
 @dataclass(frozen=True, eq=False)
-class Now:
-    """The equation `ev` at one step of the iteration, and by how much it missed at the step before."""
+class FlatStep:
+    """The equation `ev` at one step of the iteration, and its residual at the step before."""
 
     ev: Evaluation
     before: np.ndarray
@@ -135,21 +137,21 @@ class Now:
         return self.ev.cases
 
     @once
-    def missed(self):
-        return misses(self.ev)
+    def residual(self):
+        return residual_of(self.ev)
 
     @property
     def closed(self):
-        """(1,) bool: the residual is rounding, or far below any rtol and does not fall any more."""
-        return (self.missed < _CLOSED) | (self.before / 2 <= self.missed) & (self.missed < _STALLED)
+        """(1,) bool: whether the residual is rounding, or is far below any rtol and no longer falls."""
+        return (self.residual < _CLOSED) | (self.before / 2 <= self.residual) & (self.residual < _STALLED)
 
     @property
     def lost(self):
-        return ~np.isfinite(self.missed)
+        return ~np.isfinite(self.residual)
 
 
 def step(now):
-    """One step from :class:`Now`."""
+    """The next :class:`FlatStep` after `now`."""
     ev = now.ev
     both = _linear(ev, np.stack([ev.drop / ev.X, -ev.F / ev.X], axis=-1))
     along, dq = both[..., 0], both[..., 1]
@@ -159,12 +161,12 @@ def step(now):
     y = ev.state.y + (dq + along * d_tau[:, None]) / ev.curve.dq
     cases = ev.cases._replace(shape=AsFlat(ev.cases.shape.tau * np.exp(d_tau), ev.cases.shape.shape))
     state = Unknowns(cases.law.limit(y, ev.state.y), ev.state.eta)
-    return Now(evaluate(cases, state, ev.mesh, ev.operator), now.missed)
+    return FlatStep(evaluate(cases, state, ev.mesh, ev.operator), now.residual)
 
 
 def iterate(ev, limit):
-    """The equation at the end, how many steps that took, and whether it has closed."""
-    iterated = newton.iterate(Now(ev, np.full(1, np.inf)), step, limit)
+    """The equation at the end, the number of steps, and whether the iteration has closed."""
+    iterated = newton.iterate(FlatStep(ev, np.full(1, np.inf)), step, limit)
     return iterated.at.ev, int(iterated.count[0]), bool(iterated.closed[0])
 
 
@@ -174,14 +176,14 @@ def on_mesh(ev, mesh, y):
 
 
 def solve_flat(cases, rtol, nodes, limit, x):
-    """:class:`~solver.solution.Solution` of rough flat punches; arguments as of
+    """:class:`~solver.solution.Solution` of rough flat punches; arguments as in
     :func:`~solver.rough.adaptive.solve_newton`. The control is P or D."""
     size = len(rtol)
-    pieces = [([i], _solved(cases.take([i]), float(rtol[i]), int(nodes[i]), limit, x)) for i in range(size)]
+    pieces = [([i], _solve_one(cases.take([i]), float(rtol[i]), int(nodes[i]), limit, x)) for i in range(size)]
     return Solution.join(size, len(x), pieces)
 
 
-def _solved(case, rtol, nodes, limit, x):
+def _solve_one(case, rtol, nodes, limit, x):
     a, limit = case.shape.least(), limit or LIMIT
     mesh = mesh_of(nodes) if nodes else panel_mesh(ORDER, _START)
     ev, count, closed = iterate(first_guess(case, a, mesh), limit)
@@ -203,15 +205,15 @@ def _solved(case, rtol, nodes, limit, x):
 
 
 def _answer(ev, count, closed, spent, rtol, x):
-    """:class:`~solver.solution.Solution` of one case that has `closed`, with its error by a finer mesh."""
+    """:class:`~solver.solution.Solution` of one case, with its error from a finer mesh if the iteration has closed."""
     size, a = (1, len(x)), np.exp(ev.state.eta)
     if not closed:
-        lost = not np.isfinite(misses(ev)[0])
+        lost = not np.isfinite(residual_of(ev)[0])
         return Solution.of(*size, status=Status.DIVERGED if lost else Status.ITERATION_LIMIT)
     mesh = finer_mesh(ev.mesh)
     fine, _, _ = iterate(on_mesh(ev, mesh, interpolate(ev, mesh.s)), LIMIT)
     numbers, _, of_load, of_depth = quantities(ev), *tangent(ev)
-    error = MARGIN * (judged_difference(ev.cases, numbers, quantities(fine)) + misses(ev) + misses(fine))
+    error = MARGIN * (judged_difference(ev.cases, numbers, quantities(fine)) + residual_of(ev) + residual_of(fine))
     error = np.maximum(error, np.maximum(_ROUNDING * ev.mesh.n, ev.cases.body.error(a, ev.mesh.n)))
     area, error = completed(ev, numbers.Ar_An, error, np.array([0]))
     p, lam = _profiles(ev, x)
@@ -220,7 +222,7 @@ def _answer(ev, count, closed, spent, rtol, x):
     status = Status.CONVERGED if error[0] <= rtol else Status.TOLERANCE_NOT_MET
     if spent and status == Status.TOLERANCE_NOT_MET:
         status = Status.BUDGET_SPENT
-    rest = {"dP_dD": numbers.P * of_load / (numbers.D * of_depth), "residual": misses(ev), "error": error}
+    rest = {"dP_dD": numbers.P * of_load / (numbers.D * of_depth), "residual": residual_of(ev), "error": error}
     rest |= {"profile_error": np.maximum(error, between), "nodes": ev.mesh.n, "iterations": count, "status": status}
     solution = Solution.of(*size, **(numbers._asdict() | {"Ar_An": area}), p=p, lam=lam, **rest)
     gap = (ev.gap.max(axis=1) > _GAP) & (fine.gap.max(axis=1) > _GAP)
@@ -233,8 +235,8 @@ def _change(values, finer):
 
 
 def _profiles(ev, x):
-    """p and λ (1, m) at the radii x (m,). At the edge asperities yield by τ: there is a pressure. It is infinite, as
-    under a smooth punch, where they cannot yield so much."""
+    """p and λ (1, m) at the radii x (m,). At the edge the displacement of the asperities is τ, and so there is a
+    pressure. If the asperities cannot be displaced so far, it is infinite, as under a smooth punch."""
     p, lam = profiles(ev, x, np.array([0]))
     at_edge, law = x == 1, ev.cases.law
     if at_edge.any():

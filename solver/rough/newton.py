@@ -1,5 +1,5 @@
 """Newton's method on (q at the nodes, ln a), with the control as one more equation; the loop of every iterative scheme;
-and a search for the radius where Newton fails."""
+and a search for the radius, for cases in which Newton's method fails."""
 
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -10,40 +10,45 @@ from ..numerics import batch
 from ..numerics.bracket import false_position
 from ..numerics.linalg import solve_stack
 from .equation import Unknowns, control_gradient, evaluate, jacobian
-from .punch import kept_within
+from .punch import keep_within
 from .start import guess_radius, smooth_start
 
-#: Most steps on a mesh, where nothing else is said.
+#: Most steps on a mesh, by default.
 LIMIT = 60
-#: Most Newton steps of a case on a mesh: _STEPS on up to _NODES nodes; fewer on finer ones, where a step takes longer,
-#: but at least _FEWEST. A search for the radius takes the most, a hundred and more
-#: (tests/rough/errors/test_counts.py).
+#: Most Newton steps of a case on a mesh, including a search for the radius: _STEPS on up to _NODES nodes; fewer on
+#: finer meshes, where a step takes longer, and at least _FEWEST. A search for the radius takes the most, a hundred and
+#: more (tests/rough/errors/test_counts.py).
 _STEPS, _NODES, _FEWEST = 1000, 96, 60
 #: Most work of one case (:meth:`~solver.body.operator.Body.work`): its steps on all meshes, and the meshes of panels
-#: that are made for it alone. Unlike seconds, it is the same on every machine. None of the 3,000 cases of
-#: the study extremes_layered spends this budget, and about 1 % would spend half of it (`make extremes`).
+#: that are made for it alone. Unlike seconds, work is the same on every machine. None of the 3,000 cases of the study
+#: extremes_layered spends this budget, and about 1 % would spend half of it (`make extremes`).
 #: `python tools/fuzz/fuzz_solver.py` prints the longest time of a lone case.
 BUDGET = 1_500_000
-#: Cases that begin on panels, which follow the kinks of their shape, may take so many times as much. With it none of
-#: 14 random cases spends its budget at rtol 1e-3, 1e-6 or 1e-9 (`python tools/errors/rough_shapes.py 2 4`).
+#: The factor of the budget for cases that begin on panels, which follow the kinks of their shape. With it none of 14
+#: random cases spends its budget at rtol 1e-3, 1e-6 or 1e-9 (`python tools/errors/rough_shapes.py 2 4`).
 _ON_PANELS = 4
 
 
 class Iterated(NamedTuple):
-    """The end of an iteration: `at`, the batch after the last step of each case; `closed` (B,) bool, whether the case
-    has found its solution; `count` (B,), how many steps it took."""
+    """The end of an iteration.
+
+    at : the batch after the last step of each case
+    closed : (B,) bool, whether the case has reached its solution
+    count : (B,), number of steps
+    """
 
     at: Any
     closed: np.ndarray
     count: np.ndarray
 
 
-@np.errstate(all="ignore")  # failures are NaN, and `lost`
+@np.errstate(all="ignore")  # a failure is NaN, which makes a case `lost`
 def iterate(start, step, limit):
-    """Repeat `step` on a batch: :class:`Iterated`. A case that has closed or is lost leaves it, the others go on.
+    """Repeat `step` on a batch. A case that has closed or is lost leaves, and the others go on. Returns
+    :class:`Iterated`.
 
-    start : the batch at its start, an :class:`.equation.Evaluation` or an :class:`.picard.Approximation`:
-        ``start.cases``; ``start.closed`` and ``start.lost`` (B,) bool; and what :mod:`..numerics.batch` says of batches
+    start : the first batch (:mod:`..numerics.batch`), which has the attributes `cases`, and `closed` and `lost`, (B,)
+        bool: an :class:`.equation.Evaluation`, for example, or an :class:`.picard.Approximation`
     step : ``step(now) -> next``
     limit : most steps, int or (B,) int
     """
@@ -77,10 +82,10 @@ def tangent(ev):
 
 
 def advance(ev):
-    """The :class:`Unknowns` one step from that of `ev`, and dq/dη (B, n) along the branch of solutions.
+    """The :class:`Unknowns` after one step from those of `ev`, and dq/dη (B, n) along the branch of solutions.
 
-    The step is taken in y: q is nearly a power of y, and g nearly its square. A step changes y by a factor of five at
-    most, and the radius by a factor of e at most. From the first guess of :mod:`.start` it needs no line search.
+    The step is in y: q is nearly a power of y, and g nearly its square. A step changes y at most by a factor of five,
+    and the radius at most by a factor of e. From the first guess of :mod:`.start` no line search is needed.
     """
     diagonal, dF_deta = jacobian(ev)
     solution = solve_stack(ev.operator.K, diagonal, np.stack([-dF_deta, -ev.F / ev.X], axis=-1))
@@ -90,7 +95,7 @@ def advance(ev):
     d_eta = np.clip(d_eta, -1.0, 1.0)
     dy = (dq + dq_deta * d_eta[:, None]) / ev.curve.dq
     y = ev.cases.law.limit(ev.state.y + dy, ev.state.y)
-    return Unknowns(y, kept_within(ev.cases.shape, ev.state.eta + d_eta, ev.state.eta)), dq_deta
+    return Unknowns(y, keep_within(ev.cases.shape, ev.state.eta + d_eta, ev.state.eta)), dq_deta
 
 
 def step(ev):
@@ -109,21 +114,21 @@ def stiffness(ev, dq_deta, P, D):
 
 
 def budget_of(cases):
-    """Most work of one case, the only one of `cases`."""
+    """Most work of the case in `cases`, a batch of one."""
     return BUDGET if cases.shape.even.all() else _ON_PANELS * BUDGET
 
 
 def newton_steps(nodes):
-    """Most Newton steps that a case may take on a mesh of `nodes` nodes; of the shape of `nodes`."""
+    """Most Newton steps of a case on a mesh of `nodes` nodes; it has the shape of `nodes`."""
     share = np.minimum(1.0, (_NODES / np.maximum(nodes, 1)) ** 2)
     return np.maximum(_FEWEST, (_STEPS * share).astype(int))
 
 
 def solve_on(start, limit=0, budget=BUDGET):
-    """:class:`Iterated` of Newton's method from the equation at its `start`; where that fails, of a search for the
-    radius.
+    """:class:`Iterated` by Newton's method from the equation `start`, and for cases in which that fails, by a search
+    for the radius.
 
-    limit : most steps, and no search; 0: the limit of Newton's method, and the search
+    limit : most steps, and no search follows; 0: the default limit, and a search may follow
     budget : float, or (B,), the work left to each case; the last step may spend a little more
     """
     cases, mesh = start.cases, start.mesh
@@ -142,10 +147,10 @@ def solve_on(start, limit=0, budget=BUDGET):
 
 
 def _by_radius(cases, mesh, most):
-    """:class:`Iterated` of cases by a search for their radius, in at most `most` (B,) steps at all radii together. At
-    each radius Newton's method starts from the smooth contact.
+    """:class:`Iterated` by a search for the radius, with at most `most` (B,) steps at all radii together. At each
+    radius Newton's method starts from the smooth contact.
 
-    Under a very stiff film, for example, the load hardly depends on the radius: Newton's method on pressure and radius
+    On a very stiff film, for example, the load hardly depends on the radius, and Newton's method on pressure and radius
     together leaves the branch of solutions.
     """
     spent, radius = np.zeros(len(cases.value), int), guess_radius(cases)

@@ -1,7 +1,8 @@
-"""The paper's successive approximations, Eqs (8) and (10), and the load or depth by a search on the contact radius.
+"""The paper's successive approximations, Eqs (8) and (10), at one contact radius; and a search for the radius of a
+given load or depth.
 
-They begin at p = 0, and end when |p̃ - p| is below rtol/10 of the largest pressure, or in a cycle (docs/model.md). On a
-finer mesh the node next to the edge is nearer to it, where A'(p) is larger, and a larger k is needed.
+They begin at p = 0. They end when |p̃ - p| is below rtol/10 of the largest pressure, or in a cycle (docs/solving.md).
+On a finer mesh the first node is nearer to the edge, where A'(p) is larger, and a larger k is needed.
 """
 
 from dataclasses import dataclass, replace
@@ -18,9 +19,10 @@ from .start import guess_radius
 
 #: Most successive approximations at one radius.
 LIMIT = 1000
-#: Most successive approximations of one case at all radii, four times LIMIT; those at the last radius are finished.
+#: Most successive approximations of one case at all radii, four times LIMIT. Those at the last radius still run to
+#: their end.
 APPROXIMATIONS = 4_000
-#: The load has settled when one more approximation changes it by less than this.
+#: The load has settled when one more approximation changes it by less than this part of it.
 _SETTLED = 1e-2
 _TINY = np.finfo(float).tiny
 
@@ -28,10 +30,12 @@ _TINY = np.finfo(float).tiny
 @batch.of_cases
 @dataclass(frozen=True, eq=False)
 class Approximation:
-    """B cases at the radii exp(eta), after `done` approximations: the pressure q (B, n), and how much it still changes.
+    """B cases at the radii exp(eta), after `done` approximations.
 
-    Changes, (B,) each: `change` is the last |p̃ - p| over the largest pressure, `earlier` what that was when half of all
-    approximations had been made, and `load_change` the last relative change of the load.
+    q : (B, n), the pressure
+    change : (B,), the last |p̃ - p| over the largest pressure
+    load_change : (B,), the last relative change of the load
+    earlier : (B,), `change` after half of all approximations
     """
 
     cases: Cases
@@ -48,29 +52,29 @@ class Approximation:
 
     @property
     def closed(self):
-        """(B,) bool: the pressure has settled."""
+        """(B,) bool: whether the pressure has settled."""
         return self.change < 0.1 * self.rtol
 
     @property
     def lost(self):
-        """(B,) bool: it has diverged."""
+        """(B,) bool: whether the approximations have diverged."""
         return np.isnan(self.change)
 
     @property
     def G(self):
-        """Logarithm of (load or depth/given value) (B,)."""
+        """Residual of the control (B,), as :attr:`.equation.Evaluation.G`."""
         edge_q = np.einsum("bj,bj->b", self.operator.edge + 0 * self.q, self.q)
         return control_residual(self.cases, self.eta, self.groups[0], self.q, edge_q, self.operator.mesh)
 
 
 def solve(cases, mesh, k, rtol, limit):
-    """:class:`~solver.rough.newton.Iterated` by the paper's scheme, `at` being the equation at the end; and the
+    """:class:`~solver.rough.newton.Iterated` by the paper's scheme, whose `at` is the equation at the end; and the
     status (B,).
 
-    k, rtol : (B,) float, k >= 0; limit : int, approximations at one radius (0: LIMIT).
+    k, rtol : (B,) float, k >= 0; limit : int, most approximations at one radius; 0: LIMIT
     """
     size, limit = len(cases.value), min(limit or LIMIT, APPROXIMATIONS)
-    count, last = np.zeros(size, dtype=int), [()] * size  # of each case the approximations at the latest radius
+    count, last = np.zeros(size, dtype=int), [()] * size  # last: for each case the approximation at the latest radius
 
     def control_at(eta, index):
         iterated = approximate(cases.take(index), eta, mesh, k[index], rtol[index], limit)
@@ -91,7 +95,8 @@ def solve(cases, mesh, k, rtol, limit):
 
 
 def _status(at, missed, spent):
-    """:class:`~solver.status.Status` (B,) of approximations whose control misses its value by `missed` (B,)."""
+    """:class:`~solver.status.Status` (B,) of approximations; `missed` (B,) is the residual of the control, `spent` (B,)
+    bool whether all APPROXIMATIONS have been made."""
     ends = {
         Status.DIVERGED: ~np.isfinite(at.q).all(axis=1),
         Status.CONVERGED: at.closed & (missed < at.rtol),
@@ -103,8 +108,8 @@ def _status(at, missed, spent):
 def approximate(cases, eta, mesh, k, rtol, limit):
     """:class:`~solver.rough.newton.Iterated` of successive approximations at the radii exp(eta) (B,) from p = 0.
 
-    Where they do not settle quickly they amplify rounding. So the operator of each case is made as if it were alone:
-    its numbers do not depend on the batch.
+    If they do not settle quickly, they amplify rounding. So the operator of each case is made as if the case were
+    alone, and its numbers do not depend on the batch.
     """
     never, q = np.full(len(eta), np.inf), np.zeros((len(eta), mesh.n))
     alone = [cases.body.take([i]).at(np.exp(eta[i : i + 1]), mesh) for i in range(len(eta))]
@@ -114,7 +119,7 @@ def approximate(cases, eta, mesh, k, rtol, limit):
 
 
 def _next(now, half):
-    """The approximation after `now`; after `half` of all approximations it keeps the change so far as `earlier`."""
+    """The approximation after `now`. After `half` of all approximations, it stores the change as `earlier`."""
     q, k, cases = now.q, now.k, now.cases
     K, w = now.operator.K, now.operator.mesh.w
     Kq = np.matmul(K, q[..., None])[..., 0]
@@ -127,7 +132,7 @@ def _next(now, half):
 
 
 def _pressure(law, groups, drop, q, Kq):
-    """p̃ (B, n) over p*, no less than 0: by Eq. (8) where there are springs, else by Eq. (10)."""
+    """p̃/p* (B, n), at least 0: by Eq. (8) where there are springs, else by Eq. (10)."""
     X, Y, Z = groups
     left, springs, by_springs, by_spots = drop - X * Kq, Y > 0, 0.0, 0.0
     if springs.any():

@@ -1,8 +1,8 @@
 """The punch, as the equation of a rough contact sees the shape f(r) of the indenter: the protocol, and any shape.
 
-The contact asks a punch for nothing else, nor which punch it is. Lengths are in R; a is the contact radius, x = r/a
-and s = sqrt(1 - x²). The surface must yield f(a) - f(ax) more at x than at the edge. The equation of the
-contact is divided by a²/2, and so is this:
+The contact uses nothing of a punch except this protocol. Lengths are in R; a is the contact radius, x = r/a and
+s = sqrt(1 - x²). At x the surface must be displaced by f(a) - f(ax) more than at the edge. The equation of the contact
+is divided by a²/2, and so is this:
 
     X K[q] + Y q + Z g = drop,              drop = (2/a²) [f(a) - f(ax)],
     D = (a²/2) (depth + X edge @ q),        depth = 2 f(a)/a²,
@@ -11,9 +11,9 @@ and at fixed x
 
     d drop/d ln a = (2/a) [f'(a) - x f'(ax)] - 2 drop.
 
-A shape with closed forms of all this, as the paraboloid, is a punch itself; :class:`Shaped` makes one of any other. Its
-first guesses of the radius come from closed forms of the shape, whose roots are found by bracketing: the loads P(a)
-that a half-space, springs and asperities would each bear alone increase with a.
+A shape that has closed forms of all this, such as the paraboloid, is a punch itself; :class:`Shaped` makes a punch of
+any other shape. It guesses the radius from the loads P(a) that a half-space, springs and asperities would each bear
+alone. These increase with a, and bracketing gives the root.
 """
 
 from collections.abc import Callable
@@ -27,11 +27,11 @@ from ..numerics.quadrature import gauss_legendre
 from ..shapes.paraboloid import HERTZ
 from ..shapes.shape import Shape, column
 
-#: A first guess of the radius is right to this part: Newton's method does the rest.
+#: Relative error of a first guess of the radius: Newton's method does the rest.
 _ROUGHLY = 1e-3
-#: Gauss points in s of the load that springs or asperities bear alone, where a few digits are enough.
+#: Gauss points in s for the load that springs or asperities bear alone, of which a few digits are enough.
 _FEW = 24
-#: A step of the radius leaves at least this part of its distance to a bound.
+#: A step of the radius leaves at least this part of the distance to a bound.
 _LEFT = 0.1
 
 
@@ -39,15 +39,15 @@ class Punch(Protocol):
     """The punch in B cases. An array that is the same for all cases may have one row in place of B.
 
     take : the punch of a sub-batch, :func:`~solver.numerics.batch.take`
-    polynomial : whether the drop is a polynomial in s²: then an error on one panel does not spoil those beside it
+    polynomial : whether the drop is a polynomial in s²: an error on one panel then does not spoil its neighbours
     """
 
     polynomial: bool
     take: Callable
 
     def drop(self, a, s):
-        """(2/a²) [f(a) - f(ax)] at the points s (m,), for contact radii a (B,): (B or 1, m). It is formed from s, not
-        as a difference: next to the edge no digits are lost."""
+        """(2/a²) [f(a) - f(ax)] at the points s (m,), for contact radii a (B,): (B or 1, m). It is formed from s
+        without cancellation: no digits are lost near the edge."""
 
     def drop_slope(self, a, s):
         """Derivative of :meth:`drop` by ln a at fixed x."""
@@ -68,15 +68,15 @@ class Punch(Protocol):
         """Contact radius (B,) under the load P (B,) on springs of compliance C (B,) alone."""
 
     def on_asperities(self, P, p_star, A_star, e):
-        """Contact radius (B,) under the load P (B,) where asperities alone yield, by A = A* (p/p*)^(1/e)."""
+        """Contact radius (B,) under the load P (B,) if only asperities are displaced, by A = A* (p/p*)^(1/e)."""
 
     def stiffness(self, a, s, half_space, springs):
-        """First guess of 1/q, (B, m) at s (m,) > 0, where asperities do not yield: it is nearly the sum of the 1/q on a
-        half-space, whose X is `half_space` (B, 1), and on springs, whose Y is `springs` (B, 1)."""
+        """First guess of 1/q, (B, m) at s (m,) > 0, without asperities: nearly the sum of the 1/q on a half-space,
+        whose X is `half_space` (B, 1), and on springs, whose Y is `springs` (B, 1)."""
 
 
 def punch_of(shape):
-    """The :class:`Punch` of a shape: the shape itself if it has the closed forms."""
+    """The :class:`Punch` of a shape; it is the shape itself if that has the closed forms."""
     return shape if hasattr(shape, "drop_slope") else Shaped(shape)
 
 
@@ -146,8 +146,9 @@ def _spring_load(shape, a):
 
 
 def radius_at(shape, value, target, *numbers):
-    """Radius a (B,) at which ``value(shape, a, *numbers)`` (B,), a (B, 1), which increases with a, is `target` (B,): to
-    _ROUGHLY of its distance to the bounds of the shape. NaN where there is none."""
+    """Radius a (B,) at which ``value(shape, a, *numbers)`` (B,), with a (B, 1), is `target` (B,). The function must
+    increase with a. The error is _ROUGHLY times the distance of a from the bounds of the shape. NaN where there is no
+    such radius."""
     least, most = shape.least(), shape.most()
 
     def missed(v, index):
@@ -160,14 +161,15 @@ def radius_at(shape, value, target, *numbers):
 
 
 def _between(v, least, most):
-    """The radius (b,) between `least` and `most` (b,) for any number v (b,): ln(a - least) far from `most`."""
+    """The radius a (b,) between `least` and `most` (b,) for any number v (b,), which is ln(a - least) far from
+    `most`."""
     above = np.exp(v)
     return least + above / (1 + above / (most - least))
 
 
-def kept_within(shape, new, old):
-    """ln a (B,) after a step from `old` to `new` (B,): no nearer to a bound of the shape than _LEFT of the distance
-    that there was."""
+def keep_within(shape, new, old):
+    """ln a (B,) after a step from `old` to `new` (B,), shortened so that at least _LEFT of the distance to any bound of
+    the shape is left."""
     least, most = shape.least(), shape.most()
     if not least.any() and np.isinf(most).all():
         return new

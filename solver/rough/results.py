@@ -1,4 +1,4 @@
-"""From the solved unknowns to the quantities of the paper: Eqs (5), (11)-(14) and the profiles."""
+"""The quantities of the paper from the unknowns of the equation: Eqs (5), (11)-(14), and the profiles."""
 
 from collections import namedtuple
 from functools import lru_cache
@@ -12,21 +12,21 @@ from ..solution import JUDGED
 
 #: Most Newton steps for y between the nodes. A few are enough, except near full contact.
 _STEPS = 40
-#: Where s is below this, the pressure of a smooth punch is taken to be proportional to s. Nearer to the edge, rounding
-#: in the equation would be larger than this pressure.
-_APART = 1e-4
-#: Where λ bends: between two nodes y is interpolated to _FEW Gauss points, with the relative tolerance _NEAR,
-#: and λ is looked up at _MANY.
+#: Where s is below this, the pressure of a smooth punch is assumed to be proportional to s. Nearer to the edge, the
+#: rounding error of the equation would be larger than this pressure.
+_LINEAR = 1e-4
+#: If λ has a kink: between two nodes y is interpolated to _FEW Gauss points, with the relative tolerance _NEAR, and λ
+#: is evaluated at _MANY.
 _FEW, _MANY, _NEAR = 5, 10, 1e-10
-#: Quantities that the pressure in the centre does not decide.
+#: The judged quantities that do not depend on the pressure in the centre.
 _AWAY_FROM_CENTRE = tuple(name for name in JUDGED if name not in ("p0", "p_max"))
 #: Arrays (B,) in units R = E2* = 1, named as in :class:`~solver.solution.Solution`.
 Quantities = namedtuple("Quantities", (*JUDGED, "A0"))
 
 
 def quantities(ev):
-    """:class:`Quantities` of an :class:`~solver.rough.equation.Evaluation`. D is that of Eq. (3) at r = a; it equals
-    Eq. (14) and needs p at no point."""
+    """:class:`Quantities` of an :class:`~solver.rough.equation.Evaluation`. D is by Eq. (3) at r = a. It equals that of
+    Eq. (14), and does not depend on p at any single point."""
     law, y, q, a, w = ev.cases.law, ev.state.y, ev.curve.q, np.exp(ev.state.eta), ev.mesh.w
     centre = q[:, -1:]
     return Quantities(
@@ -41,52 +41,55 @@ def quantities(ev):
 
 
 def difference(first, second, names=JUDGED):
-    """Largest relative difference (B,) of two :class:`Quantities`, over those of `names`."""
+    """Largest relative difference (B,) of two :class:`Quantities` among those with the `names`."""
     return np.max([np.abs(getattr(first, name) / getattr(second, name) - 1) for name in names], axis=0)
 
 
 def pointed(cases):
-    """(B,) bool: the punch has a point, f'(0+) > 0. The pressure of the asperities under it is decided so near to the
-    axis, within A' times the modulus, that no mesh resolves it: the centre is neither judged nor reported."""
+    """(B,) bool: whether the punch has a point, f'(0+) > 0. The region near the axis that decides the pressure of the
+    asperities under the point, of the size A' times the modulus, is too small for any mesh. So the pressure in the
+    centre is neither judged nor reported."""
     return cases.shape.pointed
 
 
 def judged_difference(cases, first, second):
-    """:func:`difference` (B,) in the reported numbers of the `cases`."""
+    """:func:`difference` (B,) among the numbers that are reported for the `cases`."""
     change, without = difference(first, second), pointed(cases)
     return np.where(without, difference(first, second, _AWAY_FROM_CENTRE), change) if without.any() else change
 
 
 @lru_cache(maxsize=32)
 def _between(mesh, s_bytes):
-    """Numbers that interpolate from a mesh to other points s (m,) > 0: the rows (m, n) of the Lagrange polynomials and
-    of H - H(1); and κ (:func:`interpolate`) at the points (m,) and at the nodes (n,)."""
+    """Matrices and numbers for interpolation from a mesh to points s (m,) > 0: the Lagrange polynomials (m, n); the
+    rows (m, n) of H - H(1); and κ (:func:`interpolate`) at the points (m,) and at the nodes (n,)."""
     s = np.frombuffer(s_bytes)
     return mesh.basis(s), mesh.rows(s), stiffness_between(mesh, s), stiffness_between(mesh, mesh.s)
 
 
 def stiffness_between(mesh, s):
-    """κ (m,) at points s: H of a pressure that oscillates from node to node is about κ times this pressure."""
+    """κ (m,) at the points s. H of a pressure that oscillates from node to node is about κ times this pressure."""
     ends = np.array(mesh.breaks)
     home = np.clip(np.searchsorted(ends, s) - 1, 0, len(ends) - 2)
     low, high = ends[home], ends[home + 1]
-    gap = (high - low) / (4 * mesh.order**2)  # of the nodes at an end of a panel
+    gap = (high - low) / (4 * mesh.order**2)  # distance of the nodes at an end of a panel
     # half the distance of the nodes in x = sqrt(1 - s²), where |dx| = s ds/x
     spread = (s - low + gap * (low > 0)) * np.where(high < 1, (high - s + gap) / np.maximum(1 - s, 1e-300), 1.0)
     return np.pi / (2 * mesh.order) * s * np.sqrt(np.maximum(spread, 0.0) / (1 + s))
 
 
 def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
-    """The unknown y (B, m) at points s (m,) > 0 between the nodes of the mesh; of the cases `rows` alone, if given.
+    """The unknown y (B, m) at points s (m,) > 0 between the nodes of the mesh, for all cases or only for the cases
+    `rows`.
 
     Let q_L be the polynomial through the pressures at the nodes. The difference q - q_L oscillates from node to node,
     and its displacement of the half-space is about κ (q - q_L). So the equation at a point between the nodes is
 
         (X κ + Y) q + Z g(q) = drop - X (K[q_L] - κ q_L).
 
-    Near the edge, where asperities or springs yield most, its solution is far more accurate than q_L; where they yield
-    nothing it is q_L. Newton's method solves it to the relative `tolerance`, a number or (B, 1). It starts from a
-    closed form for two terms times the factor by which this form is wrong at the nodes, interpolated.
+    Near the edge, where asperities or springs are more compliant than the body, its solution is far more accurate than
+    q_L. Where they are rigid, its solution is q_L. Newton's method solves it to the relative `tolerance`, a number or
+    (B, 1). It starts from a closed form for two terms, times a correction: the ratio of y to this form at the nodes,
+    interpolated.
     """
     s = np.ascontiguousarray(s, dtype=float)
     L, H, kappa, node_kappa = _between(ev.mesh, s.tobytes())
@@ -103,9 +106,9 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
     def guess(linear, right):
         return law.guess(1 / (linear / right + 1 / law.sparse(right / Z)))
 
-    missed = np.nan_to_num(ev.state.y[rows] / guess(node_linear, node_linear * q + Z * g), nan=1.0)
-    missed = np.clip(missed, 0.5, 2.0) @ L.T
-    y = guess(linear, right) * np.clip(missed, 0.7, 1.4)
+    correction = np.nan_to_num(ev.state.y[rows] / guess(node_linear, node_linear * q + Z * g), nan=1.0)
+    correction = np.clip(correction, 0.5, 2.0) @ L.T
+    y = guess(linear, right) * np.clip(correction, 0.7, 1.4)
     tolerance = np.broadcast_to(tolerance, (len(y), 1))
 
     def step(active):
@@ -114,7 +117,7 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
         f = slope * curve.q + weight * curve.g - right[active]
         new = law.limit(old - f / (slope * curve.dq + weight * curve.dg), old)
         y[active] = new
-        # a step leaves about the square of its relative size
+        # the error after a step is about the square of its relative size
         return ~np.any((new - old) ** 2 > tolerance[active] * new**2, axis=1)
 
     march(step, np.arange(len(y)), most=_STEPS)
@@ -122,12 +125,13 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
 
 
 def cornered(ev, rows):
-    """Four numbers (b,) of the cases `rows` whose λ bends: Ar/An; its relative error; the part of the load that the
-    polynomial through the nodes misses between them; the largest part that it misses from the edge to any radius.
+    """Four numbers (b,) for the cases `rows`, whose λ has a kink: Ar/An; its relative error; the part of the load that
+    the polynomial through the nodes misses between them; the largest part that it misses from the edge to any radius.
 
-    Where λ has a corner, a quadrature errs by about the cube of the distance of its points, and the nodes are too far
-    apart. So y is interpolated to _FEW points between each two nodes, and from these by a polynomial to _MANY, where λ
-    is looked up. Their difference, far above the error of the finer one, is taken for its error.
+    At a corner of λ the error of a quadrature is about the cube of the distance of its points, and the nodes are too
+    far apart. So y is interpolated to _FEW points between neighbouring nodes, and from these by a polynomial to _MANY
+    points, where λ is evaluated. The difference between the quadratures with _FEW and with _MANY points is the error:
+    it is far larger than the true error of the latter.
     """
     law, pieces = ev.cases.law.take(rows), (0.0, *ev.mesh.s.tolist())
     (s, w), (fine_s, fine_w) = gauss_rule(_FEW, pieces), gauss_rule(_MANY, pieces)
@@ -147,8 +151,9 @@ def cornered(ev, rows):
 
 
 def off_edge(s, rough):
-    """The points (m,) where the pressure at s (m,) > 0 is solved: under a smooth punch they keep off the edge."""
-    return s if rough else np.maximum(s, _APART)
+    """The points (m,) at which the pressure for s (m,) > 0 is solved for: under a smooth punch they keep away from the
+    edge."""
+    return s if rough else np.maximum(s, _LINEAR)
 
 
 def profiles(ev, x, rows):

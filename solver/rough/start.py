@@ -1,4 +1,4 @@
-"""Where the iteration begins: closed forms of radius and pressure, and the mesh that a case is likely to need."""
+"""The start of the iteration: closed forms of radius and pressure, and the mesh that a case is likely to need."""
 
 import numpy as np
 
@@ -11,8 +11,8 @@ _LEAST = 1e-12
 
 
 def guess_radius(cases):
-    """Contact radius (B,): the given one; or a guess from the load or depth. It combines the radii that a half-space,
-    springs and asperities would each have alone."""
+    """Contact radius (B,): the given radius, or a guess from the load or depth. The guess combines the radii of a
+    half-space, springs and asperities, each alone."""
     if cases.control == "a":
         return cases.value
     if cases.is_flat:
@@ -33,28 +33,29 @@ def guess_radius(cases):
 
 
 def _together(shape, *radii):
-    """Contact radius (B,) of bodies, springs and asperities together, from the `radii` (B,) of each alone."""
+    """Contact radius (B,) of body, springs and asperities together, from the `radii` (B,) of each alone."""
     least = shape.least()
     a = least + sum(np.maximum(radius - least, 0.0) ** 4 for radius in radii) ** 0.25
     return np.minimum(a, (np.max(radii, axis=0) + shape.most()) / 2)
 
 
 def guess_pressure(cases, a, s):
-    """q (B, m) at s (m,) > 0 under contacts of radius a (B,). 1/q is the sum of the 1/q of half-space, springs and
-    asperities alone: so it is exact where one of them yields far more than the others."""
+    """q (B, m) at s (m,) > 0 in contacts of radius a (B,). 1/q is the sum of the 1/q of half-space, springs and
+    asperities alone. So it is exact where one of them is far more compliant than the others."""
     X, Y, Z = groups(cases, np.log(a))
     base = cases.punch.stiffness(a, s, X * cases.body.softness(a)[:, None], Y)
     return 1 / (base + 1 / cases.law.sparse(cases.punch.drop(a, s) / Z))
 
 
 def first_guess(cases, mesh, a=None):
-    """:class:`Unknowns` on a mesh from :func:`guess_pressure` at the radii a (B,), or else at :func:`guess_radius`."""
+    """:class:`Unknowns` on a mesh from :func:`guess_pressure` at the radii a (B,), or at :func:`guess_radius` if a is
+    None."""
     a = guess_radius(cases) if a is None else a
     return Unknowns(cases.law.guess(guess_pressure(cases, a, mesh.s)), np.log(a))
 
 
 def smooth_start(cases, mesh):
-    """The equation at given radii (control "a"), at a first guess: 1/q is the sum of the 1/q of the smooth contact and
+    """The equation for given radii (control "a") at a first guess: 1/q is the sum of the 1/q of the smooth contact and
     of the asperities alone."""
     eta, drop = np.log(cases.value), cases.punch.drop(cases.value, mesh.s)
     X, Y, Z = groups(cases, eta)
@@ -66,12 +67,12 @@ def smooth_start(cases, mesh):
 
 
 def nodes_wanted(cases, rtol, a):
-    """Number of nodes (B,) that just about meet rtol (B,), by a fit to random cases at the radii a (B,). Asperities
-    need fewer, the wider the ring at the edge in which they yield more than the body; a smooth punch fewer, the thicker
-    the layer."""
+    """Number of nodes (B,) that just about meets rtol (B,) at the radii a (B,), by a fit to random cases. With
+    asperities it falls with the width of the ring at the edge in which they are more compliant than the body; under a
+    smooth punch it falls with the thickness of the layer."""
     if not cases.law.rough:
         return cases.body.first_nodes(rtol, a, None)
     q = guess_pressure(cases, a, np.ones(1))
-    yielding = groups(cases, np.log(a))[2] * cases.law.evaluate(cases.law.guess(q)).g
-    share = yielding[:, 0] / largest(cases.punch, a)
+    displacement = groups(cases, np.log(a))[2] * cases.law.evaluate(cases.law.guess(q)).g
+    share = displacement[:, 0] / largest(cases.punch, a)
     return cases.body.first_nodes(rtol, a, cases.law.law.rise * np.clip(np.nan_to_num(share), 0.0, 1.0))

@@ -1,7 +1,7 @@
-"""The answers of contacts with each input moved, and what their differences say of the solved contacts.
+"""The answers of contacts with a moved input, and the derivatives that follow from their differences.
 
-The contacts keep their radius, and the radius itself is moved as one input more. With Q_θ and Q_a the derivatives of
-ln Q by an input θ at the radius and by ln a, a contact under the control C = P, a or D has
+The contacts keep their radius; the radius itself is moved as a further input. Let Q_θ and Q_a be the derivatives of
+ln Q by an input θ at fixed radius, and by ln a. A contact under the control C = P, a or D has
 
     d ln a/dθ = -C_θ/C_a,      d ln Q/dθ = Q_θ + Q_a d ln a/dθ,      d ln Q/d ln C = Q_a/C_a.
 """
@@ -14,32 +14,32 @@ from ..rough.results import pointed, quantities
 from ..scaling import as_cases, law_of
 from .inputs import STEP, moved_cases, slope_of
 from .points import area_of_corners, between, profiles
-from .same_mesh import found_again, same
+from .same_mesh import same, solve_again
 from .solved_cases import SolvedCases, solved_cases
 from .step import Solved, branch_slope, moved_contacts, on_kinks
 
 #: Quantities that have sensitivities, arrays (B,) of a :class:`~solver.solution.Solution`; and those among them whose
-#: unit has the modulus as a factor.
+#: unit contains the modulus.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD", "A0")
 _OF_MODULUS = ("P", "p0", "p_max", "dP_dD")
-#: Those that the pressure on the axis decides, which is not known under a point.
+#: Those that depend on the pressure on the axis, which is unknown under a point.
 _OF_CENTRE = ("p0", "p_max", "A0")
 
 
 def derivatives_of(scaled, now: SolvedCases, solution, inputs, nodes, x):
-    """(B,) bool, whether the equations of cases of one kind were solved again; quantity -> derivatives of its logarithm
-    (k, B); and those of p and λ at the radii x (c,), (2, k, B, c).
+    """Three answers for cases of one kind: (B,) bool, whether the derivatives are valid; quantity -> derivatives of its
+    logarithm (k, B); and derivatives of p and λ at the radii x (c,), (2, k, B, c).
 
-    scaled, now : the cases as they were asked for, and as they are solved; nodes : as of
-    :func:`~solver.sensitivity.same_mesh.found_again`
+    scaled, now : the cases as the caller states them, and as they are solved
+    nodes : as in :func:`~solver.sensitivity.same_mesh.solve_again`
     """
     others, cases = [name for name in inputs if name != scaled.control], as_cases(now.written)
-    iterated = found_again(cases, nodes, solution.a, now.written.rtol)
-    asked = moved_cases(scaled, others, copies=1)  # the radius is moved in the last pair
-    solved_as = solved_cases(asked, np.tile(solution.model_used, 2 * (len(others) + 1)))
-    answers, at_x = _answers(Solved.of(iterated.at), solved_as, asked, x)
+    iterated = solve_again(cases, nodes, solution.a, now.written.rtol)
+    moved = moved_cases(scaled, others, copies=1)  # the radius is moved in the last pair
+    solved_as = solved_cases(moved, np.tile(solution.model_used, 2 * (len(others) + 1)))
+    answers, at_x = _answers(Solved.of(iterated.at), solved_as, moved, x)
     by = {name: slope_of(np.log(np.abs(values)), len(others) + 1) for name, values in answers.items()}
-    p0 = quantities(iterated.at).p0 * now.E2  # as p(0) of the profile, which has no logarithm at the edge
+    p0 = quantities(iterated.at).p0 * now.E2  # not by the logarithm, to agree with the profile, which is 0 at the edge
     by["p0"] = slope_of(answers["p0"], len(others) + 1) / p0
     order, control = [others.index(name) if name in others else -1 for name in inputs], by[scaled.control]
     logs = {name: _under(control, slopes)[order] for name, slopes in by.items()}
@@ -51,21 +51,23 @@ def derivatives_of(scaled, now: SolvedCases, solution, inputs, nodes, x):
 
 
 def _under(control, slopes):
-    """Derivatives under the control by its logarithm, last, and by the other inputs, (k, B, ...), from `slopes` at the
-    radius, by ln a last; `control` (k, B): those of the logarithm of the control."""
+    """Derivatives (k, B, ...) under the control: by the other inputs, and last by the logarithm of the control.
+    `slopes` are the derivatives at fixed radius, and last those by ln a; `control` (k, B) are those of the logarithm of
+    the control."""
     control = control.reshape(*control.shape, *[1] * (slopes.ndim - 2))
     along = slopes[-1:] / control[-1:]
     return np.concatenate([slopes[:-1] - control[:-1] * along, along])
 
 
-def _answers(start, solved_as: SolvedCases, asked, x):
-    """Quantity -> (m B,), and p and λ (2, m B, c), of m blocks of the B cases of `start` with an input moved; the
-    radius is moved in the last two. `asked`, `solved_as` : as they were asked for, and as they are solved."""
+def _answers(start, solved_as: SolvedCases, moved, x):
+    """Quantity -> (m B,), and p and λ (2, m B, c), of m blocks of the B cases of `start`, each with an input moved; in
+    the last two blocks it is the radius. `moved`, `solved_as` : the moved cases as the caller states them, and as they
+    are solved."""
     cases, size = as_cases(solved_as.written), len(start.at.state.eta)
-    eta = np.tile(start.at.state.eta, len(asked) // size)
+    eta = np.tile(start.at.state.eta, len(moved) // size)
     eta[-2 * size :] += np.repeat([STEP, -STEP], size)
     bent, added = start.at.cases.law.bent(start.at.state.y, start.at.curve.q), solved_as.added.any()
-    answers, at_x = {name: np.empty(len(asked)) for name in QUANTITIES}, np.empty((2, len(asked), len(x)))
+    answers, at_x = {name: np.empty(len(moved)) for name in QUANTITIES}, np.empty((2, len(moved), len(x)))
     for blocks, contacts in moved_contacts(start, cases, eta):
         rows = (np.array(blocks)[:, None] * size + np.arange(size)).ravel()
         values, E2 = quantities(contacts.at)._asdict(), solved_as.E2[rows]
@@ -78,8 +80,8 @@ def _answers(start, solved_as: SolvedCases, asked, x):
         q, at_x[1, rows] = profiles(start, contacts, x)
         p0 = values["p0"][:, None]
         at_x[0, rows] = np.where((x == 0) & np.isfinite(p0), p0, unit * q)
-        if added:  # to all cases: they have one law
-            p, law = unit * between(start, contacts, np.append(area_rule()[0], 1.0))[0], law_of(asked.take(rows))
+        if added:  # then for all cases, since they have one law
+            p, law = unit * between(start, contacts, np.append(area_rule()[0], 1.0))[0], law_of(moved.take(rows))
             values |= spots_under(law, p[:, -1], p[:, :-1])
             at_x[1, rows] = law.at(at_x[0, rows]).lam
         for name, array in answers.items():

@@ -1,8 +1,8 @@
-"""Derivatives by moved inputs: each case solved again with each input a little larger and a little smaller.
+"""Derivatives by moved inputs: each case is solved again with each input a little larger and a little smaller.
 
-It takes 2 k solutions, which have errors. It is for cases whose equation is not found again, such as those on panels
-that would be chosen otherwise a second time, and for those that :mod:`.step` does not know: smooth punches of other
-shapes than a paraboloid, what sticks, and flat punches.
+This takes 2 k solutions, which have errors. It is for cases whose equation :mod:`.same_mesh` does not reproduce, such
+as those whose panels would be chosen differently, and for cases that :mod:`.step` does not cover: smooth punches that
+are not paraboloids, contacts with adhesion, and flat punches.
 """
 
 import numpy as np
@@ -10,19 +10,19 @@ import numpy as np
 from ..solve import solve
 from .inputs import moved_cases, slope_of
 
-#: By how much an input is moved, and the rtol of the moved cases. The error is about _RTOL/_STEP, and _STEP². Where
-#: `fine` is True the inputs are moved twice as far as well, which leaves _STEP⁴: results of a cone, for example, change
+#: The step of an input, and the rtol of the moved cases. The error is about the sum of _RTOL/_STEP and _STEP². With
+#: `fine` the inputs are also moved by twice the step, which leaves _STEP⁴: the results of a cone, for example, change
 #: ten times as fast as its angle.
 _STEP, _RTOL = 1e-3, 1e-9
-#: Numbers that pass through 0 where a punch sticks, and the powers of E2* and R of their units. Near 0 a step goes to
-#: the other side, and the logarithm says nothing.
+#: Numbers that pass through 0 under adhesion, and the powers of E2* and R in their units. Near 0 a step may change the
+#: sign, and the logarithm is meaningless.
 SIGNED = {"P": (1, 2), "D": (0, 1), "p0": (1, 0), "p_max": (1, 0)}
 
 
 def by_differences(problem, inputs, quantities, x, fine=False):
-    """Quantity -> (k, B), derivatives of the logarithm of its size; those of p and λ at the radii x, (2, k, B, m); and
-    quantity -> (k, B), those of :data:`SIGNED` numbers themselves. `problem` is in units R = E2* = 1; NaN where a moved
-    case has no numbers, or infinite ones."""
+    """Quantity -> (k, B), derivatives of ln |quantity|; derivatives of p and λ at the radii x, (2, k, B, m); and
+    quantity -> (k, B), derivatives of the :data:`SIGNED` numbers themselves. They are NaN where a moved case has no
+    numbers, or infinite ones. `problem` is in units R = E2* = 1."""
     logs, profiles, slopes = _by_step(problem, inputs, quantities, x, _STEP)
     if fine:
         wide, wide_profiles, wide_slopes = _by_step(problem, inputs, quantities, x, 2 * _STEP)

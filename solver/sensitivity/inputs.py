@@ -1,6 +1,6 @@
-"""The inputs by which there are derivatives, the same cases with each of them moved, and the differences.
+"""The inputs by which there are derivatives, the cases with each of these moved, and the differences.
 
-All derivatives are by the logarithm of an input; by a Poisson ratio itself.
+All derivatives are by the logarithm of an input, except those by a Poisson ratio, which are by the ratio itself.
 """
 
 import numpy as np
@@ -8,23 +8,23 @@ import numpy as np
 from ..layers import numbers_of
 from ..parameters import CONTROL, is_ratio
 
-#: An input is moved up and down by this part of itself, a Poisson ratio by this number. The curvature then adds 1e-8
-#: times a third derivative, and rounding 1e-12 to 1e-9.
+#: An input is moved up and down by this part of itself, a Poisson ratio by this number. The error by the third
+#: derivative is then 1e-8 times this, and that by rounding 1e-12 to 1e-9.
 STEP = 1e-4
-#: Numbers that are no inputs: they say how a case is solved, or are units, whose effect follows from dimensions.
+#: Numbers that are not inputs: they control how a case is solved, or are units, whose effect follows from dimensions.
 _NO_INPUTS = {"accuracy", "k", "rtol", "R", "E2"}
 
 
 def inputs_of(problem):
-    """Names of all inputs, the control first: numbers that have an interval."""
+    """Names of all inputs, which are the numbers with an interval; the control is the first."""
     rows = problem.known.table(numbers_of(problem.parameters))
     numbers = [name for name, row in rows.items() if row.interval and not row.whole and name not in _NO_INPUTS]
     return (problem.control, *numbers)
 
 
 def moved_cases(problem, inputs, step=STEP, copies=0):
-    """:class:`~solver.problem.Problem` of 2 (k + copies) B cases: for each of the k inputs all cases with it moved up,
-    then all with it moved down; and behind them so many pairs of unmoved ones."""
+    """:class:`~solver.problem.Problem` of 2 (k + copies) B cases: for each of the k inputs, all cases with this input
+    moved up, then all with it moved down. `copies` pairs of unmoved blocks follow."""
     size, k = len(problem), len(inputs)
     rows = problem.take(np.tile(np.arange(size), 2 * (k + copies)))
     sign = np.array([1.0, -1.0])[:, None]
@@ -41,7 +41,7 @@ def moved_cases(problem, inputs, step=STEP, copies=0):
 
 
 def slope_of(values, k, step=STEP):
-    """Derivatives (k, B, ...) from values (2 k B, ...) of :func:`moved_cases`; 0 where nothing changes, infinite values
-    too."""
+    """Derivatives (k, B, ...) from values (2 k B, ...) of :func:`moved_cases`; 0 where nothing changes, even if the
+    values are infinite."""
     up, down = np.moveaxis(values.reshape(k, 2, len(values) // (2 * k), *values.shape[1:]), 1, 0)
     return np.where(up == down, 0.0, (up - down) / (2 * step))

@@ -1,4 +1,4 @@
-"""Pressure and λ between the nodes: of profiles, and of Ar/An where λ bends."""
+"""Pressure and λ between the nodes: for profiles, and for Ar/An if λ has a kink."""
 
 import numpy as np
 
@@ -6,25 +6,25 @@ from ..numerics.mesh import gauss_rule
 from ..rough.results import interpolate, off_edge, stiffness_between
 from .step import moved_curve
 
-#: Gauss points between any two nodes at which a λ that bends is summed. With 5 points the derivatives of Ar/An are as
-#: right as the other ones (tests/sensitivity/test_sensitivities.py).
+#: Gauss points between neighbouring nodes for the integral of a λ with a kink. With 5 points the derivatives of Ar/An
+#: are as accurate as the others (tests/sensitivity/test_sensitivities.py).
 _FEW = 5
 
 
 def between(start, contacts, s):
     """q and λ (m B, c) of moved cases at points s (c,) > 0.
 
-    The equation of :func:`~solver.rough.results.interpolate` is solved for the contacts before the step, and there
-    one Newton step is taken. Its right-hand side changes as bodies and asperities yield at the nodes: that change is a
-    polynomial, and small at the edge as the right-hand side is.
+    The equation of :func:`~solver.rough.results.interpolate` is solved for the contacts before the step, and one Newton
+    step follows. Its right-hand side changes with the displacements of bodies and asperities at the nodes. That change
+    is a polynomial, and is small at the edge like the right-hand side.
     """
     ev, now = start.at, contacts.at
     law, inside = now.cases.law, off_edge(s, now.cases.law.rough)
     blocks = len(now.state.eta) // len(ev.state.eta)
     y = interpolate(ev, inside)
     curve = ev.cases.law.evaluate(y)
-    (linear, yields), (moved_linear, moved_yields) = _at(ev, inside), _at(now, inside)
-    right = np.tile(linear * curve.q + ev.Z * curve.g - yields, (blocks, 1)) + moved_yields
+    (linear, part), (moved_linear, moved_part) = _at(ev, inside), _at(now, inside)
+    right = np.tile(linear * curve.q + ev.Z * curve.g - part, (blocks, 1)) + moved_part
     curve = moved_curve(law, ev.cases.law, y, curve)
     y = np.tile(y, (blocks, 1))
     missed = moved_linear * curve.q + now.Z * curve.g - right
@@ -34,8 +34,8 @@ def between(start, contacts, s):
 
 
 def _at(ev, s):
-    """X κ + Y (B, c) at the points s (c,); and there the polynomial (B, c) through what this and asperities make of the
-    pressures at the nodes."""
+    """X κ + Y (B, c) at the points s (c,); and (X κ + Y) q + Z g there, (B, c), where q and g are the polynomials
+    through their values at the nodes."""
     stiff, basis, curve = ev.X * stiffness_between(ev.mesh, s), ev.mesh.basis(s).T, ev.curve
     return stiff + ev.Y, (ev.Y * curve.q + ev.Z * curve.g) @ basis + stiff * (curve.q @ basis)
 
@@ -50,6 +50,6 @@ def profiles(start, contacts, x):
 
 
 def area_of_corners(start, contacts):
-    """Ar/An (m B,) of cases whose λ bends."""
+    """Ar/An (m B,) of cases whose λ has a kink."""
     s, w = gauss_rule(_FEW, (0.0, *start.at.mesh.s.tolist()))
     return 2 * between(start, contacts, s)[1] @ (w * s)

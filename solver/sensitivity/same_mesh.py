@@ -1,4 +1,4 @@
-"""The solved equation of cases whose radius is known: on the mesh that gave the solution, by a few Newton steps."""
+"""The solved equation of cases whose radius is known, on the mesh of their solution, by a few Newton steps."""
 
 import numpy as np
 
@@ -12,25 +12,25 @@ from ..rough.start import first_guess
 from ..scaling import as_cases, kinds_of_laws
 from ..ways import by_equation
 
-#: The closed form of the smooth half-space is a polynomial in s that the coarsest mesh has.
+#: The closed form of the smooth half-space is a polynomial in s, which the coarsest mesh represents exactly.
 _LEAST = LADDER[0]
 
 
 def meshes(solution, problem):
-    """Number of nodes (B,) of the one panel on which each case was solved; 0: on several panels."""
+    """Number of nodes (B,) of the one panel on which each case was solved; 0 for cases on several panels."""
     nodes = np.maximum(solution.nodes, _LEAST)
     return np.where((problem.nodes > 0) | np.isin(nodes, LADDER), nodes, 0)
 
 
 def without_state(problem):
-    """(B,) bool: cases whose equation is not that of :mod:`..rough`: smooth punches of other shapes than a
-    paraboloid, what sticks, and flat punches."""
+    """(B,) bool: cases whose equation is not that of :mod:`..rough`: smooth punches that are not paraboloids, contacts
+    with adhesion, and flat punches."""
     return ~by_equation(problem, "nodes")
 
 
 def stacks(problem, nodes, a, most, *words):
-    """Yield the indices of cases of one law, base, shape and mesh, and of the same further `words` (B,), and their
-    number of nodes; 0: of one case on panels. No stack has more than `most` unknowns."""
+    """Yield stacks: the indices of cases with one law, base, shape and mesh, and with the same further `words` (B,);
+    and their number of nodes, which is 0 for a single case on panels. No stack has more than `most` unknowns."""
     kinds = nodes.astype(str), problem.micro, problem.base, problem.shape, kinds_of_laws(problem).astype(str)
     kinds = np.stack([*kinds, *words])
     for kind in np.unique(kinds, axis=1).T:
@@ -40,9 +40,9 @@ def stacks(problem, nodes, a, most, *words):
         yield from ((part, count) for part in np.array_split(index, -(-len(index) * count // most) or len(index)))
 
 
-def found_again(cases, nodes, a, rtol):
-    """:class:`~solver.rough.newton.Iterated` of cases in units R = E2* = 1: at the radii a (B,), on `nodes` nodes; 0:
-    of one case under its control, on panels of its own, some of which are kept from when it was solved."""
+def solve_again(cases, nodes, a, rtol):
+    """:class:`~solver.rough.newton.Iterated` of cases in units R = E2* = 1, at the radii a (B,) on `nodes` nodes. With
+    0 nodes: that of a single case under its control, on panels of its own, whose tables may still be in the cache."""
     if not nodes:
         return solve_on_panels(cases, rtol[0], budget_of(cases))[0]
     mesh, cases = mesh_of(nodes), cases._replace(control="a", value=a)
@@ -50,7 +50,7 @@ def found_again(cases, nodes, a, rtol):
 
 
 def same(ev, solution, rtol):
-    """(B,) bool: `ev` is the equation at the radius and the depth of `solution`, to rtol (B,). It may be another where
-    there are two solutions, or other panels."""
+    """(B,) bool: whether `ev` has the radius and the depth of `solution`, to rtol (B,). It may differ where there are
+    two solutions, or if the panels are different."""
     results = quantities(ev)
     return np.maximum(np.abs(results.a / solution.a - 1), np.abs(results.D / solution.D - 1)) <= rtol

@@ -1,9 +1,9 @@
-"""Derivatives of the answers by the inputs: of each solved contact one Newton step for each input moved.
+"""Derivatives of the answers by the inputs: one Newton step of each solved contact for each moved input.
 
-The equation of each case is solved once more on its mesh, at its radius. :mod:`.step` has the contacts of the same
-radius with an input moved up and down, and the differences of their answers are derivatives at that radius. With those
-by the radius itself, the control says how the radius changes. Where that fails, the case is solved with each input
-moved: :mod:`.differences`.
+The equation of each case is solved once more on its mesh, at its radius. :mod:`.step` makes the contacts with the same
+radius and an input moved up and down. The differences of their answers are derivatives at fixed radius. From these and
+the derivatives by the radius follows, with the control, the change of the radius. If that fails, the case is solved
+with each input moved: :mod:`.differences`.
 """
 
 from collections.abc import Sequence
@@ -26,11 +26,11 @@ from .inputs import inputs_of
 from .same_mesh import meshes, stacks, without_state
 from .solved_cases import solved_cases
 
-#: Where a number changes by more than so many times itself with ln input it is taken to be near 0.
+#: A number counts as near 0 if its derivative by ln input is more than this many times the number itself.
 _NEAR_0 = 5.0
-#: Quantities whose sensitivity is unknown where they are 0, as a load under adhesion may be, or infinite, or unknown.
+#: Quantities whose sensitivity is NaN where they are infinite, NaN, or 0, as a load under adhesion may be.
 _NEVER_0 = tuple(name for name in QUANTITIES if name != "A0")
-#: Most unknowns of a stack: with k inputs it has 2 (k + 1) moved contacts.
+#: Most unknowns of a stack: with k inputs each of its contacts has 2 (k + 1) moved ones.
 _STACK = STACK // 8
 
 
@@ -39,10 +39,11 @@ class Sensitivities(NamedTuple):
 
     Attributes
     ----------
-    inputs : their names, the control first
-    logs : quantity -> (B, k), d ln quantity/d ln input; by a Poisson ratio d ln quantity/d ratio. 0 where an input does
-        not act, or is 0; NaN of a case without numbers. A smooth punch has 0 for A0, which is 0
-    slopes : quantity -> (B, k), d quantity/d ln input in its unit, also where the quantity is 0
+    inputs : names of the inputs, the control first
+    logs : quantity -> (B, k), d ln quantity/d ln input; for a Poisson ratio d ln quantity/d ratio. 0 where an input
+        does not act, or is 0; NaN for a case without numbers. For a smooth punch the derivatives of A0, which is 0, are
+        0
+    slopes : quantity -> (B, k), d quantity/d ln input in the unit of the quantity, even where the quantity is 0
     p, lam : (B, k, m), d p/d ln input at fixed r/a, in the unit of p, and d λ/d ln input
     """
 
@@ -62,9 +63,9 @@ def sensitivities(
 
     Parameters
     ----------
-    problem, solution : the cases, and what `solve` has made of them
+    problem, solution : the cases, and their solution by `solve`
     x : (m,), radii r/a in [0, 1] of the profiles
-    inputs : some names of parameters that are numbers, and of the control; None: all
+    inputs : names of the control and of parameters that are numbers; None: all of them
 
     Returns
     -------
@@ -89,8 +90,8 @@ def sensitivities(
         part, ended = problem.take(index), solution.take(index)
         ended = replace(ended, a=ended.a / part.R, D=ended.D / part.R)
         by_name, at_x, slopes = _of_solved(dimensionless(part), ended, acting, x)
-        for found, into in (by_name, logs), (slopes, signed):
-            for name, values in found.items():
+        for derivatives, into in (by_name, logs), (slopes, signed):
+            for name, values in derivatives.items():
                 into[name][np.ix_(index, places)] = values.T
         shapes[np.ix_((0, 1), index, places)] = np.moveaxis(at_x, 1, 2)
     near = {name: _near_0(problem, getattr(solution, name), name, values) for name, values in signed.items()}
@@ -105,17 +106,17 @@ def sensitivities(
 
 
 def _near_0(problem, value, name, slopes):
-    """(B, k) bool, where a number with the `value` (B,) is near 0, or 0, under adhesion; and its `slopes` (B, k) in its
+    """(B, k) bool, whether under adhesion a number with the `value` (B,) is 0 or near 0; and its `slopes` (B, k) in its
     unit."""
     of_E2, of_R = SIGNED[name]
     straight = slopes * (problem.E2**of_E2 * problem.R**of_R)[:, None]
-    sticks, size = (problem.w_adhesion > 0)[:, None], np.abs(value)[:, None]
-    return sticks & ((np.abs(straight) > _NEAR_0 * size) | (size == 0) & np.isfinite(straight)), straight
+    adheres, size = (problem.w_adhesion > 0)[:, None], np.abs(value)[:, None]
+    return adheres & ((np.abs(straight) > _NEAR_0 * size) | (size == 0) & np.isfinite(straight)), straight
 
 
 def _acts(problem, name):
-    """Whether an input changes the answer of some case: it is used, and neither left out nor, but for Poisson ratios,
-    0 everywhere."""
+    """Whether an input changes the answer of some case: whether it is used, given, and not 0; a Poisson ratio may be
+    0."""
     if name == problem.control:
         return True
     values = getattr(problem, name)
@@ -124,19 +125,20 @@ def _acts(problem, name):
 
 
 def _of_solved(scaled, solution, inputs, x):
-    """Quantity -> (k, B), and (2, k, B, m), of solutions that have numbers; and quantity -> (k, B) of SIGNED ones by
-    differences. `scaled`, and a and D of the `solution`, are in units R = E2* = 1."""
+    """The answers of :func:`~.differences.by_differences` for solutions that have numbers; SIGNED numbers have
+    derivatives only where these are by differences. `scaled`, and a and D of the `solution`, are in units R = E2* =
+    1."""
     k, size = len(inputs), len(scaled)
     logs = {name: np.full((k, size), np.nan) for name in QUANTITIES}
     slopes = {name: np.full((k, size), np.nan) for name in SIGNED}
     shapes, left = np.full((2, k, size, len(x)), np.nan), np.ones(size, dtype=bool)
-    # what asperities press on stays, also where a moved h is below the pitch
+    # asperities press on the same body when h is moved, even if it is then below the pitch
     scaled = scaled.but(asperities_on=np.where(scaled.feels_layer(), "layer", "half_space"))
     now, stateless = solved_cases(scaled, solution.model_used), without_state(scaled)
-    again = np.flatnonzero(~stateless)
-    cases = now.written.take(again), meshes(solution, scaled)[again], solution.a[again]
-    for rows, nodes in stacks(*cases, _STACK, scaled.micro[again]):
-        index = again[rows]
+    by_step = np.flatnonzero(~stateless)
+    cases = now.written.take(by_step), meshes(solution, scaled)[by_step], solution.a[by_step]
+    for rows, nodes in stacks(*cases, _STACK, scaled.micro[by_step]):
+        index = by_step[rows]
         part = scaled.take(index), now.take(index), solution.take(index)
         good, derivatives, at_x = derivatives_of(*part, inputs, nodes, x)
         left[index[good]] = False

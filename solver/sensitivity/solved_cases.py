@@ -1,4 +1,4 @@
-"""The problem that was solved for each case: of a named base, in the units in which its equation is written."""
+"""The problem that was solved for each case: with a named base, in the units in which its equation is written."""
 
 from typing import NamedTuple
 
@@ -19,12 +19,12 @@ _SMOOTH = (Model.SMOOTH_LAYER_ALONE, Model.SMOOTH_THIN_LAYER)
 
 @batch.of_cases
 class SolvedCases(NamedTuple):
-    """Cases whose base is the one that was used.
+    """Cases with the base on which they were solved.
 
-    named : Problem, with the name of that base
-    written : the same in units R = E2* = 1 of its own, under a rigid punch where that is the same contact
-    E2 : (B,), the modulus that is 1 there
-    added : (B,) bool, a smooth punch was solved, and the asperities were added afterwards
+    named : Problem with the name of that base
+    written : the same problem in its own units R = E2* = 1; under a rigid punch if that makes the same contact
+    E2 : (B,), the modulus that is 1 in `written`
+    added : (B,) bool, whether a smooth punch was solved, and the asperities were added afterwards
     """
 
     named: Problem
@@ -35,7 +35,7 @@ class SolvedCases(NamedTuple):
 
 def solved_cases(scaled, used):
     """:class:`SolvedCases` of a problem in units R = E2* = 1; used : (B,), the :class:`~solver.solution.Model` of each
-    case. The base "auto" stays at the model that it chose."""
+    case. Cases of the base "auto" keep the model that was chosen."""
     auto, thin, exact = is_chosen(scaled.base), np.isin(used, _THIN), np.isin(used, _EXACT)
     alone, added = auto & ~thin & ~exact, auto & np.isin(used, _SMOOTH) & scaled.rough()
     of_model = np.select([thin, exact], ["thin_layer", "layered"], "half_space")

@@ -1,15 +1,15 @@
 """One Newton step: from solved contacts to the same contacts with an input moved a little, at the same radius.
 
-With the equation F(q, t) = 0 there is that of its slope along the branch of solutions, t = dq/d ln a:
+There are two equations, that of the contact and that of its slope t = dq/d ln a along the branch of solutions:
 
     F = 0,      (dF/dq) t + dF/d ln a = 0.
 
-Both are evaluated for the moved input at the solved q and t, and what they miss is taken away by the inverse of the
-solved matrix. What remains is of second order in the step, and the same for the input moved up and down: it cancels in
+Both are evaluated for the moved input at the solved q and t, and the inverse of the solved matrix removes their
+residuals. The remaining error is of second order in the step, and equal for the input moved up and down: it cancels in
 the difference.
 
-Radii are fixed because kinks of a punch then stay where they are, or move with an input by a known distance. So do the
-ends of the panels of a case that has kinks. The radius itself is moved like an input.
+The radius is fixed, because the kinks of a punch then stay in place, or move with an input by a known distance. So do
+the ends of the panels of a case with kinks. The radius itself is moved like an input.
 """
 
 from typing import NamedTuple
@@ -21,14 +21,18 @@ from ..numerics import batch
 from ..numerics.linalg import solve_stack
 from ..numerics.mesh import panel_mesh
 from ..rough.equation import Evaluation, Unknowns, evaluate, jacobian
-from ..rough.panels import ends_of, followed
+from ..rough.panels import ends_of, stretch
 from ..rough.results import quantities
 from .inputs import STEP
 
 
 class Solved(NamedTuple):
-    """The equation `at` the solutions of B cases; the inverse (B, n, n) of dF/dq over X; and dq/d ln a (B, n) along the
-    branch of solutions."""
+    """The solved equation of B cases.
+
+    at : the equation at the solutions
+    inverse : (B, n, n), the inverse of dF/dq over X
+    tangent : (B, n), dq/d ln a along the branch of solutions
+    """
 
     at: Evaluation
     inverse: np.ndarray
@@ -41,23 +45,25 @@ class Solved(NamedTuple):
         inverse = np.ascontiguousarray(solve_stack(at.operator.K, diagonal, unit))
         return cls(at, inverse, -np.einsum("bij,bj->bi", inverse, dF_deta))
 
-    def removes(self, missed):
-        """The change of q, or of its slope, (m B, n), that removes what equations of moved cases miss, over X."""
+    def correction(self, residual):
+        """The change of q, or of its slope, (m B, n), whose subtraction removes the `residual` over X, (m B, n), of the
+        equations of moved cases."""
         size, n = self.tangent.shape
-        change = self.inverse @ missed.reshape(-1, size, n).transpose(1, 2, 0)
-        return change.transpose(2, 0, 1).reshape(missed.shape)
+        change = self.inverse @ residual.reshape(-1, size, n).transpose(1, 2, 0)
+        return change.transpose(2, 0, 1).reshape(residual.shape)
 
 
 class Moved(NamedTuple):
-    """The equation `at` moved cases, m blocks of the B solved ones, and their `tangent` (m B, n)."""
+    """The equation `at` the solutions of moved cases, m blocks of the B solved ones, and their `tangent` (m B, n)."""
 
     at: Evaluation
     tangent: np.ndarray
 
 
 def moved_contacts(start, cases, eta, count=1):
-    """Yield numbers of blocks of the moved `cases`, at ln a = `eta` (m B,), and :class:`Moved`: all blocks together, or
-    those of a mesh. `count`: of steps with the one inverse, each of which is right to one more order."""
+    """Yield the numbers of blocks of the moved `cases`, at ln a = `eta` (m B,), and their :class:`Moved`: all blocks
+    together, or those that share a mesh. `count`: number of steps with the same inverse, each of which adds an
+    order."""
     size = len(start.at.state.eta)
     changed = _changed(start.at, cases, eta)
     for mesh, blocks in _meshes(start.at, cases, eta).items():
@@ -73,16 +79,16 @@ def _after_steps(start, cases, eta, operator, count):
     curve = moved_curve(cases.law, before.cases.law, before.state.y, before.curve)
     now = evaluate(cases, Unknowns(y, eta), operator.mesh, operator, curve)
     for _ in range(count):
-        y = cases.law.limit(y - start.removes(now.F / now.X) / now.curve.dq, y)
+        y = cases.law.limit(y - start.correction(now.F / now.X) / now.curve.dq, y)
         now = evaluate(cases, Unknowns(y, eta), operator.mesh, operator)
     diagonal, dF_deta = jacobian(now)
-    missed = operator.products(tangent)[0] + diagonal * tangent + dF_deta
-    return Moved(now, tangent - start.removes(missed))
+    residual = operator.products(tangent)[0] + diagonal * tangent + dF_deta
+    return Moved(now, tangent - start.correction(residual))
 
 
 def moved_curve(law, before, y, curve):
-    """The :class:`~solver.laws.law.Curve` of moved laws at the y (B, c) at which the solved ones, `before`, have
-    `curve`: computed anew for the blocks in which the numbers of the law have changed. It is most of the work of a law
+    """The :class:`~solver.laws.law.Curve` of moved laws at y (B, c), where the solved laws, `before`, have `curve`. It
+    is computed only for the blocks in which the numbers of the law have changed, since it is most of the work for a law
     that is a table."""
     size, blocks = len(y), len(law.p_star) // len(y)
     changed = np.zeros(blocks, dtype=bool)
@@ -97,7 +103,7 @@ def moved_curve(law, before, y, curve):
 
 
 def on_kinks(ev):
-    """Whether `ev` is of one case whose panels have ends at kinks of the punch, in the contact."""
+    """Whether `ev` belongs to a single case whose panels have ends at kinks of the punch inside the contact."""
     return ev.mesh.order < ev.mesh.n and len(_ends(ev)) > 2
 
 
@@ -106,8 +112,9 @@ def _ends(ev):
 
 
 def branch_slope(start, cases, eta):
-    """d ln P/d ln D (m,) of moved cases whose panels follow kinks: there the slope at a fixed place is infinite. It is
-    the difference of contacts of two radii, by two steps each: of a second derivative no second order may be missed."""
+    """d ln P/d ln D (m,) of moved cases whose panels follow kinks, at which the slope for a fixed place is infinite. It
+    is from the difference of contacts with two radii. Each takes two steps: the result is a second derivative, and
+    needs terms of second order."""
     logs = np.empty((2, 2, len(eta)))
     for end, sign in zip(logs, (1, -1), strict=True):
         for blocks, contacts in moved_contacts(start, cases, eta + sign * STEP, count=2):
@@ -118,7 +125,7 @@ def branch_slope(start, cases, eta):
 
 
 def _changed(ev, cases, eta):
-    """(m,) bool: the blocks whose body or radius is another than that of the solved cases."""
+    """(m,) bool: the blocks whose body or radius differs from that of the solved cases."""
     size = len(ev.state.eta)
 
     def differ(values, old):
@@ -140,8 +147,8 @@ def _numbers(body):
 
 
 def _meshes(ev, cases, eta):
-    """Mesh -> its blocks: the mesh of the solved cases; of one case whose panels end at kinks, meshes whose panels
-    follow the kinks of each block."""
+    """Mesh -> its blocks. There is one mesh, that of the solved cases, unless panels end at kinks: then the panels of
+    each block follow its kinks."""
     mesh, blocks = ev.mesh, range(len(eta) // len(ev.state.eta))
     if not on_kinks(ev):
         return {mesh: list(blocks)}
@@ -149,14 +156,14 @@ def _meshes(ev, cases, eta):
     for block in blocks:
         ends = ends_of(cases.shape.take([block]), float(np.exp(eta[block])))
         follows = len(ends) == len(before) and ends != before
-        stretched = panel_mesh(mesh.order, followed(mesh.breaks, before, ends)) if follows else mesh
+        stretched = panel_mesh(mesh.order, stretch(mesh.breaks, before, ends)) if follows else mesh
         meshes.setdefault(stretched, []).append(block)
     return meshes
 
 
 def _operator(ev, cases, eta, mesh, changed):
-    """The operator of moved cases on a mesh: anew of the blocks that have `changed`, (m,) bool, and else that of the
-    solved ones."""
+    """The operator of moved cases on a mesh: a new one for the blocks that have `changed`, (m,) bool, and that of the
+    solved cases for the others."""
     size = len(ev.state.eta)
     if cases.body.kernel is None:  # one operator for all bodies and radii
         return cases.body.at(np.exp(eta), mesh)

@@ -1,4 +1,4 @@
-"""Shapes of indenters, one a file; the protocol is in :mod:`.shape`.
+"""Shapes of indenters; each is a file. The protocol is in :mod:`.shape`.
 
 docs/own_shape.md says how to add one.
 """
@@ -17,18 +17,18 @@ PARABOLOID = paraboloid.KIND.name
 
 
 def shape_of(problem) -> Shape:
-    """The :class:`~.shape.Shape` of the cases of a problem in units R = 1, which have one `shape`."""
+    """The :class:`~.shape.Shape` of the cases of a problem in units R = 1, all of which have the same `shape`."""
     kind = problem.known.shapes[str(problem.shape[0])]
     return kind.of(**{name: getattr(problem, name) for name in kind.parameters}, size=len(problem))
 
 
 def shaped(problem):
-    """(B,) bool: the cases of a problem that have another shape than the paraboloid."""
+    """(B,) bool: the cases of a problem whose shape is not the paraboloid."""
     return problem.shape != PARABOLOID
 
 
 def is_flat(problem):
-    """(B,) bool: the cases of a problem whose contact radius is that of the punch, whatever the load."""
+    """(B,) bool: the cases of a problem whose contact radius is that of the punch under any load."""
     flat_ones, others = np.zeros(len(problem), dtype=bool), shaped(problem)
     for word in np.unique(problem.shape[others]).tolist():
         index = np.flatnonzero(problem.shape == word)
@@ -40,7 +40,7 @@ BUILT_IN = (
     *(paraboloid.KIND, sphere.KIND, cone.KIND, *cone.PYRAMIDS, power.KIND, frustum.KIND, blunt_cone.KIND, flat.KIND),
     rounded_flat.KIND,
 )
-#: The names of those whose profile has the radius R in it.
+#: The names of the shapes whose profile depends on the radius R.
 ROUND = tuple(kind.name for kind in BUILT_IN if kind.round)
 #: Name -> :class:`~.shape.Kind` of all shapes of this package.
 SHAPES = MappingProxyType({kind.name: kind for kind in BUILT_IN})

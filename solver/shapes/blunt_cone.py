@@ -1,4 +1,4 @@
-"""The blunt cone: a round tip, and from r = b on the cone that touches it there.
+"""The blunt cone: a round tip, which passes smoothly into a cone at r = b.
 
 The tip is a paraboloid r²/(2ρ), which has the slope of the cone at b = ρ cot α; or a ball of radius ρ, which has it at
 b = ρ cos α.
@@ -20,7 +20,8 @@ TIP = Parameter("paraboloid", ("paraboloid", "sphere"))
 
 @batch.of_cases
 class BluntCone(NamedTuple):
-    """The :class:`~.shape.Shape` of tips of radius `rho` and slopes `cot`; `ball` (B,) bool, the tip is a ball."""
+    """The :class:`~.shape.Shape` of blunt cones: radius `rho` of the tip and slope `cot` of the cone, (B,); `ball` (B,)
+    bool, whether the tip is a ball."""
 
     rho: np.ndarray
     cot: np.ndarray
@@ -36,12 +37,12 @@ class BluntCone(NamedTuple):
 
     @property
     def b(self):
-        """Where the tip ends, (B,)."""
+        """The radius r (B,) at which the tip ends."""
         return self.rho * self.cot / np.where(self.ball, np.hypot(1.0, self.cot), 1.0)
 
     @property
     def side(self):
-        """sqrt(ρ² - b²) (B,) of a ball."""
+        """sqrt(ρ² - b²), (B,), for a ball."""
         return self.rho / np.hypot(1.0, self.cot)
 
     def height(self, r):
@@ -78,7 +79,7 @@ class BluntCone(NamedTuple):
     def drop(self, a, s):
         r, inwards = radii_at(a, s)
         b, radius = column(self.b), column(a)
-        outer = np.minimum(radius, b)  # where the tip ends within the contact
+        outer = np.minimum(radius, b)  # the radius at which the tip or the contact ends
         cone = np.minimum(inwards, np.maximum(radius - b, 0.0))
         along = np.where(r < outer, np.where(radius < b, inwards, b - r), 0.0)  # outer - r
         chord = along * (outer + np.minimum(r, outer))  # outer² - r²

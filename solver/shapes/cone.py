@@ -1,4 +1,4 @@
-"""The cone f = r cot α, and the pyramids that are taken for cones of the same area: A = π tan²α f²."""
+"""The cone f = r cot α, and the pyramids that are modelled as cones of the same area, A = π tan²α f²."""
 
 from typing import NamedTuple
 
@@ -10,8 +10,8 @@ from .shape import Kind, column, no_kinks, radii_at
 
 #: Angle α from the axis to the side of a cone, in degrees.
 HALF_ANGLE = Parameter(interval="(0, 90)")
-#: Area of Berkovich's and Vickers' pyramids over the square of the depth; and the angle, in degrees, of the cone that
-#: has the area of the corner of a cube, atan(sqrt(2.598/π)).
+#: Area of the Berkovich and Vickers pyramids over the square of the depth; and the angle, in degrees, of the cone with
+#: the area of the corner of a cube, atan(sqrt(2.598/π)).
 _AREA, _CUBE_CORNER = 24.5, 42.2784
 
 
@@ -68,7 +68,7 @@ def _of_angle(half_angle, size):
 
 
 def _pyramid(name, degrees, words):
-    """The kind of a pyramid that is taken for a cone of a fixed angle."""
+    """The kind of a pyramid that is modelled as a cone of a fixed angle."""
     return Kind(name, {}, lambda size: Cone(np.full(size, cotangent(degrees))), words)
 
 

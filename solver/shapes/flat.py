@@ -1,4 +1,4 @@
-"""The flat punch: a cylinder of radius b. The contact radius is b; load or depth is given."""
+"""The flat punch: a cylinder of radius b. The contact radius is b; the control is the load or the depth."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ from .shape import Kind, column
 
 @batch.of_cases
 class Flat(NamedTuple):
-    """The :class:`~.shape.Shape` of radii `b` (B,): f = 0."""
+    """The :class:`~.shape.Shape` of flat punches with the radii `b` (B,): f = 0."""
 
     b: np.ndarray
 

@@ -1,4 +1,4 @@
-"""The frustum: a cone that is cut off flat, f = 0 up to r = b and (r - b) cot α beyond."""
+"""The frustum, a cone whose tip is cut off: f = 0 up to r = b, and (r - b) cot α beyond."""
 
 from typing import NamedTuple
 
@@ -15,7 +15,7 @@ FLAT_RADIUS = Parameter(interval="[1e-9, 1e3]", powers=(0, 1))
 
 @batch.of_cases
 class Frustum(NamedTuple):
-    """The :class:`~.shape.Shape` of radii `b` and slopes `cot` (B,)."""
+    """The :class:`~.shape.Shape` of frustums: radius `b` of the flat part and slope `cot` of the cone, (B,)."""
 
     b: np.ndarray
     cot: np.ndarray

@@ -1,6 +1,7 @@
-"""F of a table with many rows, as series: F and F' cost as much at a radius as with few rows.
+"""F of a table with many rows, as series: so the time for F and F' at a radius does not grow with the number of rows.
 
-On the line from r_j to r_(j+1) of its slope, F/t and F' are smooth functions of y in t = r_j + (r_(j+1) - r_j) y².
+The slope of the table is a line from each r_j to r_(j+1). There F/t and F' are smooth functions of y,
+t = r_j + (r_(j+1) - r_j) y².
 """
 
 from typing import NamedTuple
@@ -8,22 +9,23 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
-#: Terms of a series; and by which part of the largest value it may be off, the rounding of a sum over 1,000 lines. A
-#: table that needs more terms has no series: rows that lie close together, beside others far apart.
+#: Number of terms of a series; and its largest error over the largest value, which is the rounding of a sum over 1,000
+#: lines. A table that would need more terms has no series: its rows lie close together here and far apart there.
 _TERMS, _OFF = 18, 1e-12
-#: Tables of so many lines have no series: the sum over lines is as fast.
+#: Tables of at most this many lines have no series: the sum over the lines is as fast.
 FEW = 24
 
 
 class Series(NamedTuple):
-    """Radii of the rows (K,), and the coefficients of F/t and F' on the lines, (_TERMS, K - 1) each."""
+    """Radii of the rows (K,), and the coefficients of F/t (`over`) and F' (`slope`) on the lines, (_TERMS, K - 1)
+    each."""
 
     knots: np.ndarray
     over: np.ndarray
     slope: np.ndarray
 
     def at(self, t, slope=False):
-        """F/t, or F', at t (...)."""
+        """F/t at t (...), or F' if `slope`."""
         place = np.clip(np.searchsorted(self.knots, t, side="right") - 1, 0, len(self.knots) - 2)
         low, high = self.knots[place], self.knots[place + 1]
         x = 2 * np.sqrt(np.clip((t - low) / (high - low), 0.0, None)) - 1
@@ -35,9 +37,9 @@ class Series(NamedTuple):
 
 
 def series_of(knots, lifted):
-    """The :class:`Series` on lines between `knots` (K,), or None where the sum over lines is better.
+    """The :class:`Series` on the lines between `knots` (K,), or None if the sum over lines is better.
 
-    lifted : ``lifted(t) -> F/t, F'`` by the sum over lines, at t (M,)
+    lifted : ``lifted(t) -> F/t, F'`` by the sum over lines
     """
     if len(knots) <= FEW:
         return None

@@ -1,6 +1,6 @@
-"""The paraboloid f = r²/2, in R, for which the model takes a sphere. Its drop is s² at every radius.
+"""The paraboloid f = r²/2, in R, by which the model replaces a sphere. Its drop is s² at every contact radius.
 
-What a rough contact asks of a shape (:mod:`..rough.punch`) it has in closed form.
+It has closed forms of everything that a rough contact needs of a shape (:mod:`..rough.punch`).
 """
 
 from typing import NamedTuple
@@ -10,14 +10,14 @@ import numpy as np
 from ..numerics import batch
 from .shape import Kind, column, no_kinks
 
-#: For Hertz's pressure the operator is (H[s])(x) - (H[s])(1) = HERTZ s², which makes the first guess exact there.
+#: For Hertz's pressure the operator is (H[s])(x) - (H[s])(1) = HERTZ s², so that the first guess is exact for it.
 HERTZ = np.pi**2 / 16
 
 
 @batch.of_cases
 class Paraboloid(NamedTuple):
-    """The :class:`~.shape.Shape` of B paraboloids, and their :class:`~solver.rough.punch.Punch`. `power` (B,) is 2 of
-    all: an array, by which numpy rounds r² as it does the other powers of :mod:`.power`."""
+    """The :class:`~.shape.Shape` of B paraboloids, and their :class:`~solver.rough.punch.Punch`. `power` (B,) is always
+    2. It is an array, so that numpy rounds r² as it rounds the powers of :mod:`.power`."""
 
     power: np.ndarray
 
@@ -68,7 +68,7 @@ class Paraboloid(NamedTuple):
         return 0.0
 
     def radius_at_depth(self, D):
-        """a² is D for a half-space and 2 D where the displacement is local."""
+        """a² is D on a half-space, and 2 D where the displacement is local; here it is the mean of both."""
         return np.sqrt(1.5 * D)
 
     def on_half_space(self, P, E, softness):

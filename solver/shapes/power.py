@@ -15,7 +15,7 @@ SHAPE_POWER, SHAPE_COEFFICIENT = Parameter(interval="[1, 100]"), Parameter(inter
 
 @batch.of_cases
 class Power(NamedTuple):
-    """The :class:`~.shape.Shape` of coefficients c and exponents k (B,); `B` (B,) is F over f."""
+    """The :class:`~.shape.Shape` of powers with coefficients c and exponents k, (B,); `B` (B,) is F/f."""
 
     c: np.ndarray
     k: np.ndarray

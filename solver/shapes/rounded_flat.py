@@ -11,13 +11,14 @@ from .shape import Kind, column, half_chord, radii_at
 
 #: Radius ρ of the edge.
 EDGE_RADIUS = Parameter(interval="[1e-12, 1e6]", powers=(0, 1))
-#: Below this, z - arctan z is taken from its series, Σ (-1)^(j + 1) z^(2j + 1)/(2j + 1) from j = 1, of so many terms.
+#: If z is below _SERIES, z - arctan z is the sum of its series, Σ (-1)^(j + 1) z^(2j + 1)/(2j + 1), j = 1 to
+#: _TERMS - 1.
 _SERIES, _TERMS = 0.3, 16
 
 
 @batch.of_cases
 class RoundedFlat(NamedTuple):
-    """The :class:`~.shape.Shape` of radii `b` of the flat part, and `rho` of the edge, (B,)."""
+    """The :class:`~.shape.Shape` of punches with the radii `b` of the flat part and `rho` of the edge, (B,)."""
 
     b: np.ndarray
     rho: np.ndarray
@@ -68,7 +69,7 @@ class RoundedFlat(NamedTuple):
 
 
 def _over_arctangent(z):
-    """z - arctan z, z >= 0, without a difference where z is small."""
+    """z - arctan z, z >= 0, without cancellation where z is small."""
     total, y = 0.0, np.minimum(z, _SERIES) ** 2
     for j in reversed(range(1, _TERMS)):
         total = y * (1 / (2 * j + 1) - total)

@@ -4,11 +4,12 @@ f(0) = 0, and f is convex. Lengths are in R. A smooth contact needs
 
     F(t) = t ∫₀ᵗ f'(r)/sqrt(t² - r²) dr,
 
-the depth at which a half-space is touched up to the radius t (docs/shapes.md). Under the load
+which is the depth at which the contact radius on a half-space is t (docs/shapes.md). The contact radius is a under the
+load
 
-    P = 2 E ∫₀ᵃ (F(a) - F(t)) dt = 2 E lifted_load(a)
+    P = 2 E ∫₀ᵃ (F(a) - F(t)) dt = 2 E lifted_load(a).
 
-it is touched up to a. A rough contact needs the drop (2/a²) [f(a) - f(ax)] of :mod:`..rough.punch`.
+A rough contact needs the drop (2/a²) [f(a) - f(ax)] of :mod:`..rough.punch`.
 """
 
 from collections.abc import Callable, Mapping
@@ -26,8 +27,8 @@ _POINTS = 24
 class Shape(Protocol):
     """The profiles of B indenters; r, t (B, m) are radii >= 0, and a (B,) is the contact radius.
 
-    pointed : (B,) bool, f'(0+) > 0: the pressure on the axis is infinite
-    even : (B,) bool, f is a smooth function of r²: then the pressure is smooth in s too
+    pointed : (B,) bool, whether f'(0+) > 0: the pressure on the axis is then infinite
+    even : (B,) bool, whether f is a smooth function of r²: the pressure is then a smooth function of s
     take : the shapes of a sub-batch, :func:`~solver.numerics.batch.take`
     """
 
@@ -51,27 +52,27 @@ class Shape(Protocol):
         """∫₀ᵃ (F(a) - F(t)) dt, (B,)."""
 
     def drop(self, a, s):
-        """(2/a²) [f(a) - f(ax)] at the points s = sqrt(1 - x²), (m,), (B, m). It is formed from s, not as a difference:
-        next to the edge no digits are lost."""
+        """(2/a²) [f(a) - f(ax)], (B, m), at the points s = sqrt(1 - x²), (m,). It is formed from s without
+        cancellation: no digits are lost near the edge."""
 
     def kinks(self):
         """Radii (B, K) > 0 at which f is not smooth; NaN where a case has fewer of them."""
 
     def least(self):
-        """(B,): a is larger than this: the radius of the flat part around the axis, else 0."""
+        """(B,): the lower bound of a, which is the radius of a flat part around the axis; 0 if there is none."""
 
     def most(self):
-        """(B,): a is less than this, where the profile ends; else infinite."""
+        """(B,): the upper bound of a, where the profile ends; infinite if it does not end."""
 
 
 class Kind(NamedTuple):
     """A shape that a case may have, by its `name`.
 
-    parameters : name -> :class:`~solver.parameters.Parameter` of its numbers
-    of : function of these numbers, arrays (B,) by their names, that makes the :class:`Shape`
-    words : what it is, for messages and tables
-    round : whether its profile is that of a ball of radius R, or of one near its axis; R is the mere unit of length of
-        all others
+    parameters : name -> :class:`~solver.parameters.Parameter`, for each of its numbers
+    of : function of these numbers, arrays (B,) by their names, and of `size`, B; it returns the :class:`Shape`
+    words : a description for messages and tables
+    round : whether its profile is that of a ball of radius R, at least near the axis. For all other shapes R is only
+        the unit of length
     """
 
     name: str
@@ -82,32 +83,32 @@ class Kind(NamedTuple):
 
 
 def has_radius(shape):
-    """(B,) bool: the contact radius is that of the punch whatever the load, as under a flat one."""
+    """(B,) bool: whether the contact radius is that of the punch under any load, as for a flat punch."""
     return shape.least() == shape.most()
 
 
 def column(values):
-    """(B, 1) of (B,): the numbers of cases beside their radii."""
+    """The numbers of the cases (B,) as a column (B, 1), which broadcasts against their radii (B, m)."""
     return values[:, None]
 
 
 def no_kinks(values):
-    """:meth:`Shape.kinks` (B, 0) of a shape that has none, of the length of `values` (B,)."""
+    """:meth:`Shape.kinks` (B, 0) of a shape without kinks; `values` is (B,)."""
     return np.empty((len(values), 0))
 
 
 def half_chord(t, b):
-    """sqrt(t² - b²), or 0 where t < b: without a difference of squares. The arguments broadcast."""
+    """sqrt(t² - b²), or 0 where t < b, without a difference of squares. The arguments broadcast."""
     return np.sqrt(np.maximum(t - b, 0.0) * (t + b))
 
 
 def angle(t, b):
-    """arccos(b/t), or 0 where t < b: right also where t is just above b > 0. The arguments broadcast."""
+    """arccos(b/t), or 0 where t < b. It has all digits even where t is just above b > 0. The arguments broadcast."""
     return np.arctan2(half_chord(t, b), b)
 
 
 def radii_at(a, s):
-    """r = a x (B, m) and a - r (B, m) at s = sqrt(1 - x²) (m,), for a (B,): the second without a difference."""
+    """r = a x (B, m) and a - r (B, m) at s = sqrt(1 - x²) (m,), for a (B,); a - r is formed without cancellation."""
     x = np.sqrt((1 - s) * (1 + s))
     return column(a) * x, column(a) * (s**2 / (1 + x))
 
@@ -115,7 +116,7 @@ def radii_at(a, s):
 def load_by_quadrature(shape, a):
     """:meth:`Shape.lifted_load` as ∫₀ᵃ t F'(t) dt, (B,), for shapes without a closed form.
 
-    Beyond a kink b the variable is y in t = b + (c - b) y², c the next one: there F' may be like sqrt(t - b).
+    From a kink b to the next kink c the variable is y, t = b + (c - b) y²: F' may behave like sqrt(t - b) there.
     """
     y, w = gauss_legendre(_POINTS)
     ends = np.minimum(np.nan_to_num(shape.kinks(), nan=np.inf), column(a))

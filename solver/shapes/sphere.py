@@ -1,4 +1,4 @@
-"""The sphere f = 1 - sqrt(1 - r²), in R: the ball itself, where the paraboloid is its shape near the axis."""
+"""The sphere f = 1 - sqrt(1 - r²), in R: the ball itself, unlike the paraboloid, which is its shape near the axis."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ import numpy as np
 from ..numerics import batch
 from .shape import Kind, column, no_kinks
 
-#: Below this, artanh(a) - a is taken from its series, Σ a^(2j + 1)/(2j + 1) from j = 1, of so many terms.
+#: If a is below _SERIES, artanh(a) - a is the sum of its series, Σ a^(2j + 1)/(2j + 1), j = 1 to _TERMS - 1.
 _SERIES, _TERMS = 0.3, 16
 
 
@@ -62,7 +62,7 @@ def _side(r):
 
 
 def _series(a):
-    """artanh(a) - a."""
+    """artanh(a) - a, by its series."""
     total = np.zeros_like(a)
     for j in reversed(range(1, _TERMS)):
         total = a**2 * (1 / (2 * j + 1) + total)

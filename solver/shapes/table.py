@@ -1,8 +1,8 @@
-"""A shape from a table of one's own, ``shape = "table:tip.csv"``: a measured tip, for example.
+"""A shape from a user's table, ``shape = "table:tip.csv"``: a measured tip, for example.
 
-The slope f' is laid through the slopes of the chords between the rows, each in the middle of its chord, with straight
-lines between them; the first and the last line go on to the axis and to the last row. f is the integral of f', and need
-not meet the rows.
+The slope f' consists of straight lines. It goes through the slopes of the chords between the rows, each in the middle
+of its chord. The first and the last line are continued to the axis and to the last row. f is the integral of f', and
+need not meet the rows.
 """
 
 import csv
@@ -22,23 +22,26 @@ from .lines import Series, series_of
 from .shape import Kind, column, load_by_quadrature
 
 PREFIX = "table:"
-#: Length in the unit of R that 1 in the table stands for; left out, it is R.
+#: Length in the unit of R that 1 in the table stands for; R if it is not given.
 TABLE_UNIT = Parameter(
     interval="(0, inf)", powers=(0, 1), instead="", long_name="length that 1 in the table of the shape stands for"
 )
-#: Most rows, most bytes of the file, and by which part of the largest a slope may fall: the rounding of a table that is
-#: straight there.
+#: Most rows, most bytes of the file, and the largest fall of the slope from chord to chord, over the largest slope: it
+#: allows for rounding in a table that is straight there.
 _ROWS, _LARGEST, _FALLS = 1_000, 10_000_000, 1e-9
-#: A change of f'' below this part of the largest f'' is rounding, and no kink.
+#: A jump of f'' below this part of the largest f'' is rounding, not a kink.
 _STRAIGHT = 1e-9
-#: Units of length that a header may name, in m.
+#: Units of length in a header, in m.
 _UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "Å": 1e-10, "pm": 1e-12}
 _HEADER = re.compile(r"\s*(\w+)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
 
 
 class Rows(NamedTuple):
-    """The slope of a table: radii r (K,) from 0 to the last row, and f' there (K,), straight lines between; `metres`,
-    whether its lengths are in m, by units in the header. `series` is F of many rows, or None."""
+    """The slope of a table: radii r (K,) from 0 to the last row, and f' there (K,), with straight lines between.
+
+    metres : whether its lengths are in m, because the header has units
+    series : F of a table with many rows, or None
+    """
 
     r: np.ndarray
     slopes: np.ndarray
@@ -84,7 +87,7 @@ class TableShape(NamedTuple):
         return load_by_quadrature(self, a)
 
     def drop(self, a, s):
-        # between r = ax and a: on each line the mean of its slopes there, times the length of the part
+        # the integral of f' from r = ax to a: for each line, the length of its part there times the mean slope
         x = np.sqrt((1 - s) * (1 + s))
         radius = column(a / self.unit)
         r, inwards = radius * x, radius * (s**2 / (1 + x))
@@ -113,24 +116,24 @@ class TableShape(NamedTuple):
         return np.diff(self.rows.slopes) / np.diff(self.rows.r)
 
     def _in_rows(self, r):
-        """The radii of the rows, on which line r is, and how far along it."""
+        """The radii of the rows; the index of the line on which r lies; and the distance of r from the line's start."""
         knots = self.rows.r
         place = np.clip(np.searchsorted(knots, r, side="right") - 1, 0, len(knots) - 2)
         return knots, place, r - knots[place]
 
     def _inside(self, r, values):
-        """The values, NaN where r is beyond the last row."""
+        """The values; NaN where r is beyond the last row."""
         return np.where(r <= self.rows.r[-1] * (1 + 4 * np.finfo(float).eps), values, np.nan)
 
     def _lifted(self, t, slope):
-        """F/t, or F'."""
+        """F/t, or F' if `slope`."""
         if self.rows.series is None:
             return self._inside(t, _over_lines(self.rows, t)[int(slope)])
         return self._inside(t, self.rows.series.at(np.minimum(t, self.rows.r[-1]), slope))
 
 
 def _over_lines(rows, t):
-    """F/t and F' at t: of the lines as they would begin at r = 0, and of their bends."""
+    """F/t and F' at t, as sums over the lines: of their slopes continued to r = 0, and of their bends."""
     knots, bend = rows.r, np.diff(rows.slopes) / np.diff(rows.r)
     start = rows.slopes[:-1] - bend * knots[:-1]
     inner = np.minimum(knots, t[..., None])
@@ -144,19 +147,19 @@ def _over_lines(rows, t):
 def read(word):
     """The :class:`~.shape.Kind` of a word "table:FILE".
 
-    The file has two columns, r from 0 upwards and f from 0 upwards; a header may have units, "r [um], f [nm]". Lines
-    that begin with "#" are left out. ValueError for a file that cannot be used.
+    The file has two columns, r from 0 upwards and f from 0 upwards. A header may have units, "r [um], f [nm]". Lines
+    that begin with "#" are skipped. Raises ValueError for a file that cannot be used.
     """
     return Kind(word, {"table_unit": TABLE_UNIT}, partial(_bound, _rows(word)), "a measured tip")
 
 
 def rows_of(kind):
-    """The :class:`Rows` of a :class:`~.shape.Kind` that :func:`read` gives; None of another."""
+    """The :class:`Rows` of a :class:`~.shape.Kind` that :func:`read` returns; None for any other kind."""
     return kind.of.args[0] if isinstance(kind.of, partial) and kind.of.func is _bound else None
 
 
 def identity(kind):
-    """Text that tells a :class:`~.shape.Kind` from all others: its name, and of a table its numbers."""
+    """Text that tells a :class:`~.shape.Kind` from all others: its name, or for a table a digest of its numbers."""
     rows = rows_of(kind)
     if rows is None:
         return kind.name
@@ -189,7 +192,8 @@ def _rows(word):
 
 
 def _check(word, r, f, unit):
-    """Raise ValueError for rows of no convex shape. r, f : as in the file; unit : that of f over that of r."""
+    """Raise ValueError if the rows are not those of a convex shape. r, f : as in the file; unit : the unit of f over
+    that of r."""
     if r[0] != 0 or f[0] != 0:
         raise ValueError(f"shape {word}: r and f must be 0 in the first row, which is {r[0]:g}, {f[0]:g}")
     if (back := np.diff(r) <= 0).any():
@@ -213,7 +217,7 @@ def _of_columns(r, f, metres):
 
 
 def _lengths(word, header):
-    """What 1 is in each column, in m by the units of the header, or 1."""
+    """The length in m that 1 stands for in each column, by the units of the header; 1 without units."""
     if not _has_units(header):
         return 1.0, 1.0
     factors = []

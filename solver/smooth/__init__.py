@@ -1,1 +1,1 @@
-"""Smooth contacts of any shape on any kernel, with and without adhesion, by an equation of the second kind."""
+"""Smooth contacts of any shape on any kernel, with and without adhesion, by an integral equation of the second kind."""

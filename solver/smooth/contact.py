@@ -1,4 +1,4 @@
-"""Smooth contacts of every shape, with and without adhesion: the ways by which the cases of a problem are solved."""
+"""Smooth contacts of every shape, with and without adhesion: the functions that solve the cases of a problem."""
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from .tension import judged
 
 
 def kinds_of(problem):
-    """The indices (b,) of the cases of one base, shape and law of adhesion, a list."""
+    """Groups of cases with one base, shape and law of adhesion: a list of indices (b,)."""
     return alike(problem.base, problem.shape, np.where(problem.w_adhesion > 0, problem.adhesion, ""))
 
 
@@ -40,8 +40,8 @@ def not_sticking(part, x):
 
 
 def _touching(part, shape, body, at_radius, x):
-    """The solution of contacts with the Response and counts `at_radius`, LIFT_OFF where that is NaN or tensile; and
-    whether there may be tension (B,)."""
+    """The solution of contacts from `at_radius`, their Response and counts, with LIFT_OFF where that is NaN or tensile;
+    and whether there may be tension, (B,)."""
     response, counts = at_radius
     state, corner = at_corner(part, shape, body, State.free(response))
     solution, tensile = judged(*answer(part, shape, state, counts, x), shape, body, state, x)
@@ -50,7 +50,7 @@ def _touching(part, shape, body, at_radius, x):
 
 
 def sticking(part, x):
-    """The same of cases with adhesion, w > 0."""
+    """As :func:`not_sticking`, for cases with adhesion, w > 0."""
     shape, body = shape_of(part), Tabulated.of(BODIES[str(part.base[0])](part))
     solution = adhesive.solve(part, shape, body, x)
     if str(part.adhesion[0]) == "maugis":

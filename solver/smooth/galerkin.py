@@ -6,12 +6,12 @@ The Hankel transform of the pressure is p̂(k) = ∫₀ᵃ φ(t) cos kt dt. With
 
     P = 2 E a ∫₀¹ y dτ,       D = F(a) + A + (2/π) ∫ (L - 1) cos κ ŷ(κ) dκ.
 
-A is 0 without adhesion (:mod:`.adhesion.jkr` says what it is else). The depth does not stand in the equation: so
-nothing cancels under stiff layers. It is linear, and y = y_F + A y_1, where y_1 has the right-hand side 1: of a flat
+A is 0 without adhesion; :mod:`.adhesion.jkr` has it with adhesion. The equation does not contain the depth, so that
+nothing cancels on stiff layers. It is linear, y = y_F + A y_1, where y_1 has the right-hand side 1, that of a flat
 punch.
 
-Galerkin's method solves it in the basis of :mod:`.products`. Of F, which has kinks, only its projection on the basis
-counts: the rest of the kernel and the rest of F are both small, and only their product is an error.
+Galerkin's method solves it in the basis of :mod:`.products`. F has kinks, and only its projection on the basis counts:
+the rest of the kernel and the rest of F are both small, and the error is their product.
 """
 
 from typing import NamedTuple
@@ -27,33 +27,37 @@ from .tabulated_body import Tabulated, excess
 _EPS, _TINY = np.finfo(float).eps, np.finfo(float).tiny
 #: Number of classes of stiffness.
 _CLASSES = MILD + 1
-#: Rounding of closed forms, relative; and that of the equation, over eps times its size and the norm of its matrix.
+#: Relative rounding error of closed forms; and that of the equation, over eps times its size and the norm of its
+#: matrix.
 _ROUNDING, _FLOOR = 64 * _EPS, 16
-#: Error of the kernel's part by the waves at which the kernel is looked at, from octave 1 of h/a downwards; by few
-#: waves from octave -3 on (the largest in random contacts of `python tools/errors/shape_errors.py`, times 2 to 5). For
-#: the depth this part of it is enough.
+#: Relative error of the kernel's part because the kernel is evaluated at a finite number of waves. _OF_WAVES: for
+#: octave 1 of h/a and each octave below; _OF_FEW: with the few nodes in octave -3 and below. They are the largest in
+#: random contacts (`python tools/errors/shape_errors.py`), times 2 to 5. The error of the depth is _OF_DEPTH times as
+#: large.
 _OF_WAVES, _OF_FEW = (1e-13, 1e-13, 1e-13, 1e-13, 3e-13, 1e-12, 3e-12, 3e-12, 3e-12, 3e-12, 2e-11), 1e-11
 _OF_DEPTH = 0.3
-#: Octave from which downwards, and L(0) below which, few waves are not enough: the rest of the depth is small.
+#: In the octaves up to _THIN the few waves are not enough if L(0) is below _SOFT: the depth is then a small remainder.
 _THIN, _SOFT = -3, 0.1
-#: The error of a basis is the part of its last functions, as of a geometric series, times this factor: a series whose
-#: terms fall like 1/N² or 1/N, as in films, has 2 and 2.7 times as much left; and films have no even series (8 of 9,600
-#: random numbers were up to 1.16 times as far off with 3). The terms of the series fall at least and at most by these
-#: ratios.
+#: The error of a basis is the rest of a geometric series, from its last functions, times _BASIS. A series whose terms
+#: fall like 1/N² or 1/N, as in films, has a rest 2 and 2.7 times as large; and the series of films are irregular (with
+#: 3, 8 of 9,600 random numbers had errors up to 1.16 times the estimate). _RATIOS are bounds of the ratio of successive
+#: terms.
 _BASIS, _RATIOS = 4.0, (1e-3, 0.9)
 
 
 @batch.of_cases
 class Response(NamedTuple):
-    """Shapes at B radii `a`, in units R = E2* = 1. Without adhesion the load and depth are `P` and `D`; those of a flat
-    punch of radius a with A = 1 are `flat_P` and `flat_D`. Those without a shape below are (B,).
+    """The solution of the equation for shapes at B radii, in units R = E2* = 1. Arrays are (B,) unless stated.
 
+    a, E : radius, and modulus of the half-space
+    P, D : load and depth without adhesion
+    flat_P, flat_D : load and depth of a flat punch of radius a with A = 1
     slope : dD/da without adhesion
     flat_slope : d flat_D/da
-    P_error, D_error, flat_P_error, flat_D_error : of these numbers at the radius a, absolute
+    P_error, D_error, flat_P_error, flat_D_error : absolute errors of these numbers at the radius a
     bent, flat_bent : (B, N), the second terms of the equation, y_F - F(a) + F and y_1 - 1, in the basis
-    changes, flat_changes : (B, N), by how much the basis may leave these off
-    size : (B,) int, the number of functions of the basis; 0 in closed form
+    changes, flat_changes : (B, N), estimated errors of these because the basis is finite
+    size : int, number of functions of the basis; 0 for closed forms
     """
 
     a: np.ndarray
@@ -76,11 +80,11 @@ class Response(NamedTuple):
 
     @property
     def S(self):
-        """Stiffness (B,) of a flat punch of the radius a."""
+        """Stiffness (B,) of a flat punch of radius a."""
         return self.flat_P / self.flat_D
 
     def only(self, mask):
-        """NaN in place of all numbers of cases that are not in the `mask` (B,)."""
+        """The response with NaN in place of all numbers of cases outside the `mask` (B,)."""
         return Response(*(np.where(mask.reshape(-1, *[1] * (v.ndim - 1)), v, np.nan) for v in self))
 
     @classmethod
@@ -98,11 +102,11 @@ class Response(NamedTuple):
 
 
 def respond(shape, body, a):
-    """:class:`Response` of B shapes on a body at radii a (B,); NaN where a is."""
+    """:class:`Response` of B shapes on a body at radii a (B,); NaN where a is NaN."""
     if body.kernel is None:
         return _on_half_space(shape, body, a)
     octave, place = place_of(body, a)
-    sampler = None if isinstance(body, Tabulated) else body.kernel.sampler  # a table has all nodes at once
+    sampler = None if isinstance(body, Tabulated) else body.kernel.sampler  # a table is quick at all nodes
     soft = 0 if sampler is None else (octave <= _THIN) & (body.L0 < _SOFT)
     usable = (a > 0) & np.isfinite(a)
     fine = np.where(usable & (octave == FILM), np.floor(np.log2(body.h / a)), octave)  # films have more functions
@@ -129,7 +133,7 @@ def _on_half_space(shape, body, a):
 
 
 def _on_kernel(shape, body, a, products, of_waves):
-    """:class:`Response` where `products` are those of the kernel, and `of_waves` their error."""
+    """:class:`Response` from the `products` of the kernel, and their error, `of_waves`."""
     N, E = products.edge.shape[1], body.E
     depth, slope = (f(a[:, None])[:, 0] for f in (shape.lifted, shape.lifted_slope))
     sides = np.zeros((len(a), N, 3))
@@ -164,25 +168,26 @@ def _on_kernel(shape, body, a, products, of_waves):
 
 
 def error_of_waves(sampler, octave):
-    """Error of the kernel's part, in an octave of h/a."""
+    """Relative error of the kernel's part in an octave of h/a."""
     if octave <= _THIN and has_few(sampler, octave):
         return _OF_FEW
     return _OF_WAVES[min(max(1 - octave, 0), len(_OF_WAVES) - 1)]
 
 
 def _of_radius(a, slope):
-    """Error (B,) of the depth by the rounding of a: just beyond a corner it rises by much with a, at it without end."""
+    """Error (B,) of the depth by the rounding of a. Just beyond a corner the depth rises steeply with a; at the corner
+    the slope is infinite, and does not count."""
     return np.where(np.isfinite(slope), _EPS * a * slope, 0.0)
 
 
 def left_out(products, matrix, sides, y, kinked):
-    """Estimates of what the basis leaves out: of the second terms (B, N, 2) of the equation, without adhesion and of a
-    flat punch, and of y_0 and D, (B, 2, 2). kinked : (B,) bool, the shape is not smooth in r².
+    """Estimated errors because the basis is finite: of the second terms (B, N, 2) of the equation, without adhesion and
+    for a flat punch, and of y_0 and D, (B, 2, 2). kinked : (B,) bool, whether the shape is not smooth in r².
 
-    A basis of n functions leaves the residual r, and a number that is z @ sides is off by z @ r. The last functions of
-    the basis have r, of the solution without these, and z, both of which fall with n: they add their product.
-    The second terms are not such numbers. Where F goes on beyond the basis it moves their last functions by about as
-    much as these are: the ratio is then that of half as many functions, its root.
+    A basis of n functions leaves a residual r, and the error of a number that is z @ sides is z @ r. In the last
+    functions of the basis, r is the residual of the solution without them; r and z both fall with n, and the last
+    functions add their product. The second terms are not such numbers. If F has a part outside the basis, it changes
+    their last functions by about their own size: the ratio is then that of half as many functions, its root.
     """
     N = matrix.shape[1]
     n = coarser(N)
@@ -199,19 +204,19 @@ def left_out(products, matrix, sides, y, kinked):
 
 
 def _ratio(last, before, first):
-    """The ratio by which three terms of a series fall; one of them may be small by chance."""
+    """The ratio of successive terms of a series, from three of them, one of which may be small by chance."""
     return np.maximum(last / np.maximum(before, _TINY), np.sqrt(last / np.maximum(first, _TINY)))
 
 
 def _rest(ratio):
-    """The rest of a series over its last term, if its terms fall by the `ratio`; times _BASIS."""
+    """The rest of a geometric series with this `ratio`, over its last term, times _BASIS."""
     ratio = np.clip(ratio, *_RATIOS)
     return _BASIS * ratio / (1 - ratio)
 
 
 def _weights(products, y):
-    """z (B, N, 2) by which y_0 and D are z @ sides: solutions of the transposed equation. The matrix is symmetric but
-    for the edge, so that those for the sides 1 and of the edge, y_1 and y_2, say what they are."""
+    """z (B, N, 2) with which y_0 and D are z @ sides: solutions of the transposed equation. The matrix is symmetric
+    except for the edge, so that they follow from the solutions y_1 and y_2 for the sides 1 and edge."""
     edge = products.edge[:, : y.shape[1]]
     v = y[:, :, 2] / (1 - y[:, :1, 2])
     u = y[:, :, 1] + v * y[:, :1, 1]

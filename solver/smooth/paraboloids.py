@@ -1,4 +1,4 @@
-"""Smooth cases: Hertz's closed form, and one linear solve on a thin layer.
+"""Smooth paraboloids: Hertz's closed form, and one linear system on a thin layer.
 
 On a thin layer (X K + Y) q = s² with X = 8/(pi a), Y = 2 C/a² (p in E2*). K is diagonalised once for each mesh,
 K = V diag(κ) V⁻¹; κ is real and positive, and V well conditioned (tests/smooth/test_paraboloids.py). With
@@ -30,18 +30,20 @@ _OF_SUMS = {
     "p0": lambda a, S: np.pi / 8 * a * S[2],
 }
 _ROWS = {name: row for row, name in enumerate(_OF_SUMS)}
-#: The power of a in each quantity; and the part of each sum that no pressure makes: 1 in D = a²/2 (1 + ...).
+#: The power of a in each quantity; and the part of each sum that does not come from the pressure: 1 in D = a²/2 (1 +
+#: ...).
 _POWERS, _BARE = np.array([[3.0], [2.0], [1.0]]), np.array([[0.0], [1.0], [0.0]])
-#: First guess of the radius under a load: (a_H^m + a_L^m)^(1/m), of Hertz's radius a_H and the radius a_L on springs
-#: alone. With this m it is right to 0.3 % (tests/smooth/test_paraboloids.py).
+#: The power m in the first guess of the radius under a load: (a_H^m + a_L^m)^(1/m), with Hertz's radius a_H and the
+#: radius a_L on springs alone. It is right to 0.3 % (tests/smooth/test_paraboloids.py).
 _BLEND = 3.21
-#: Most Newton steps for ln a; a step below _LAST is the last one. A step leaves an error below 0.04 times its square
-#: (tests/smooth/test_paraboloids.py), so that after one below _LAST the error is below rounding.
+#: Most Newton steps for ln a; a step below _LAST is the last one. The error after a step is below 0.04 times the square
+#: of the step (tests/smooth/test_paraboloids.py): after a step below _LAST it is below rounding.
 _STEPS, _LAST = 30, 2e-7
 
 
 class Modes(NamedTuple):
-    """Spectral form of a mesh: `kappa` (n, 1); `nodal` (n, n) makes X q of the fractions, and `sums` (3, n) makes S."""
+    """Spectral form of a mesh: `kappa` (n, 1); `nodal` (n, n), which makes X q from the fractions; and `sums` (3, n),
+    which makes S from them."""
 
     kappa: np.ndarray
     nodal: np.ndarray
@@ -90,7 +92,7 @@ def _solution(arrays):
 
 def _on_mesh(control, value, C, n, x):
     """Arrays of a :class:`~solver.solution.Solution` (dict) on n nodes. `error` is the larger of two: the distance, to
-    first order, to the solution on the next finer mesh, and the part of a ring at the edge that neither mesh sees."""
+    first order, to the solution on the next finer mesh, and the effect of a ring at the edge that both meshes miss."""
     mesh, modal = mesh_of(n), modes(n)
     a, steps = _radius(control, value, C, modal)
     t, S, slopes, fractions = _sums(a, C, modal)
@@ -125,30 +127,30 @@ def _distance(control, t, S, slopes, finer):
 
 
 def _between(mesh, Xq, t, finer):
-    """Largest difference (B,) of the pressure, over its largest, to that under the same radius on `finer` nodes. Most
-    of these lie between those of the mesh."""
+    """Largest difference (B,), over the largest pressure, between the pressure and that for the same radius on `finer`
+    nodes, most of which lie between those of the mesh."""
     modal = modes(finer)
     fine = modal.nodal @ (1 / (modal.kappa + t))
     return np.abs(_to_edge(mesh, mesh_of(finer).s) @ Xq - fine).max(axis=0) / fine.max(axis=0)
 
 
 def _to_edge(mesh, points):
-    """Values (m, n) at `points` (m,) in s of the polynomials that are 1 at one node and 0 at the others and the edge,
-    where there is no pressure."""
+    """The polynomials that are 1 at one node and 0 at the others and at the edge, where there is no pressure: their
+    values (m, n) at `points` (m,) in s."""
     return lagrange(np.append(0.0, mesh.s), points)[:, 1:]
 
 
 def _radius(control, value, C, modal):
-    """a (B,) for the given load or depth by Newton on logarithms, and the number of steps (B,)."""
+    """a (B,) for the given load or depth, by Newton's method on logarithms, and the number of steps (B,)."""
     if control == "a":
         return value, np.zeros(len(value), dtype=int)
     if control == "P":
         a = (np.cbrt(0.75 * value) ** _BLEND + (4 / np.pi * C * value) ** (_BLEND / 4)) ** (1 / _BLEND)
     else:
-        a = np.sqrt(1.5 * value)  # a² is between D, Hertz, and 2 D, layer alone
+        a = np.sqrt(1.5 * value)  # a² is between D, by Hertz, and 2 D, for springs alone
     row, steps, change = _ROWS[control], np.zeros(len(a), dtype=int), np.full(len(a), np.inf)
     for _ in range(_STEPS):
-        going = np.abs(change) > _LAST  # each case by itself: it has the same steps in any batch
+        going = np.abs(change) > _LAST  # for each case by itself, so that it has the same steps in any batch
         if not going.any():
             break
         steps += going

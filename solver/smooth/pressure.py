@@ -17,7 +17,7 @@ from .shape_terms import on_half_space
 
 
 def pressures_of(shape, response, A, x):
-    """p (B, m) at x (m,) with the edge value A (B,); at x = 1 it is 0 or infinite, by the sign of A."""
+    """p (B, m) at x (m,) with the edge value A (B,). At x = 1 it is 0 if A = 0, else infinite, with the sign of A."""
     inside = x < 1
     s = np.sqrt((1 - x[inside]) * (1 + x[inside]))
     p = np.empty((len(A), len(x)))
@@ -34,8 +34,8 @@ def without_edge(shape, response, A, x):
 
 
 def _of_basis(rows, counts, x):
-    """Σ_m rows_m ∫ e_m'(τ)/τ dv (B, m) at x (m,), of the functions that each case has, `counts` (B,), among those of
-    the `rows` (B, N): so its numbers do not depend on its company."""
+    """Σ_m rows_m ∫ e_m'(τ)/τ dv, (B, m), at x (m,), with `rows` (B, N). Each case sums only over its own number of
+    functions, `counts` (B,): so its numbers do not depend on its company."""
     out = np.full((len(rows), len(x)), np.nan)
     out[counts == 0] = 0.0
     for size in np.unique(counts[counts > 0]).astype(int).tolist():
@@ -46,7 +46,7 @@ def _of_basis(rows, counts, x):
 
 @lru_cache(maxsize=64)
 def _slopes(size, x_bytes):
-    """∫ e_m'(τ)/τ dv (N, m) from v = 0 to s, τ² = x² + v²."""
+    """∫ e_m'(τ)/τ dv, (N, m), from v = 0 to s, with τ² = x² + v²."""
     x = np.frombuffer(x_bytes)
     u, w = gauss_legendre(size + 2)
     s = np.sqrt((1 - x) * (1 + x))
@@ -55,7 +55,7 @@ def _slopes(size, x_bytes):
 
 
 def _over_tau(tau, size):
-    """Yield e_m'/τ, m = 0 ... size - 1: with P_n' = P_(n-2)' + (2 n - 1) P_(n-1), for even n, and P_(n-1)/τ from the
+    """Yield e_m'/τ, m = 0 ... size - 1, by P_n' = P_(n-2)' + (2 n - 1) P_(n-1) for even n, with P_(n-1) from the
     recurrence of P."""
     before, now, slope = np.ones_like(tau), tau, np.zeros_like(tau)  # P_(n-2), P_(n-1)
     for m in range(size):
@@ -66,12 +66,12 @@ def _over_tau(tau, size):
 
 
 def pressure_changes(response, A, x):
-    """By how much p (B, m) changes at x (m,) < 1 with the last functions of the basis."""
+    """The change of p (B, m) at x (m,) < 1 by the last functions of the basis."""
     changes = response.changes + column(A) * response.flat_changes
     return _of_basis(changes, response.size, x) * column(response.E / (np.pi * response.a))
 
 
 def flat_pressure(response):
-    """p(0) (B,) of a flat punch of the radius a, over its depth."""
+    """p(0) (B,) of a flat punch of radius a, over its depth."""
     bent = _of_basis(response.flat_bent, response.size, np.zeros(1))[:, 0]
     return response.E / (np.pi * response.a) * (1 - bent) / response.flat_D

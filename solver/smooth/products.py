@@ -1,12 +1,12 @@
 """The basis in which a smooth contact is solved, and its products with the kernel, tabulated for each octave of h/a.
 
 On 0 <= τ <= 1, τ = t/a, the basis is e_m = sqrt(4m + 1) P_2m(τ), the even Legendre polynomials, which are orthonormal
-there. With κ = ka their cosine transforms are ê_m = (-1)^m sqrt(4m + 1) j_2m(κ). Those of the difference cos κτ - cos κ
-of :mod:`.galerkin` are the same except for m = 0, where it is
+there. With κ = ka their cosine transforms are ê_m = (-1)^m sqrt(4m + 1) j_2m(κ). Their transforms with the difference
+cos κτ - cos κ of :mod:`.galerkin` are the same except for m = 0, where it is
 
     d_0 = sin κ/κ - cos κ = κ j_1(κ),       d_m = ê_m for m > 0.
 
-So no digits are lost where waves are long, and that is where the kernel of a stiff layer is large.
+So no digits are lost for long waves, for which the kernel of a stiff layer is large.
 """
 
 from functools import lru_cache
@@ -20,25 +20,25 @@ from ..numerics import special
 from ..numerics.kept import Kept
 from ..numerics.quadrature import gauss_legendre
 
-#: Numbers N of functions in the basis for octaves of h/a from 3 downwards, of shapes that are smooth in r², and of all
-#: others; of thicker layers, as for octave 3. Films have the first for all shapes. None of them resolves the edge
-#: of a film below 1e-4 a: so the thinnest have fewer, which take less time.
+#: Number N of functions in the basis for each octave of h/a from 3 downwards: for shapes that are smooth in r² (True),
+#: and for all others (False). Thicker layers have that of octave 3. Films have the first row for all shapes. No basis
+#: resolves the edge of a film thinner than 1e-4 a: so the thinnest have fewer functions, which take less time.
 _SIZES = {
     True: (6, 8, 10, 12, 16, 22, 28, 38, 52, 70, 96, 130, 130, 150, 170, 190, 190, 190, 130),
     False: (6, 8, 11, 15, 21, 28, 40, 54, 72, 100, 144, 196),
 }
-#: The octave of the last of them: thinner films have as many.
+#: The last of these octaves: thinner films have as many functions.
 LAST = 4 - len(_SIZES[True])
-#: Bytes of tables that are kept.
+#: Most bytes of each cache.
 _MOST = 256_000_000
 _TABLES, _WAVES = Kept(_MOST), Kept(_MOST)
-#: Octave of h/a below which few nodes are not enough: they are chosen for functions that fall like 1/κ², and cos κ, of
-#: the edge, does not. A table would also be large.
+#: Octave of h/a below which the few nodes are not enough: they are chosen for functions that fall like 1/κ², and the
+#: cos κ of the edge does not fall. A table would also be large.
 _THINNEST = -4
-#: Ratios of j_n begin so many orders beyond the last function, and times the root of third order of N more.
+#: The recurrence for ratios of j_n starts _MILLER (1 + N^(1/3)) orders beyond the last function.
 _MILLER = 14
-#: Octaves of far waves, and nodes in each. The last function of N turns against the first by N²/κ in the octave from κ
-#: on: there are so many nodes more for each radian.
+#: Octaves of far waves, and nodes in each. The phase of the last of N functions relative to the first changes by N²/κ
+#: in the octave that begins at κ: there are _TURNS nodes more for each radian of it.
 _OCTAVES, _FAR, _TURNS = 30, 12, 0.7
 
 
@@ -53,12 +53,12 @@ def coarser(size):
 
 
 class Products(NamedTuple):
-    """(2/π) ∫ (L - 1) f g dκ for pairs of functions f, g of κ, B cases, as the equation needs them.
+    """(2/π) ∫ (L - 1) f g dκ of B cases, for the pairs of functions f, g of κ that the equation needs.
 
-    differences : (B, N, N), f and g are d_m and d_n
-    edge : (B, N), d_m and cos κ
-    corner : (B,), cos κ and cos κ
-    slope : (B, N), ê_m and κ sin κ
+    differences : (B, N, N), f = d_m and g = d_n
+    edge : (B, N), f = d_m and g = cos κ
+    corner : (B,), f = g = cos κ
+    slope : (B, N), f = ê_m and g = κ sin κ
     """
 
     differences: np.ndarray
@@ -68,7 +68,7 @@ class Products(NamedTuple):
 
     @classmethod
     def of(cls, L1, sampler, octave, stiffness, size):
-        """L1 (B, M) : L - 1 at :func:`wave_nodes`."""
+        """The products of a kernel. L1 : (B, M), L - 1 at :func:`wave_nodes`."""
         if not has_few(sampler, octave):
             return cls._summed(L1, octave, stiffness, size)
         key = sampler, octave, stiffness, size
@@ -79,13 +79,14 @@ class Products(NamedTuple):
 
     @classmethod
     def summed(cls, d, cosine, q):
-        """The same from d_m (B, N, G), cos κ and the weights of L - 1, (B, G) each, without the slope."""
+        """The products from d_m (B, N, G), cos κ and the weighted L - 1, (B, G) each. `slope` is not computed: `edge`
+        stands in its place."""
         edge = np.einsum("bng,bg->bn", d, q * cosine)
         return cls((d * q[:, None]) @ np.swapaxes(d, 1, 2), edge, (q * cosine**2).sum(axis=1), edge)
 
     @classmethod
     def _summed(cls, L1, octave, stiffness, size):
-        """The same from sums over all nodes, case by case: a table would be too large."""
+        """The products by sums over all nodes, case by case, where a table would be too large."""
         waves = _WAVES.get((octave, stiffness, size), lambda: _waves(octave, stiffness, size))
         near, far, count = waves.near, waves.far, waves.near.shape[1]
         out = np.empty((len(L1), size + 2, size + 2))
@@ -99,13 +100,14 @@ class Products(NamedTuple):
 
 
 class WaveFunctions(NamedTuple):
-    """The functions d_0 ... d_(N-1), cos κ, κ sin κ at G near and G' far nodes κ, and their `weight` (G + G',).
+    """The functions d_0 ... d_(N-1), cos κ, κ sin κ at G near and G' far nodes κ.
 
-    Far waves swing so often that only the means of products count. There a function is the real part of A e^iκ, with
-    A smooth, and the mean of a product is the real part of half of A and the conjugate of the other.
+    Far waves oscillate so often that only the means of products count. There a function is the real part of A e^iκ with
+    a smooth A, and the mean of a product is half the real part of one A times the conjugate of the other.
 
     near : (N + 2, G), the functions
     far : (N + 2, G'), A
+    weight : (G + G',), weights of the nodes
     """
 
     near: np.ndarray
@@ -121,7 +123,7 @@ def wave_nodes(sampler, octave, stiffness, size):
 
 
 def has_few(sampler, octave):
-    """Whether L - 1 at few nodes is enough."""
+    """Whether L - 1 is needed only at the few nodes."""
     return sampler is not None and octave >= _THINNEST
 
 
@@ -132,7 +134,7 @@ def _film_rule(stiffness):
 
 @lru_cache(maxsize=8)
 def _far_rule(size):
-    """Nodes and weights of waves beyond those of the film's quadrature, for `size` functions: by Gauss in log2 κ on
+    """Nodes and weights of the waves beyond the quadrature of films, for `size` functions: Gauss rules in log2 κ on
     each octave."""
     k, weight = [], []
     for start in CUT * 2.0 ** np.arange(-2, _OCTAVES):
@@ -159,7 +161,7 @@ def _waves(octave, stiffness, size):
 
 
 def in_blocks(rows, matrix, block=16):
-    """rows @ matrix, as products of `block` rows each: so a row has the same result in any company."""
+    """rows @ matrix, as products of `block` rows each, so that a row has the same result in any company."""
     padded = np.zeros((-(-len(rows) // block) * block, rows.shape[1]))
     padded[: len(rows)] = rows
     product = np.matmul(padded.reshape(-1, block, rows.shape[1]), matrix)
@@ -168,15 +170,15 @@ def in_blocks(rows, matrix, block=16):
 
 @lru_cache(maxsize=64)
 def _places(size):
-    """Where the product of two functions stands in a row of a table, (N + 1, N + 1)."""
+    """(N + 1, N + 1): the place of the product of two functions in a row of a table."""
     places = np.zeros((size + 1, size + 1), dtype=int)
     places[np.triu_indices(size + 1)] = np.arange((size + 1) * (size + 2) // 2)
     return np.maximum(places, places.T)
 
 
 def _table(sampler, octave, stiffness, size):
-    """(M, C): what L - 1 at the nodes is multiplied with, for the upper triangle of the products of d_0 ... d_(N - 1),
-    cos κ, row by row, and then for those of ê_n and κ sin κ."""
+    """The matrix (M, C) that makes the products from L - 1 at the nodes: the upper triangle of those of d_0 ...
+    d_(N - 1) and cos κ, row by row, and then those of ê_n and κ sin κ."""
     k, _ = quadrature(octave, stiffness)
     spread = few(sampler, octave, stiffness).spread
     functions = np.vstack([differences(size, k), np.cos(k)])
@@ -203,8 +205,8 @@ def differences(size, k):
 
 
 def differences_at(size, k):
-    """d_m (B, N, G) at κ (B, G) > 0, by recurrence over the order n of j_n: upwards where n < κ, and beyond by ratios,
-    which are found downwards."""
+    """d_m (B, N, G) at κ (B, G) > 0, by recurrence over the order n of j_n: upwards where n < κ, and beyond by ratios
+    from a downward recurrence."""
     last = 2 * size + int(_MILLER * np.cbrt(size)) + _MILLER
     ratios, ratio = np.empty((2 * size, *k.shape)), np.zeros_like(k)  # j_(n+1)/j_n
     for n in reversed(range(last)):

@@ -1,4 +1,4 @@
-"""The contact radius at which a quantity has a given value; of contacts without adhesion, the load or the depth."""
+"""The contact radius at which a quantity has a given value: for contacts without adhesion, the load or the depth."""
 
 import numpy as np
 
@@ -12,19 +12,19 @@ MOST, NEAR = 80, 1e-13
 _LONGEST = 3.0
 #: The variable of the last radius before the end of a profile.
 LAST = 30.0
-#: P or D that is not reached to this part is not reached: there is no such contact.
+#: If the relative distance of P or D from the given value stays above this, there is no such contact.
 _REACHED = 1e-9
-#: Rounding of a radius. Next to the flat part it is a larger part of a - least, on which P and D depend.
+#: Rounding error of a radius. Near the flat part it is a larger part of a - least, on which P and D depend.
 _ROUNDED = 4 * np.finfo(float).eps
-#: The first guess is right to this part of P or D, and begins at this radius, in R.
+#: Relative error of P or D at which the search for a first guess ends; and the radius, in R, at which it begins.
 _CLOSE, _USUAL = 0.01, 0.05
-#: A bracket as narrow as this holds nothing more: rounding.
+#: The width of a bracket, relative to x, that is only rounding.
 _NARROW = 4e-16
 
 
 class Radii:
-    """The variable x in which radii between the ends `least` and `most` of shapes are searched: ln(a - least), or where
-    the profile ends ln((a - least)/(most - a))."""
+    """The variable x in which radii between the bounds `least` and `most` of shapes are searched: ln(a - least), or, if
+    the profile ends, ln((a - least)/(most - a))."""
 
     def __init__(self, shape):
         self.least, self.most = shape.least(), shape.most()
@@ -32,7 +32,7 @@ class Radii:
         self._span = np.where(self.ends, self.most - self.least, 1.0)
 
     def at(self, x, index):
-        """a (b,) at x (b,) of the cases `index`, and da/dx."""
+        """a (b,) at x (b,) for the cases `index`, and da/dx."""
         least, span, ends = self.least[index], self._span[index], self.ends[index]
         e = np.exp(np.minimum(x, 700.0))
         share = np.where(ends, 1 / (1 + np.exp(-x)), e)
@@ -47,12 +47,12 @@ class Radii:
 
 
 def rising_root(evaluate, start, low=-np.inf, high=np.inf):
-    """Root of a rising function g of each of B cases, by Newton's method inside a bracket that it narrows itself: x
-    (B,), and how often each case was evaluated (B,).
+    """Roots x (B,) of one rising function g for each of B cases, by Newton's method inside a bracket that it narrows;
+    and the number (B,) of evaluations of each case.
 
     evaluate : ``evaluate(x, index) -> g, slope`` at x (b,) for the cases `index` (b,)
-    start : (B,). A case whose g is NaN somewhere on the way is given up: x is NaN
-    low, high : (B,), or numbers below and above all roots
+    start : (B,), first x. A case whose g is NaN at some step is abandoned: its x is NaN
+    low, high : the bracket, (B,) or one number for all cases
     """
     x, counts = start.copy(), np.zeros(len(start), dtype=np.int32)
     low, high = np.full(len(x), low), np.full(len(x), high)
@@ -77,11 +77,11 @@ def rising_root(evaluate, start, low=-np.inf, high=np.inf):
 
 
 def touching(control, value, shape, body):
-    """The :class:`~.galerkin.Response` of B contacts without adhesion, at the radius a, or where the load P or the
-    depth D is `value` (B,); and how often the equation was solved (B,). Where there is no such contact it is NaN, and
-    where the search ends on another branch than the contact (:mod:`.branches`).
+    """The :class:`~.galerkin.Response` of B contacts without adhesion whose radius a, load P or depth D is `value`
+    (B,); and the number (B,) of times that the equation was solved. It is NaN where there is no such contact, and where
+    the search ends on a wrong branch (:mod:`.branches`).
 
-    A full circle of contact ends where D does not rise with a any more: the punch lifts off inside.
+    A contact over the full circle ends where D no longer rises with a: the punch lifts off inside.
     """
     if control == "a":
         return respond(shape, body, value), np.ones(len(value), dtype=np.int32)
@@ -90,12 +90,14 @@ def touching(control, value, shape, body):
 
 
 def bracketed(control, value, shape, body, low, high):
-    """The same of a load or depth between the radii with the variable `low` and `high` (B,), where D rises."""
+    """As :func:`touching`, for a load or depth that is reached between the radii whose variables are `low` and `high`
+    (B,), between which D rises."""
     return _searched(control, value, (shape, body, Radii(shape)), (low + high) / 2, low, high)
 
 
 def _searched(control, value, parts, start, low=-np.inf, high=np.inf):
-    """The Response of the `parts`, shapes, a body and :class:`Radii`, by a search from `start` (B,), and counts."""
+    """The Response and the counts of :func:`touching` by a search from `start` (B,). `parts`: shapes, body and
+    :class:`Radii`."""
     (shape, body, radii), pieces = parts, []
 
     def evaluate(x, index):
@@ -114,7 +116,7 @@ def _searched(control, value, parts, start, low=-np.inf, high=np.inf):
 
 
 def guess(control, value, shape, body, radii):
-    """x (B,) on a half-space that yields as the body does to waves as long as the contact."""
+    """x (B,) on a half-space as compliant as the body is to waves as long as the contact."""
 
     def evaluate(x, index):
         a, da = radii.at(x, index)
@@ -126,4 +128,4 @@ def guess(control, value, shape, body, radii):
 
     start = np.where(np.isfinite(radii.most) | (radii.least > 0), -1.0, np.log(_USUAL))
     x = rising_root(evaluate, start)[0]
-    return np.where(radii.ends, np.minimum(x, LAST), x)  # a half-space may need more than there is of the profile
+    return np.where(radii.ends, np.minimum(x, LAST), x)  # on a half-space the contact may reach beyond the profile

@@ -1,7 +1,8 @@
-"""The terms of the equation that an indenter's shape gives: F(a) - F(t) in the basis, and the pressure of a half-space.
+"""The terms of the equation that depend on the indenter's shape: F(a) - F(t) in the basis, and the pressure of a
+half-space.
 
-Both are integrals over t between the kinks of the shape. Beyond a kink b, and beyond t = 0 unless the shape is smooth
-in r², the variable is y in t = b + (c - b) y², where c is the next kink or a: F is smooth in y.
+Both are integrals over t between the kinks of the shape. From a kink b, and from t = 0 unless the shape is smooth in
+r², the variable is y, t = b + (c - b) y², where c is the next kink or a: F is smooth in y.
 """
 
 from functools import lru_cache
@@ -12,20 +13,20 @@ from ..numerics.quadrature import gauss_legendre, log_rule, panels_towards
 from ..shapes.shape import column
 from .products import in_blocks
 
-#: Points of a rule besides those for the basis.
+#: Points of a rule in addition to those for the basis.
 _MORE = 20
-#: Lengths of panels are rounded to such parts.
+#: Lengths of panels are rounded up to multiples of 1/_PARTS.
 _PARTS = 8
-#: Points of a rule of the pressure: in a subpanel towards a singularity, and under a shape without one.
+#: Points of a rule for the pressure: on a subpanel towards a singularity, and for a shape without one.
 _NEAR, _SMOOTH = 22, 40
-#: Numbers that are computed together.
+#: Number of values that are computed together.
 _TOGETHER = 1_000_000
 _EPS = np.finfo(float).eps
 
 
 def panel_ends(shape, a):
-    """Pairs of places (b,) in the batch and the ends (b, K + 2) of panels from 0 to a for these, over a: 0, the kinks
-    in the contact, 1."""
+    """Yield pairs: places (b,) in the batch, and the ends (b, K + 2) of their panels from 0 to a, over a: 0, the kinks
+    inside the contact, 1."""
     kinks = np.sort(shape.kinks() / column(a), axis=1)
     counts = (kinks < 1).sum(axis=1)
     for count in np.unique(counts).tolist():
@@ -72,14 +73,14 @@ def _kinked_drop(shape, a, size):
 
 
 def longest(angles):
-    """The longest of panels with ends at these angles (B, K), over a right angle, in eighths. A function of the basis
-    has this part of all its waves there."""
+    """The length of the longest panel between these angles (B, K), over a right angle, rounded up to eighths. It is the
+    share of a basis function's waves on that panel."""
     widths = np.abs(np.diff(angles, axis=1)).max(axis=1)
     return np.ceil(_PARTS * widths / (np.pi / 2) - _EPS * _PARTS) / _PARTS
 
 
 def _in_panels(shape, a, ends, size, count):
-    """The same on panels with these ends, of `count` points each."""
+    """As :func:`lifted_drop`, on panels with these ends, of `count` points each."""
     y, w = gauss_legendre(count)
     radius, low, width = column(a), ends[:, :-1, None], np.diff(ends, axis=1)[:, :, None]
     tau = (low + width * y**2).reshape(len(a), -1)
@@ -103,8 +104,8 @@ def legendre(tau, size):
 
 
 def on_half_space(shape, a, x):
-    """∫ from r to a of F'(t)/sqrt(t² - r²) dt (B, m) at r = ax, x (m,) < 1: the pressure of a half-space times π/E. It
-    is infinite at r = 0 under a pointed tip."""
+    """∫ F'(t)/sqrt(t² - r²) dt, (B, m), from r to a, at r = ax with x (m,) < 1: the pressure of a half-space times π/E.
+    It is infinite at r = 0 under a pointed tip."""
     out = np.empty((len(a), len(x)))
     even = shape.even
     for index in (np.flatnonzero(even), np.flatnonzero(~even)):
@@ -119,7 +120,7 @@ def on_half_space(shape, a, x):
 
 
 def _smooth_pressure(shape, a, x):
-    """With t² = r² + y², where F'/t is smooth."""
+    """The integral by t² = r² + y², if F'/t is smooth."""
     u, w = gauss_legendre(_SMOOTH)
     s = np.sqrt((1 - x) * (1 + x))
     tau = np.sqrt(x[:, None] ** 2 + (s[:, None] * u) ** 2)
@@ -128,8 +129,8 @@ def _smooth_pressure(shape, a, x):
 
 
 def _kinked_pressure(shape, a, x):
-    """On each panel beyond r, in y of t = start + width y². F' or 1/sqrt(t² - r²) is singular at the lower end of the
-    panel or at r, whichever is not the start: the nearer it is, the more subpanels."""
+    """The integral by panels beyond r, in y, t = start + width y². The start is the lower end of the panel or r. The
+    other of the two is a singularity, of F' or of 1/sqrt(t² - r²): the nearer it is, the more subpanels there are."""
     out = np.zeros((len(a), len(x)))
     for index, ends in panel_ends(shape, a):
         for low, high in zip(ends.T[:-1], ends.T[1:], strict=True):
@@ -145,7 +146,7 @@ def _kinked_pressure(shape, a, x):
 
 
 def _on_panel(shape, a, start, width, x, count):
-    """The integral (b,) on one panel each, of `count` subpanels."""
+    """The integrals (b,) over one panel each, with `count` subpanels."""
     y, w = log_rule(_NEAR, everywhere=True, panels=count)
     above = width[:, None] * y**2  # t - start, over a
     tau = start[:, None] + above

@@ -1,4 +1,4 @@
-"""A smooth contact at a radius, with and without adhesion, and its answers."""
+"""The state of a smooth contact at a radius, with and without adhesion, and its answers."""
 
 from typing import NamedTuple
 
@@ -11,23 +11,31 @@ from .pressure import flat_pressure, pressure_changes, pressures_of
 from .radius import NEAR
 from .tension import LOOKED_AT, seen
 
-#: Where dD/da is below this part of the shape's share in it, D has its minimum, to rounding.
+#: If dD/da is below this part of the shape's share in it, D has its minimum, to rounding.
 _FLAT = 1e-12
-#: Rounding of a pressure over the largest one: 3e-13 at most beside kinks of the shape (tools/errors/shape_errors.py).
+#: Rounding error of a pressure over the largest one: it is at most 3e-13 near kinks of the shape
+#: (tools/errors/shape_errors.py).
 _OF_PRESSURE = 5e-13
-#: Nearer to a corner than this, relative, a contact is taken for that of a flat punch; at the second the rounding of a
-#: is a small part of the distance still.
+#: A contact whose relative distance from a corner is below _CORNER counts as that of a flat punch. At the distance
+#: _AT_CORNER the rounding of a is still a small part of it.
 _CORNER, _AT_CORNER = 1e-9, 64 * np.finfo(float).eps
-#: The error of p(0) is the largest at so many of these radii, those below 0.45 a: one may be small by chance. The
-#: kernel is off by a part of what presses at twice as many, below 0.87 a. Under shapes with kinks or tips the series
-#: ends more slowly than its last step says: 2.9 times at most was seen (tools/errors/shape_errors.py).
+#: The error of p(0) is the largest at the first _INNER radii of LOOKED_AT, which are below 0.45 a: a single one may be
+#: small by chance. The error of the kernel is relative to the largest pressure at twice as many, below 0.87 a. Under
+#: shapes with kinks or tips the series converges more slowly than its last step suggests, at most 2.9 times in
+#: tools/errors/shape_errors.py: there the error is multiplied by _SLOW.
 _INNER, _SLOW = 8, 4.0
 
 
 @batch.of_cases
 class State(NamedTuple):
-    """Contacts, (B,) each: load and depth at the radius `a`, their derivatives dP, dD by a, and their errors. `A`, the
-    edge value, and `response` determine the pressure. `zone` is c/a, 1 unless attraction acts in a ring."""
+    """The states of B contacts; arrays are (B,).
+
+    a, P, D : radius, load, depth
+    dP, dD : derivatives of load and depth by a
+    P_error, D_error : absolute errors at the radius a
+    A : the edge value, which together with `response` determines the pressure
+    zone : c/a; 1 unless attraction acts in a ring
+    """
 
     a: np.ndarray
     A: np.ndarray
@@ -41,25 +49,25 @@ class State(NamedTuple):
     response: Response
 
     def only(self, mask):
-        """NaN in place of all numbers of cases that are not in the `mask` (B,)."""
+        """The states with NaN in place of all numbers of cases outside the `mask` (B,)."""
         return State(*(np.where(mask, v, np.nan) for v in self[:-1]), self.response.only(mask))
 
     @property
     def stiffness(self):
-        """dP/dD along the curve, (B,): infinite where the depth has its minimum."""
+        """dP/dD (B,) along the curve of contacts; infinite where the depth has its minimum."""
         steep = np.abs(self.dD) < _FLAT * self.response.slope
         free = (self.A == 0) & (self.zone == 1) | np.isinf(self.response.slope)  # or at a corner
         return np.where(free, self.response.S, np.where(steep, np.inf, self.dP / self.dD))
 
     @classmethod
     def free(cls, response):
-        """The contacts without adhesion."""
+        """The states of contacts without adhesion."""
         r = response
         return cls(r.a, 0 * r.a, r.P, r.D, r.S * r.slope, r.slope, r.P_error, r.D_error, 1 + 0 * r.a, r)
 
     @classmethod
     def join(cls, size, pieces):
-        """The states of `size` cases from pairs of places and the states there; cases in none are NaN."""
+        """The states of `size` cases from pairs of places and their states. Cases without a state are NaN."""
         arrays = [np.full(size, np.nan) for _ in cls._fields[:-1]]
         for index, piece in pieces:
             for array, values in zip(arrays, piece, strict=False):
@@ -68,7 +76,7 @@ class State(NamedTuple):
 
 
 def pinned(part, shape, body):
-    """:class:`State` of flat punches, whose edge takes the load: either P or D follows from the other."""
+    """:class:`State` of flat punches, whose contact radius is fixed. P gives D, or D gives P."""
     r = respond(shape, body, shape.least())
     unit, other = (r.flat_P, r.flat_D) if part.control == "P" else (r.flat_D, r.flat_P)
     A = part.value / unit
@@ -78,9 +86,9 @@ def pinned(part, shape, body):
 
 
 def at_corner(part, shape, body, state):
-    """The states, and which of them (B,) are taken for those of a flat punch of the radius b of the flat part: they
-    touch so little beyond b, or less than the radius can tell. Their P and D are off by the part by which a exceeds
-    b."""
+    """The states, and (B,) bool, whether a state is replaced by that of a flat punch with the radius b of the flat
+    part: its radius exceeds b by very little, or by less than its digits can show. The relative error of its P and D is
+    then a/b - 1."""
     least = shape.least()
     with np.errstate(invalid="ignore", divide="ignore"):
         over = state.a / least - 1
@@ -99,9 +107,10 @@ def at_corner(part, shape, body, state):
 
 
 def beyond_profile(part, shape, at):
-    """(B,) bool: the contact is larger than the profile, which ends where its slope is finite, as a table does.
+    """(B,) bool: whether the contact is larger than the profile, for profiles that end with a finite slope, as a table
+    does.
 
-    at : ``at(index, a)`` gives the :class:`State` of the cases `index` at the radii a
+    at : ``at(index, a)`` returns the :class:`State` of the cases `index` at the radii a
     """
     most, outside = shape.most(), np.zeros(len(part), dtype=bool)
     index = np.flatnonzero(np.isfinite(shape.lifted(most[:, None])[:, 0]) & (most > shape.least()))
@@ -112,39 +121,41 @@ def beyond_profile(part, shape, at):
 
 
 class Scales(NamedTuple):
-    """The least sizes (B,) to which errors of a load, a depth and a p(0) are relative: all three may be 0."""
+    """Lower bounds (B,) of the sizes to which errors of a load, a depth and a p(0) are relative, since all three may be
+    0."""
 
     P: np.ndarray | float = 0.0
     D: np.ndarray | float = 0.0
     p0: np.ndarray | float = 0.0
 
 
-#: For contacts that do not stick, where nothing is 0.
+#: For contacts without adhesion, in which nothing is 0.
 NOT_STICKING = Scales()
 
 
 def answer(part, shape, state, counts, x, ring=None, scales=NOT_STICKING):
-    """:class:`~..solution.Solution` of the states of a problem, and whether there is tension inside (B,). Its error is
-    that of a, P and D under the control, and of p(0) where that is finite. ``ring(x)`` is added to p."""
+    """:class:`~..solution.Solution` of the states of a problem, and (B,) bool, whether there is tension inside. The
+    error includes those of a, P and D under the control, and that of p(0) if it is finite. ``ring(x)`` is added to
+    p."""
     response, A = state.response, state.A
     radii = np.concatenate([x, [0.0], LOOKED_AT])
     p = pressures_of(shape, response, A, radii)
     if ring is not None:
         p = p + ring(radii)
-    p_x, p0, looked_at = np.split(p, [len(x), len(x) + 1], axis=1)
+    p_x, p0, p_probes = np.split(p, [len(x), len(x) + 1], axis=1)
     p0 = p0[:, 0]
     moved, error = _error(part.control, state, scales)
     of_p = np.abs(pressure_changes(response, A, LOOKED_AT))
     along = np.where(moved > 0, np.abs(flat_pressure(response) * state.dD) * moved, 0.0)
-    largest = np.max(np.where(np.isfinite(looked_at), np.abs(looked_at), 0.0), axis=1)
+    largest = np.max(np.where(np.isfinite(p_probes), np.abs(p_probes), 0.0), axis=1)
     over = np.where(state.a > shape.least(), state.a - shape.least(), state.a)
-    rounding = _OF_PRESSURE * np.sqrt(state.a / over)  # more next to a corner
+    rounding = _OF_PRESSURE * np.sqrt(state.a / over)  # larger near a corner
     off = np.nan_to_num(
         np.where(response.P > 0, response.P_error / response.P, response.flat_P_error / response.flat_P)
     )
-    # missed waves are felt all over a contact, except in the pull of an edge, which is exact
-    of_waves = off * np.where(A == 0, largest, np.abs(looked_at[:, : 2 * _INNER]).max(axis=1))
-    terms = np.abs(p0) + np.abs(A) * response.E / (np.pi * state.a)  # the press of the shape, and the pull of the edge
+    # the error of the waves acts all over the contact, except in the pull of the edge, which is exact
+    of_waves = off * np.where(A == 0, largest, np.abs(p_probes[:, : 2 * _INNER]).max(axis=1))
+    terms = np.abs(p0) + np.abs(A) * response.E / (np.pi * state.a)  # the parts of the shape and of the edge
     of_p0 = np.where(shape.even, 1.0, _SLOW) * of_p[:, :_INNER].max(axis=1) + rounding * terms + along + of_waves
     error = error + np.where(np.isfinite(p0), _over(of_p0, p0, scales.p0), 0.0)
     numbers = {"a": state.a, "P": state.P, "D": state.D, part.control: part.value}
@@ -153,11 +164,11 @@ def answer(part, shape, state, counts, x, ring=None, scales=NOT_STICKING):
         *p_x.shape, **numbers, p0=p0, p_max=p0, Ar_An=1.0, A0=0.0, dP_dD=state.stiffness, residual=0.0,
         error=error, profile_error=between, p=p_x, lam=1.0, iterations=counts, nodes=np.nan_to_num(response.size),
     )  # fmt: skip
-    return solution, seen(looked_at, of_p)
+    return solution, seen(p_probes, of_p)
 
 
 def _error(control, state, scales):
-    """By how much the radius may be off (B,), where it is not given, and the sum of the relative errors of a, P, D."""
+    """The error (B,) of the radius, 0 if it is the control, and the sum (B,) of the relative errors of a, P and D."""
     if control == "a":
         return 0 * state.a, _over(state.P_error, state.P, scales.P) + _over(state.D_error, state.D, scales.D)
     off, slope = (state.P_error, state.dP) if control == "P" else (state.D_error, state.dD)
@@ -168,12 +179,12 @@ def _error(control, state, scales):
 
 
 def _size(control, state):
-    """The sum (B,) of the sizes of the parts of shape and edge in the load, or depth: it is 0 nowhere."""
+    """The sum (B,) of the absolute values of the parts of shape and edge in the load or depth, which is never 0."""
     r = state.response
     number, flat = (state.P, r.flat_P) if control == "P" else (state.D, r.flat_D)
     return np.abs(number) + np.abs(state.A) * flat
 
 
 def _over(error, value, least=0.0):
-    """error/|value|, or over `least` where that is more; 0 where there is no error."""
+    """The error over the larger of |value| and `least`; 0 where the error is 0."""
     return np.where(error == 0, 0.0, error / np.maximum(np.abs(value), least))

@@ -11,18 +11,21 @@ from ..body.wave_rule import STIFFEST
 from ..numerics import batch
 from .products import in_blocks
 
-#: Points of a panel. A panel ends at twice the u at which it begins; L - 1 is analytic but near the imaginary axis, and
-#: so the series of Chebyshev falls by 5.8 with each term.
+#: Points of a panel. A panel ends at twice the u at which it begins. L - 1 is analytic except near the imaginary axis,
+#: so that each term of the Chebyshev series is 5.8 times smaller than the one before.
 _POINTS = 20
-#: The first panel, from 0, ends below 0.15 over the stiffness: L is nearly straight there. The last ends at _END.
+#: The first panel, from 0, ends below u = 0.15/stiffness, where L is nearly straight. The last panel ends at _END.
 _FIRST = tuple(2.0 ** np.floor(np.log2(0.15 / np.array(STIFFEST))))
 _END = 32.0
 
 
 @batch.of_cases
 class Tabulated(NamedTuple):
-    """A :class:`~..body.hankel.Hankel` body with the series of (L - 1)/(1 + m), `series` (B, p, _POINTS), on p panels
-    in u = kh, of which the first ends at `first` (B,); beyond the last it is 0."""
+    """A :class:`~..body.hankel.Hankel` body with a table of (L - 1)/(1 + m).
+
+    first : (B,), the u = kh at which the first of p panels ends; beyond the last panel the function is 0
+    series : (B, p, _POINTS), Chebyshev series on the panels
+    """
 
     body: Hankel
     first: np.ndarray
@@ -30,7 +33,7 @@ class Tabulated(NamedTuple):
 
     @classmethod
     def of(cls, body):
-        """The body with a table of its kernel, or the body itself, if it has none."""
+        """The body with a table of its kernel, or the body itself if it has no kernel."""
         if body.kernel is None:
             return body
         place = np.minimum(np.searchsorted(STIFFEST, body.kernel.stiffness), len(STIFFEST) - 1)
@@ -79,7 +82,7 @@ class Tabulated(NamedTuple):
 
 
 def where_slow(body):
-    """The body, with a table of its kernel if that is of many layers, of which each wave takes long."""
+    """The body, with a table of its kernel if this is one of many layers, which takes long for each wave."""
     return Tabulated.of(body) if body.kernel is not None and body.kernel.sampler is None else body
 
 
@@ -97,7 +100,7 @@ def excess(body, u):
 
 @lru_cache(maxsize=1)
 def _chebyshev():
-    """The Chebyshev nodes of [0, 1], and a matrix at the right of values (..., n) there that makes the coefficients."""
+    """The Chebyshev nodes of [0, 1], and the matrix that makes coefficients from rows of values (..., n) at them."""
     nodes = (1 - np.cos(np.pi * (np.arange(_POINTS) + 0.5) / _POINTS)) / 2
     return nodes, np.linalg.inv(chebvander(2 * nodes - 1, _POINTS - 1)).T
 

@@ -1,7 +1,7 @@
-"""Tension inside a contact that does not stick: there the punch lifts off.
+"""Tension inside a contact without adhesion, where the punch lifts off.
 
 Under a tip or a kink a thin layer on a softer body bends, and the pressure may be tensile in a ring about as wide as
-the layer is thick. Tension that is no more than the error of the pressure is none.
+the layer is thick. Tension counts only if it is larger than the error of the pressure.
 """
 
 import numpy as np
@@ -10,31 +10,31 @@ from numpy.lib.stride_tricks import sliding_window_view
 from ..status import Status
 from .pressure import pressure_changes, pressures_of
 
-#: Radii at which the pressure is looked at, for tension and for its error; denser towards the edge.
+#: Radii at which the pressure is evaluated, for tension and for its error; denser towards the edge.
 LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
-#: Largest L of a kernel under which no layer bends so, and the number of functions of the basis up to which these
-#: radii are dense enough: the thinner the layer, the more there are. Else there are so many radii for each function.
+#: Largest stiffness of a kernel with which no layer bends so; number of functions of the basis up to which these radii
+#: are dense enough, since a thinner layer has more functions; and the number of radii for each function otherwise.
 _SOFT, _FEW, _DENSER = 2.0, 40, 3
 _ROUNDING = 64 * np.finfo(float).eps
 
 
 def is_tensile(shape, body, response):
-    """(B,) bool: there is tension in contacts of shapes on a body, at the radius of their `response`."""
+    """(B,) bool: whether there is tension in contacts of shapes on a body, at the radius of their `response`."""
     none, steep = np.zeros(len(response.a)), response.slope <= 0
     out = steep | seen(pressures_of(shape, response, none, LOOKED_AT), pressure_changes(response, none, LOOKED_AT))
     return out | in_a_ring(shape, body, response, ~out)[0]
 
 
 def seen(p, changes):
-    """(B,) bool: among the pressures (B, m) at LOOKED_AT there is tension, larger than their `changes` with the last
-    functions of the basis. On the axis, the first, there is a pressure."""
+    """(B,) bool: whether among the pressures (B, m) at LOOKED_AT there is tension larger than their `changes` by the
+    last functions of the basis. On the axis, the first of the radii, any tension counts."""
     return (p[:, 0] < 0) | (p < -np.abs(changes)).any(axis=1)
 
 
 def in_a_ring(shape, body, response, wanted):
-    """(B,) bool: there is tension in a ring that LOOKED_AT may miss, in contacts that are `wanted` (B,) bool: larger
-    than all changes with the last functions of the basis nearby, of which one may be small by chance. And whether there
-    may be some, (B,) bool."""
+    """(B,) bool: whether there is tension in a ring that LOOKED_AT may miss, in the contacts `wanted` (B,) bool. It
+    must exceed all changes nearby by the last functions of the basis, of which a single one may be small by chance. And
+    (B,) bool: whether there may be such tension."""
     there, doubtful = np.zeros((2, len(response.a)), dtype=bool)
     if body.kernel is None:
         return there, doubtful
@@ -50,9 +50,9 @@ def in_a_ring(shape, body, response, wanted):
 
 
 def judged(solution, tensile, shape, body, state, x):
-    """The solution of contacts that do not stick, with LIFT_OFF where they are `tensile` (B,) bool or there is tension
-    elsewhere: in a narrow ring, at the radii x (m,), or at the edge, where D does not rise with a. At x the pressure is
-    0 where it is tensile by no more than its error. And whether there is, or may be, tension (B,)."""
+    """The solution of contacts without adhesion, with LIFT_OFF where they are `tensile` (B,) bool or there is tension
+    elsewhere: in a narrow ring, at the radii x (m,), or at the edge, where D then does not rise with a. Tension at x
+    that does not exceed the error becomes 0. And (B,) bool: whether there is, or may be, tension."""
     response = state.response
     tensile = tensile | (state.dD <= 0) | ~np.isfinite(state.P)
     there, doubtful = in_a_ring(shape, body, response, ~tensile)

@@ -1,1 +1,1 @@
-"""Where and how large stresses are at most (docs/stresses.md), and whether elastic asperities would yield."""
+"""The largest stresses and their places (docs/stresses.md), and whether elastic asperities would yield."""

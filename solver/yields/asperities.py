@@ -1,8 +1,9 @@
-"""Whether elastic asperities would yield: the stress on the axis of a spot, which is on two scales.
+"""Whether elastic asperities would yield: the stress on the axis of a spot, which has two scales.
 
-Near the surface the stress is that of the nominal pressure p, and that of the spot's own pressure less p, which dies
-within a pitch. In the disc cell the spot presses with p0s sqrt(1 - ρ²/b²) + (2 p/pi) arctan sqrt((b² - ρ²)/(B̄² - b²)),
-p0s = 2 E b/(pi Ra), so that Abel's φ (docs/stresses.md) is p0s t/b + (2 p/pi) t/sqrt(B̄² - t²), t < b.
+Near the surface the stress is the sum of two parts: that of the nominal pressure p, and that of the spot's own pressure
+less p, which decays within a pitch. In the disc cell the pressure of the spot is
+p0s sqrt(1 - ρ²/b²) + (2 p/pi) arctan sqrt((b² - ρ²)/(B̄² - b²)), p0s = 2 E b/(pi Ra). So Abel's φ (docs/stresses.md) is
+p0s t/b + (2 p/pi) t/sqrt(B̄² - t²), t < b.
 """
 
 import numpy as np
@@ -10,20 +11,20 @@ from numpy.typing import ArrayLike
 
 from ..numerics.quadrature import gauss_legendre
 
-#: Points over t = B̄ sin(angle): at the depths below the integrals are then right to 1e-11.
+#: Points over t = B̄ sin(angle). At the depths _DEPTHS the integrals are then right to 1e-11.
 POINTS = 20
-#: Depths z/b among which the largest stress is looked for; around it so many times among nine more, then by a parabola.
-#: The references agree to 3e-9 (tests/yields/test_asperities.py). A spot that is alone yields at 0.38 b for nu = 0, at
-#: 0.55 b for nu = 1/2.
+#: Depths z/b among which the largest stress is searched for; and number of rounds, each with nine depths around the
+#: best one; a parabola follows. The references agree to 3e-9 (tests/yields/test_asperities.py). A lone spot yields at
+#: 0.38 b for nu = 0, and at 0.55 b for nu = 1/2.
 _DEPTHS, _ROUNDS = np.linspace(0.2, 1.4, 9), 4
-#: Spots at a time: some MB.
+#: Number of spots at a time, which take some MB.
 _AT_ONCE = 1000
-#: Steps of Newton's method from below, where the equation is concave.
+#: Steps of Newton's method, which starts below the root, where the equation is concave.
 _STEPS = 10
 
 
 def hertz_part(p_max: ArrayLike, p: ArrayLike, E: ArrayLike, Nbar: ArrayLike, Ra: ArrayLike):
-    """Hertz's part p0s of the largest real pressure p_max = p0s + (2 p/pi) arcsin(c), and c = b/B̄ of its spot.
+    """Hertz's part p0s of the largest real pressure p_max = p0s + (2 p/pi) arcsin(c), and c = b/B̄ of the spot.
 
     p : nominal pressure; p_max and p in the unit of E, the modulus that the asperities feel. The arguments broadcast
     """
@@ -35,21 +36,21 @@ def hertz_part(p_max: ArrayLike, p: ArrayLike, E: ArrayLike, Nbar: ArrayLike, Ra
     return alone * np.sin(angle), np.sin(angle)
 
 
-@np.errstate(all="ignore")  # a spot that is none has NaN
+@np.errstate(all="ignore")  # without a spot the stress is NaN
 def stress_on_axis(nu: ArrayLike, c: ArrayLike, ratio: ArrayLike, tension: ArrayLike = 0.0) -> np.ndarray:
-    """Largest |sr - sz| over p0s on the axis of a spot, from 0.2 b to 1.4 b: von Mises' and Tresca's stress there.
+    """Largest |sr - sz| over p0s on the axis of a spot, from 0.2 b to 1.4 b: the stress of von Mises and Tresca there.
 
     Parameters
     ----------
     nu : Poisson ratio
     c : b/B̄, in (0, 1]
     ratio : p/p0s
-    tension : further sr - sz of the contact as a whole, over p0s. 0: that in the centre of a half-space, sr = st =
+    tension : sr - sz of the contact as a whole, over p0s, beyond that in the centre of a half-space, sr = st =
         -(1 + 2 nu) p/2, sz = -p
 
     Returns
     -------
-    numpy.ndarray : of the arguments broadcast
+    numpy.ndarray : of the shape to which the arguments broadcast
     """
     arrays = np.broadcast_arrays(*(np.asarray(array, dtype=float) for array in (nu, c, ratio, tension)))
     flat = [array.reshape(-1, 1) for array in arrays]
@@ -72,8 +73,8 @@ def _largest(spots):
 
 
 def _difference(z, nu, c, ratio, tension):
-    """|sr - sz| (B, Z) over p0s at the depths z (B, Z) in b: (1 - 2 nu) E_0/2 + 1.5 F_0 of the spot, less that of p on
-    the disc of the cell, plus that of p everywhere."""
+    """|sr - sz| (B, Z) over p0s at the depths z (B, Z) in b: (1 - 2 nu) E_0/2 + 1.5 F_0 for the spot, less that for p
+    on the disc of the cell, plus that for p everywhere."""
     x, weight = gauss_legendre(POINTS)
     angle = np.arcsin(c) * x
     t = np.sin(angle) / c

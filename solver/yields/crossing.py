@@ -1,4 +1,4 @@
-"""The first place at which a stress exceeds a strength, of many cases: by steps, then by false position."""
+"""The first place at which a stress exceeds a strength, for many cases: by steps, then by false position."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -7,30 +7,34 @@ import numpy as np
 
 from ..numerics.batch import march
 
-#: A step is at most _STEP where the stress is near the strength; farther away the power _SLOWEST of what is missing, at
-#: most _LARGEST: the stress of films and of asperities that have only begun to touch grows like a^4 or less.
+#: A step is a factor of the place. Where the stress is near the strength it is at most _STEP. Farther away it is the
+#: power _SLOWEST of the missing factor of the stress, _NEAR strength/stress, and at most _LARGEST: the stress of films,
+#: and of asperities that have only begun to touch, grows like a^4 or less.
 _STEP, _SLOWEST, _LARGEST, _NEAR = 1.1, 0.2, 1.5, 0.7
-#: The coarse grid misses at most this part of the largest stress: above it the stress itself is computed.
+#: A stress on the coarse grid is too small by at most this part. If it may exceed the strength, the stress itself is
+#: computed.
 _MISSED = 0.15
-#: So many steps are taken at once where contacts are alike: if a stress allows shorter ones, what is behind it is left.
+#: Largest number of steps that are taken at once where contacts are alike. If a stress allows only shorter steps, the
+#: places behind it do not count.
 _TOGETHER = 8
-#: A place is found when the stress is the strength to _SAME, or given up after _MOST steps.
+#: A place is accepted when the stress agrees with the strength to _SAME, and abandoned after _MOST steps.
 _SAME, _MOST = 1e-7, 40
 #: By which part of the place a contact beside the crossing is away: slopes then have an error of about as much.
 _ASIDE = 1e-3
-#: Numbers of the contact that are kept.
+#: Numbers of the contact that a crossing has.
 NUMBERS = ("P", "a", "D", "p0")
 
 
 class Crossing(NamedTuple):
-    """Where the stress first exceeds the strength, (B,) each; NaN where it does not.
+    """The contacts in which the stress first exceeds the strength, arrays (B,); NaN where it does not.
 
-    crossed : bool
-    at : what was marched over, such as the radius
+    crossed : bool, whether it does
+    at : the variable of the march, such as the radius
     numbers : P, a, D, p0 of the contact there, in the units of the problem
     r, z : the place in the contact, in a
-    unsolved : bool, nothing was found, and some contacts on the way have no solution; or it is before `start`
-    by_strength : d ln/d ln strength of the numbers, where these are wanted
+    unsolved : bool, whether there is no answer, because some contacts on the way have no solution, or because the
+        crossing is before `start`
+    by_strength : derivatives of ln of the numbers by ln strength, if the caller wants them
     """
 
     crossed: np.ndarray
@@ -51,12 +55,14 @@ class Crossing(NamedTuple):
 def first_crossing(
     stress: Callable, start: np.ndarray, last: np.ndarray, slopes: bool = False, same_grid: Callable | None = None
 ) -> Crossing:
-    """From `start` (B,) up to `last` (B,), NaN or start > last: nothing is looked for.
+    """The :class:`Crossing` between `start` (B,) and `last` (B,). With NaN, or start > last, there is no search.
 
-    stress : ``stress(index, at, coarse)``, of the cases `index` at the places `at` (b,): the stress over the strength,
-        with `coarse` up to a little too small, its r and z, and the :class:`~solver.solution.Solution`
-    same_grid : ``same_grid(index, at)``, up to which places (b,) from `at` on contacts are so alike that several cost
-        as much as one; None: no others are
+    stress : ``stress(index, at, coarse)`` returns, for the cases `index` at the places `at` (b,), the stress over the
+        strength, its r and z, and the :class:`~solver.solution.Solution`. With `coarse` the stress may be a little too
+        small
+    slopes : whether `by_strength` is wanted
+    same_grid : ``same_grid(index, at)`` returns the places (b,) up to which, from `at` on, contacts are so alike that
+        several cost as much as one; None: there are none
     """
     same_grid = (lambda index, at: at) if same_grid is None else same_grid
     made = Crossing.none(len(start))
@@ -80,8 +86,8 @@ def _sloped(made, stress, index):
 
 
 def _bracketed(stress, index, start, last, same_grid):
-    """ln of the places before and behind the first crossing, NaN where there is none, and ln of the stress over the
-    strength there, (2, b) each; and whether some contact has no solution."""
+    """ln of the places just before and just after the first crossing, and ln of the stress over the strength there, (2,
+    b) each, NaN where there is none; and (b,) bool, whether some contact has no solution."""
     places, values = np.full((2, 2, len(index)), np.nan)
     failed, at, far = np.zeros(len(index), dtype=bool), np.log(start), np.full(len(index), np.log(_LARGEST))
 
@@ -118,8 +124,8 @@ def _bracketed(stress, index, start, last, same_grid):
 
 
 def _steps(at, far, last, end):
-    """Places (m,) of several cases, and of which each is, ascending: from `at` by steps `far`, at most to `last`, and
-    as long as they are not beyond `end`; the first always is one."""
+    """Places (m,) of several cases, and (m,) the case of each, ascending. They go from `at` by steps `far` up to `last`
+    and `end`; `at` is always one of them."""
     counts = np.clip(np.floor((np.minimum(end, last) - at) / far + 1e-9), 0, _TOGETHER - 1).astype(int) + 1
     rows = np.repeat(np.arange(len(at)), counts)
     number = np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -127,8 +133,8 @@ def _steps(at, far, last, end):
 
 
 def _near(value, rows):
-    """Which coarse values (m,) may be those of a crossing, up to the first of each case that is one; `rows` (m,), of
-    which case each is, ascending."""
+    """(m,) bool: whether a coarse value (m,) may be that of a crossing, up to the first of each case that is one.
+    `rows` (m,) is the case of each, ascending."""
     over = np.cumsum(value >= 1)
     starts = np.searchsorted(rows, rows)
     before = over - (value >= 1) - np.where(starts > 0, over[starts - 1], 0)

@@ -8,7 +8,8 @@ from ..fields.invariants import invariants, mises
 from .search.climb import climb
 from .search.jets import Jets
 
-#: Name -> the function of sr, st, sz, trz whose largest value it is. sz_interface_min is minus the largest of -sz.
+#: Name -> the function of sr, st, sz, trz whose largest value is searched for. sz_interface_min is minus the largest
+#: -sz.
 VALUES = {
     "mises": mises,
     "tresca": lambda *stresses: invariants(*stresses).tresca,
@@ -18,7 +19,7 @@ VALUES = {
     "tension": lambda sr, st, sz, trz: +sz,
     "compression": lambda sr, st, sz, trz: -sz,
 }
-#: Name of an extreme -> its function, and the regions in which it is looked for, with a layer and without.
+#: Name of an extreme -> its function, and the regions in which it is searched for, with a layer and without.
 EXTREMES = {
     "mises1": ("mises", ("inside", "outside", "layer", "above"), ()),
     "mises2": ("mises", ("body",), ("inside", "outside", "body")),
@@ -33,11 +34,12 @@ EXTREMES = {
 }
 #: Extremes that may not exist: below _NOTHING of the largest pressure they are rounding, and 0.
 _MAY_LACK, _NOTHING = ("s1_surface", "s1_layer", "sr_interface1", "tau_interface", "sz_interface_max"), 1e-11
-#: Further places of the coarse grid are looked at too where they have this part of the best, or miss it by less than
-#: _ROUGH of the largest pressure, as rough stresses may.
+#: Other peaks of the coarse grid are followed too if they are above _RIVAL times the best, or lower than it by less
+#: than _ROUGH times the largest pressure, which is the error of rough stresses.
 _RIVAL, _ROUGH = 0.85, 3e-4
-#: The coarse grid (tests/yields/test_largest_stresses.py finds all references from it): radii in a; beyond the edge in
-#: lengths over which a layer bends, h or n^(1/3) h; depths in a, in octaves of h, and below the interface in a.
+#: The coarse grid, from which all references of tests/yields/test_largest_stresses.py are reached: radii in a;
+#: distances beyond the edge in lengths over which a layer bends, h or n^(1/3) h; and below, depths in a, in octaves of
+#: h, and below the interface in a.
 _RADII = np.array([0, 0.15, 0.3, 0.45, 0.6, 0.7, 0.8, 0.9, 0.95, 1, 1.05, 1.15, 1.3, 1.6])
 _BEYOND, _OF_LENGTHS = np.array([0.12, 0.25, 0.5, 1, 1.5, 2, 3, 4.5, 6.5]), np.array([0.25, 0.4, 0.5, 0.75, 1])
 #: Radii of the surface and of the interface where layers thicker than _FELT may have weak tension.
@@ -47,19 +49,19 @@ _THIN = 1.3
 _DEPTHS = np.array([0.06, 0.12, 0.2, 0.3, 0.4, 0.48, 0.6, 0.8, 1.1])
 _OF_OCTAVE = np.array([0.25, 0.4, 0.55, 0.7, 0.85, 1, 1.2, 1.4, 1.6])
 _BELOW = np.array([0, 0.05, 0.15, 0.3, 0.48, 0.65, 0.9, 1.3])
-#: And where the pressure is largest in a ring: how far inside the edge and how deep below it, in its own distance.
+#: If the pressure is largest in a ring: distances inside the edge, and depths below it, in the distance of the ring.
 _OF_RING, _BELOW_RING = np.array([-1, -0.4, 0, 0.3, 0.6, 1, 1.5, 2.2]), np.array([0.25, 0.5, 0.8, 1.2, 1.8, 2.7, 4, 6])
-#: Lengths of a thick or stiff layer are no farther apart than _APART, and one where they differ by less than _ALIKE.
+#: The ratio of successive lengths of a thick or stiff layer is at most _APART; lengths within _ALIKE count as one.
 _APART, _ALIKE = 25.0, 2.0
-#: No place is farther away than this, in a plus the length over which a layer spreads the pressure.
+#: Largest distance of a place, in units of a plus the length over which a layer spreads the pressure.
 _FARTHEST = 10.0
-#: Nearer to the axis than at this s = sqrt(1 - r²) the coordinate along the surface is the radius.
+#: Where s = sqrt(1 - r²) is above this, near the axis, the coordinate along the surface is the radius.
 _NEAR_AXIS = 0.8
 
 
 class Climb(NamedTuple):
-    """The function of a case of a batch, a name of :data:`VALUES`, and the point of the coarse grid of a region from
-    which it is followed upwards."""
+    """The climb of one function, a name of :data:`VALUES`, for one case of a batch, from a point of the coarse grid of
+    a region."""
 
     function: str
     batch: int
@@ -71,10 +73,10 @@ class Climb(NamedTuple):
 
 
 class SearchGrid(NamedTuple):
-    """The coarse grid of a region: u (U,) and v (B, V), bounds of both (B, 2), and whether it is the body.
+    """The coarse grid of a region: u (U,) and v (B, V), the bounds of both (B, 2), and whether the region is the body.
 
-    The radius is u, or on the surface, `root`, sqrt(1 - u |u|), in which stresses are smooth up to the edge; v is the
-    depth.
+    v is the depth, and u the radius. On the surface, if `root`, the radius is sqrt(1 - u |u|): stresses are smooth
+    functions of u up to the edge.
     """
 
     u: np.ndarray
@@ -89,13 +91,13 @@ class SearchGrid(NamedTuple):
 
 
 def extremes(loaded, names=EXTREMES):
-    """Of each name of :data:`EXTREMES`: its value (B,) in units of the pressure, and its place r (signed if mu > 0) and
-    z in a; mapping name -> (3, B). NaN where there is no such body."""
+    """Name of :data:`EXTREMES` -> (3, B): its value in units of the pressure, and its place, r (signed if mu > 0) and
+    z, in a. NaN where there is no such body."""
     return together([loaded], names)[0]
 
 
 def together(batches, names=EXTREMES):
-    """The :func:`extremes` of each of several :class:`~.loaded.Loaded`, with or without layers, of one mu."""
+    """The :func:`extremes` of each of several :class:`~.loaded.Loaded`, with or without layers, which share mu."""
     made, tasks = [], {}  # -> the names whose starts they are
     boxes = []
     for number, loaded in enumerate(batches):
@@ -127,7 +129,7 @@ def together(batches, names=EXTREMES):
 
 
 def coarsely(loaded, names=EXTREMES):
-    """The largest values on the coarse grids alone, name -> (3, B); their places are NaN."""
+    """The largest values on the coarse grids, name -> (3, B); their places are NaN."""
     made, wanted, grids, coarse = _on_coarse_grids(loaded, names)
     for name, kinds in wanted.items():
         for region in kinds:
@@ -140,7 +142,8 @@ def coarsely(loaded, names=EXTREMES):
 
 
 def _on_coarse_grids(loaded, names):
-    """The array of each name, its regions, their grids, and the stresses there, region -> (B, 4, S, V, U)."""
+    """Four mappings: name -> an array for the answer; name -> its regions; region -> its grid; and region -> the
+    stresses on it, (B, 4, S, V, U)."""
     made = {name: np.full((3, len(loaded.h)), np.nan) for name in names}
     wanted = {name: EXTREMES[name][2 if loaded.bare else 1] for name in names}
     grids = regions(loaded)
@@ -153,7 +156,7 @@ def _on_coarse_grids(loaded, names):
 
 
 def farthest_of(loaded):
-    """How far from the centre (B,), in a, places are looked at."""
+    """The largest distance (B,) from the centre, in a, of places that are searched."""
     stiff = 0 * loaded.h if loaded.bare else np.maximum(1.0, np.cbrt(loaded.layers.n))
     return _FARTHEST * (1 + stiff * loaded.h)
 
@@ -197,7 +200,7 @@ def regions(loaded):
 
 
 def _of_body(radii, lengths):
-    """Radii and depths below the interface of the coarse grid of a body, whose stresses change over these lengths."""
+    """Radii, and depths below the interface, of the coarse grid of a body whose stresses change over these lengths."""
     if lengths[-1] <= 1:
         return radii, _BELOW
     axes = radii[radii <= _RADII[-1]], _BELOW
@@ -205,8 +208,8 @@ def _of_body(radii, lengths):
 
 
 def _lengths(octave, bending):
-    """Lengths over which stresses change far from the contact: from a or h, whichever is longer, to that over which a
-    stiff layer spreads the pressure, each at most _APART times the one before it."""
+    """Lengths over which stresses change far from the contact: from the longer of a and h to that over which a stiff
+    layer spreads the pressure, each at most _APART times the one before."""
     least = max(1.0, octave)
     if bending <= _ALIKE * least:
         return np.array([least])
@@ -214,8 +217,8 @@ def _lengths(octave, bending):
 
 
 def _starts(i, value, kinds, coarse, grids, largest):
-    """(region, side, row, column) of the coarse points of a case that are larger than their neighbours, and not much
-    smaller than the largest."""
+    """(region, side, row, column) of the points of the coarse grids of a case whose value exceeds those of their
+    neighbours, and is not much smaller than the largest."""
     starts = []
     for region in kinds:
         values = value(*coarse[region][i])
@@ -231,7 +234,7 @@ def _starts(i, value, kinds, coarse, grids, largest):
 
 
 def _climbed(batches, tasks, boxes):
-    """Largest values (T,) near the starts of tasks, and their places (T, 2), r and z."""
+    """Largest values (T,) near the starts of T tasks, and their places (T, 2), r and z."""
     if not tasks:
         return [], []
     jets, functions = [Jets(loaded) for loaded in batches], _numbered([task.function for task in tasks])
@@ -265,7 +268,7 @@ def _climbed(batches, tasks, boxes):
 
 
 class _Numbered(NamedTuple):
-    """Different words, and the number of each (T,)."""
+    """Distinct words, and for each of T words its index (T,) among them."""
 
     names: list
     of: np.ndarray
@@ -278,8 +281,8 @@ def _numbered(words):
 
 
 def _box(grid, task):
-    """Start, half widths and bounds (4, 2) of a task, and whether its u is the root and not the radius: near the axis
-    it is the radius."""
+    """(4, 2): start, half widths, and lower and upper bounds of a task; and whether its u is the root. Near the axis u
+    is the radius."""
     u, v = grid.u[task.column], grid.v[task.case]
     half, bounds = _spacing(grid.u, task.column), grid.u_bounds[task.case]
     root = grid.root and u < _NEAR_AXIS
@@ -292,5 +295,5 @@ def _box(grid, task):
 
 
 def _spacing(axis, at):
-    """To the neighbours of a point of a coarse axis, the larger."""
+    """The larger distance from a point of a coarse axis to its neighbours."""
     return np.abs(np.diff(axis[max(at - 1, 0) : at + 2])).max() if len(axis) > 1 else 1.0

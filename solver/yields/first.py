@@ -1,7 +1,7 @@
-"""At which load a body or the asperities first yield: docs/stresses.md, First yield.
+"""The load at which a body or the asperities first yield: docs/stresses.md, First yield.
 
-The largest stress neither scales with the load nor grows with it everywhere: so the radius rises step by step from
-where nothing can yield.
+The largest stress does not scale with the load, nor does it always grow with it. So the search goes up in the radius,
+step by step, from a radius at which nothing can yield.
 """
 
 from dataclasses import replace
@@ -18,27 +18,28 @@ from .crossing import NUMBERS, first_crossing
 from .reach import NARROWEST, WIDEST, reach_of, stiffest
 from .stacked.largest import mises_in
 
-#: No body yields where (a/R) E*/strength is below _NEVER, E* the larger of layer and body; sliding adds so much.
+#: No body yields if (a/R) E*/strength is below _NEVER/(1 + _BY_FRICTION mu), with the larger E* of layer and body.
 _NEVER, _BY_FRICTION = 0.3, 4.0
-#: No asperity yields where (a/R) E/strength is below this times sqrt(Ra/R), for p0s < 0.46 E a/sqrt(R Ra).
+#: No asperity yields if (a/R) E/strength is below this times sqrt(Ra/R), because p0s < 0.46 E a/sqrt(R Ra).
 _NO_SPOT = 0.7
-#: Asperities that feel the layer have more pressure on a soft one, as on what lies below, and more stress in one that
-#: bends, as of bodies that bend: so much less is looked at. In 400 random contacts the radius at first yield was above
+#: Asperities that feel the layer have a higher pressure on a soft layer, and a higher stress in a layer that bends: the
+#: search starts at this part of the radius. In 400 random contacts the radius at first yield was larger
 #: (tests/yields/test_felt_spots.py).
 _FELT = 0.2
 
 
 def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slopes=False, layer=0):
     """:class:`~.crossing.Crossing` of the "layer", the "body", the "punch" or the "asperities"; `at` is a/R, less the
-    radius of a flat end. Under a sharp tip or corner what is touched yields under any load: all is 0.
+    radius of a flat end. Under a sharp tip or corner, the layer or body that it touches yields under any load: all
+    numbers are 0.
 
-    problem : B cases, whatever controls them
-    strength : (B,), yield strength by von Mises, in the unit of E2; NaN: nothing is looked for
+    problem : B cases; the value of their control does not count
+    strength : (B,), yield strength by von Mises, in the unit of E2; NaN: no search
     mu : >= 0, friction
     residual : biaxial stress of the layer, or (B, N) of each layer of stacks, in the unit of E2
-    punch : (B,), Poisson ratios of the punches, where these are looked at
+    punch : (B,), Poisson ratios of the punches, if `body` is "punch"
     slopes : whether the derivatives by the strength are wanted
-    layer : which layer of a stack, from 0, the one at the surface
+    layer : number of the layer of a stack; 0 is the one at the surface
     """
     felt = body in ("layer", "asperities")
     layers = max(1, numbers_of(problem.parameters))
@@ -61,7 +62,8 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slope
         return value / strength[index], r, z, solution
 
     def same_grid(index, at):
-        """Up to where contacts have one coarse grid: h/a is in one octave; of spots it is each its own."""
+        """The largest radius up to which contacts share a coarse grid, h/a being in one octave; asperities share
+        none."""
         a = reach.flat[index] + at
         h = np.where(is_bare(problem.base[index]), a, problem.h[index] / problem.R[index])
         edge = h / 2.0 ** np.floor(np.log2(h / a) + 1e-12)
@@ -82,7 +84,8 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slope
 
 
 def _touched(problem, body, punch):
-    """(B,) bool: the punch touches the body, which is not incompressible; or it is the punch itself."""
+    """(B,) bool: whether the punch touches the body, or the body is the punch itself; False if it is
+    incompressible."""
     bare = is_bare(problem.base)
     if body == "punch":
         return punch < 0.5
@@ -90,7 +93,7 @@ def _touched(problem, body, punch):
 
 
 def _start(problem, body, strength, mu):
-    """A radius over R below which nothing yields."""
+    """A radius (B,), over R, below which nothing yields."""
     n = np.where(is_bare(problem.base), 1.0, problem.n)
     if body == "asperities":
         least = _NO_SPOT * strength / layer_modulus(n) * np.sqrt(problem.Ra / problem.R)

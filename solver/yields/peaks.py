@@ -1,4 +1,4 @@
-"""The largest value of a function of the stresses of one case in a patch, of polynomials through its nodes."""
+"""The largest value of a function of the stresses of one case in a patch, by polynomials through its nodes."""
 
 from functools import lru_cache
 
@@ -10,7 +10,7 @@ _POINTS = 33
 
 @lru_cache(maxsize=8)
 def chebyshev_nodes(count):
-    """Chebyshev's nodes in [-1, 1], with both ends."""
+    """Chebyshev's nodes in [-1, 1]; both ends are nodes."""
     return -np.cos(np.pi * np.arange(count) / (count - 1))
 
 
@@ -20,7 +20,7 @@ def _inverse(count):
 
 
 def between(points, count):
-    """From values at the nodes to those at points in [-1, 1] of the polynomial through them."""
+    """The matrix that makes values of a polynomial at points in [-1, 1] from its values at the nodes."""
     return np.polynomial.chebyshev.chebvander(points, count - 1) @ _inverse(count)
 
 
@@ -30,10 +30,10 @@ def in_patch(values, value):
     for _ in range(4):
         points = [np.clip(c + half * np.linspace(-1, 1, _POINTS), -1, 1) for c in centre]
         u, v = (between(p, n) if n > 1 else np.ones((1, 1)) for p, n in zip(points, values.shape[:0:-1], strict=True))
-        made = value(*(v @ values @ u.T))
-        if not np.all(np.isfinite(made)):
+        on_grid = value(*(v @ values @ u.T))
+        if not np.all(np.isfinite(on_grid)):
             return np.nan, centre
-        row, column = np.unravel_index(np.argmax(made), made.shape)
+        row, column = np.unravel_index(np.argmax(on_grid), on_grid.shape)
         place = [p[i] if m.shape[0] > 1 else 0.0 for p, i, m in zip(points, (column, row), (u, v), strict=True)]
         centre, half = np.array(place), half * 4 / _POINTS
-    return made[row, column], centre
+    return on_grid[row, column], centre

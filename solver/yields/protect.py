@@ -10,19 +10,20 @@ from ..solve import solve
 from .crossing import Crossing, first_crossing
 from .stacked.largest import mises_in
 
-#: The stress of the body is below some 0.5 P/h²: it yields below no layer thicker than _THICK sqrt(P/strength).
+#: The stress of the body is below some 0.5 P/h²: no body yields below a layer thicker than _THICK sqrt(P/strength).
 _THICK = 4.0
-#: Thinner layers than this part of a, over n, are not looked at, nor those that take seconds each. a is that of the
-#: bare body.
+#: The thinnest layer of the search: this part of a, over n, within two limits, of which the lower one leaves out layers
+#: that take seconds each. a is that of the bare body.
 _THIN, _THINNEST, _THICKEST = 0.05, 5e-4, 5e-3
 
 
 class Protection(NamedTuple):
     """Thicknesses (B,) in the unit of R.
 
-    protects : above it the body yields for no larger thickness; 0: for none. NaN: not found
-    yields : the least at which the body yields where a bare one would not; NaN: there is none
-    unsolved : bool, some contacts on the way have no solution, and nothing was found
+    protects : the thickness above which the body never yields; 0 if it does not yield at any thickness; NaN if the
+        search fails
+    yields : the smallest thickness at which the body yields although a bare one would not; NaN if there is none
+    unsolved : bool, whether there is no answer because some contacts on the way have no solution
     """
 
     protects: np.ndarray
@@ -33,10 +34,10 @@ class Protection(NamedTuple):
 def protection(problem, strength, mu=0.0, by="h"):
     """:class:`Protection` of bodies with the yield `strength` (B,), in the unit of E2, by layers of any thickness.
 
-    problem : B cases on layers whose load is given; the thickness `by` counts for nothing
+    problem : B cases on layers whose load is given; their thickness `by` does not count
     mu : >= 0, friction
-    by : the parameter that is the thickness, "h" or "layers.2.h" of a stack, the other layers of which stay: a bare
-        body is then one without this layer
+    by : the parameter that is the thickness, "h", or one like "layers.2.h" of a stack, whose other layers stay the
+        same: a bare body is then one without this layer
     """
     none = np.zeros((len(problem), max(1, numbers_of(problem.parameters))))
 

@@ -1,4 +1,5 @@
-"""Which contacts are looked at for the first yield under a shape, from where nothing yields: docs/stresses.md."""
+"""The contacts in which the first yield under a shape is searched for, from one in which nothing yields:
+docs/stresses.md."""
 
 from typing import NamedTuple
 
@@ -12,26 +13,27 @@ from ..shapes import ROUND, shape_of
 from ..smooth.contact import kinds_of
 from ..smooth.shape_terms import on_half_space
 
-#: Radii in R that are looked at: of paraboloids and spheres.
+#: The range of radii, in R, for paraboloids and spheres.
 NARROWEST, WIDEST = 1e-8, 0.2
-#: Other shapes are looked at up to this slope at the edge of the contact, beyond which elasticity says little; or, if
-#: they are less steep, up to so many times the radius of their last kink.
+#: For other shapes the search ends at the slope STEEPEST at the edge of the contact, beyond which linear elasticity is
+#: a poor model; or, if they are not so steep, at _KINKS times the radius of their last kink.
 STEEPEST, _KINKS = 0.4, 100.0
-#: No body yields where the largest pressure of a half-space of the stiffer material is below this part of the strength
-#: over 1 + _BY_FRICTION mu: on a half-space a ball makes a body yield at 1.6 strengths, and layers that bend do sooner.
+#: No body yields if the largest pressure on a half-space of the stiffer material is below this part of the strength,
+#: over 1 + _BY_FRICTION mu: under a ball a half-space yields at 1.6 strengths, and layers that bend yield earlier.
 _NEVER, _BY_FRICTION = 0.19, 4.0
-#: What is marched over, the radius less that of a flat end: so many steps on the way to where nothing yields, and many
-#: more to the last contact, which is 2 % short of the slope at most; and radii at which the pressure is looked at.
+#: Steps of the variable, the radius less that of a flat end, by which the start of the search is determined; steps for
+#: the last contact, which is at most 2 % short of the slope; smallest and largest value. And radii at which the
+#: pressure is evaluated.
 _STEPS, _FINE, _LEAST, _MOST = 120, 1200, 1e-8, 1e2
 _LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
 
 
 class Reach(NamedTuple):
-    """What the search marches over, `at` = a - flat, (B,) each, in R.
+    """The range of the search in `at` = a - flat; arrays (B,), in R.
 
-    flat : radius of the flat end, 0 of shapes without one
-    start, last : of `at`
-    sharp : bool, the stress of what is touched is infinite under any load
+    flat : radius of the flat end; 0 for shapes without one
+    start, last : the range of `at`
+    sharp : bool, whether the stress in the layer or body that is touched is infinite under any load
     """
 
     flat: np.ndarray
@@ -42,29 +44,30 @@ class Reach(NamedTuple):
 
 @np.errstate(all="ignore")  # pressures are infinite at tips and corners
 def reach_of(problem, strength, mu, touched):
-    """The :class:`Reach` of cases with shapes, some of which may be :data:`ROUND` and are left out: NaN.
+    """The :class:`Reach` of cases; NaN for those whose shape is :data:`ROUND`.
 
     strength : (B,), in units of E2
-    touched : (B,) bool, it is about what the punch touches and is not incompressible
+    touched : (B,) bool, whether the search is about the layer or body that the punch touches, and this is not
+        incompressible
     """
-    made = Reach(*np.full((3, len(problem)), np.nan), np.zeros(len(problem), dtype=bool))
-    made.flat[:] = 0.0
+    reach = Reach(*np.full((3, len(problem)), np.nan), np.zeros(len(problem), dtype=bool))
+    reach.flat[:] = 0.0
     others = np.flatnonzero(~np.isin(problem.shape, ROUND))
     if not len(others):
-        return made
+        return reach
     scaled = dimensionless(problem.take(others))
     least = _NEVER / (1 + _BY_FRICTION * mu) * strength[others] / stiffest(scaled)
     for rows in kinds_of(scaled):
         shape = shape_of(scaled.take(rows))
-        made.flat[others[rows]] = shape.least()
-        made.last[others[rows]] = _last(shape)
-        made.start[others[rows]] = _start(shape, made.last[others[rows]], least[rows])
-    made.sharp[others] = np.isfinite(corners(scaled, made.flat[others] + made.last[others])) & touched[others]
-    return made
+        reach.flat[others[rows]] = shape.least()
+        reach.last[others[rows]] = _last(shape)
+        reach.start[others[rows]] = _start(shape, reach.last[others[rows]], least[rows])
+    reach.sharp[others] = np.isfinite(corners(scaled, reach.flat[others] + reach.last[others])) & touched[others]
+    return reach
 
 
 def stiffest(problem):
-    """(B,): the largest modulus of body and layers, over E2*, at least 1; over E1* on a rigid body."""
+    """(B,): the largest modulus of body and layers, over E2*, which is at least 1; on a rigid body over E1*."""
     numbers = range(1, numbers_of(problem.parameters) + 1)
     layers = [getattr(problem, full_name(j, "n")) for j in numbers]
     layers += [np.nan_to_num(getattr(problem, full_name(j, "n_bottom"))) for j in numbers]
@@ -74,7 +77,7 @@ def stiffest(problem):
 
 
 def _last(shape):
-    """The largest a - flat (B,) that is looked at."""
+    """The largest a - flat (B,) of the search."""
     flat, steps = shape.least()[:, None], np.geomspace(_LEAST, _MOST, _FINE)
     within = flat + steps < shape.most()[:, None]
     slopes = shape.slope(np.where(within, flat + steps, flat))
@@ -82,17 +85,17 @@ def _last(shape):
     kinks = np.nan_to_num(shape.kinks()).max(axis=1, initial=0.0)
     farthest = np.where(steep.any(axis=1) | (kinks == 0), np.inf, _KINKS * kinks)
     allowed = within & ~steep & (steps <= farthest[:, None])
-    # a shape is at least as steep farther out: what is allowed comes first
+    # a shape is at least as steep farther out, so that the allowed steps are the first ones
     return np.where(allowed.any(axis=1), steps[allowed.sum(axis=1) - 1], _LEAST)
 
 
 def _start(shape, last, least):
-    """The largest a - flat (B,) up to which the largest pressure is below `least`, over E."""
+    """The largest a - flat (B,) up to which the largest pressure, over E, is below `least`."""
     steps = np.geomspace(_LEAST, 1.0, _STEPS)[:, None] * last
     flat, below, still = shape.least(), np.zeros(len(last), dtype=int), np.ones(len(last), dtype=bool)
     for step in steps:
         p = np.nanmax(on_half_space(shape, flat + step, _LOOKED_AT), axis=1) / np.pi
-        # next to a flat end the largest pressure is in a ring as narrow as the step: of the order of a ball's there
+        # near a flat end the largest pressure is in a ring as narrow as the step, and about that under a ball there
         p = np.maximum(p, 2 / np.pi * shape.slope((flat + step)[:, None])[:, 0])
         still &= p < least
         below += still

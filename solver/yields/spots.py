@@ -1,5 +1,5 @@
-"""The largest stress under the asperities of solved contacts: that of a spot and that of the contact as a whole, added
-as tensors on the axis of each spot (docs/stresses.md, Asperities)."""
+"""The largest stress under the asperities of solved contacts: the sum, as tensors on the axis of each spot, of the
+stress of the spot and that of the contact as a whole (docs/stresses.md, Asperities)."""
 
 from dataclasses import replace
 
@@ -21,17 +21,17 @@ from .below.felt_cells import felt_cells
 from .contact import alike
 from .peaks import between, chebyshev_nodes, in_patch
 
-#: Spots that are looked at: at so many radii r, nodes of the angle arcsin(r/a), and at so many depths between these, in
-#: b. The stresses are polynomials through these (tests/yields/test_spots.py has twice as many).
+#: The grid of spots: number of radii r, nodes of the angle arcsin(r/a); number of depths; and the smallest and largest
+#: depth, in b. The stresses are polynomials through these nodes (tests/yields/test_spots.py has twice as many).
 _SPOTS, _DEPTHS, _ENDS = 17, 20, (0.1, 1.5)
 _RADII = np.sin(np.pi / 4 * (1 + chebyshev_nodes(_SPOTS)))
 _Z = _ENDS[0] + (_ENDS[1] - _ENDS[0]) * (1 + chebyshev_nodes(_DEPTHS)) / 2
-#: The stress of the contact as a whole, between the surface and the deepest place, is a polynomial through so many
-#: depths; through few where b is below _SMALL a.
+#: The stress of the contact as a whole, between the surface and the deepest place, is a polynomial through _MANY
+#: depths, or through _FEW if b is below _SMALL a.
 _MANY, _FEW, _SMALL = 8, 4, 0.02
-#: A spot at the edge has no size; it is taken for one of this b/B̄.
+#: A spot at the edge has no size. This b/B̄ stands for it.
 _LEAST = 1e-6
-#: Laws whose share λ is that of one spot in its cell at any radius. Of others the spot in the centre alone is known.
+#: Laws whose λ is that of one spot in its cell at any radius. For other laws only the spot in the centre is known.
 _CELLS = ("disc_cell", "elastic_plastic")
 
 
@@ -39,15 +39,15 @@ _CELLS = ("disc_cell", "elastic_plastic")
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN
 def of_contacts(problem, solution, mu=0.0, residual=0.0):
     """(3, B): the largest von Mises stress in the unit of E2, and the radius (signed if mu > 0) and depth in a of its
-    place. NaN of smooth contacts and of those that are not solved.
+    place. NaN for smooth contacts and for contacts that are not solved.
 
-    The asperities are those of an elastic disc cell, whatever yields; where spots yield the stress is that of spots of
-    this size which do not. Of lattices and random heights it is the largest spot in the centre.
+    The asperities are elastic: if the law has spots that yield, the spots are those of an elastic disc cell. For
+    lattices and random heights it is the stress of the largest spot in the centre.
 
-    problem, solution : B cases and their :class:`~solver.solution.Solution`
+    problem, solution : B cases, and their :class:`~solver.solution.Solution`
     mu : >= 0, friction; residual : (B,) or a number, biaxial stress of the layer, in the unit of E2
     """
-    made = np.full((3, len(problem)), np.nan)
+    largest = np.full((3, len(problem)), np.nan)
     rough = np.isfinite(problem.Nbar) & np.isfinite(problem.Ra) & problem.rough()
     there, felt = (solution.status == Status.CONVERGED) & rough, problem.feels_layer()
     there &= ~(felt & has_graded(problem))
@@ -61,24 +61,24 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0):
             for rows, pressure, _ in pressures_of(scaled, ended, a):
                 for few, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]]):
                     here = rows[few]
-                    made[:, index[here]] = stress(loaded, scaled.take(here), a[here], at_radii.take(here))
-            made[0, index] *= part.E2
-    return made
+                    largest[:, index[here]] = stress(loaded, scaled.take(here), a[here], at_radii.take(here))
+            largest[0, index] *= part.E2
+    return largest
 
 
 def with_elastic_spots(scaled, a, x):
-    """The :class:`~solver.solution.Solution` with profiles at x of contacts of radius a, of spots that stay elastic."""
+    """The :class:`~solver.solution.Solution` of contacts of radius a with elastic spots, with profiles at x."""
     at_a = scaled.but(micro=np.where(scaled.micro == "elastic_plastic", "disc_cell", scaled.micro))
     return solve(replace(at_a, control="a", value=a), x)
 
 
 def _on_body(loaded, scaled, a, at_radii):
-    """(3, B), as :func:`_largest`, of asperities that feel the coated body."""
+    """(3, B), as :func:`_largest`, for asperities that feel the coated body."""
     return felt_spots.largest_stress(loaded, felt_cells(scaled, a, at_radii.lam, at_radii.p0), _RADII)
 
 
 def _on_half_space(loaded, scaled, a, at_radii):
-    """(3, B), as :func:`_largest`, of asperities on a half-space."""
+    """(3, B), as :func:`_largest`, for asperities on a half-space."""
     c, p0s = _of_spots(scaled, at_radii)
     b = c / np.sqrt(np.pi * scaled.Nbar[:, None]) / a[:, None]
     return _largest(loaded, np.where(loaded.bare, scaled.nu2, scaled.nu1), c, p0s, b)
@@ -99,10 +99,10 @@ def _largest(loaded, nu, c, p0s, b):
     """(3, B): the largest stress, its radius and depth in a. b : (B, R), in a."""
     cell = _cell(nu[:, None], c, p0s, loaded.pressure.at(_RADII))
     count = _FEW if np.nanmax(b) < _SMALL else _MANY
-    # deeper than the layer there is none of its stress; spots that large have that at the interface
+    # the stress of the layer ends at the interface; larger spots have the stress there
     deepest = np.minimum(_ENDS[1] * np.nanmax(b, axis=1), np.inf if loaded.bare else loaded.h)
     whole = loaded.stresses(_RADII, deepest[:, None] * (1 + chebyshev_nodes(count)) / 2, loaded.bare)
-    made = np.full((3, len(c)), np.nan)
+    places = np.full((3, len(c)), np.nan)
     for i in range(len(c)):
         spots = slice(None) if np.isfinite(c[i]).all() else slice(1)  # at all radii, or in the centre
         share = np.minimum(b[i, spots, None] * _Z / deepest[i], 1.0)  # (R, Z)
@@ -112,16 +112,16 @@ def _largest(loaded, nu, c, p0s, b):
             stresses[:2] += cell[0, i, spots].T
             stresses[2] += cell[1, i, spots].T
             largest, (u, v) = in_patch(stresses, mises)
-            if not largest <= made[0, i]:
+            if not largest <= places[0, i]:
                 alone = stresses.shape[2] == 1
                 r, size = (0.0, b[i, 0]) if alone else (np.sin(np.pi / 4 * (1 + u)), between([u], _SPOTS)[0] @ b[i])
                 depth = _ENDS[0] + (_ENDS[1] - _ENDS[0]) * (1 + v) / 2
-                made[:, i] = largest, sign * r + 0.0, depth * size
-    return made
+                places[:, i] = largest, sign * r + 0.0, depth * size
+    return places
 
 
 def _cell(nu, c, p0s, p):
-    """sr = st and sz (2, B, R, Z) on the axes of spots, at the depths in b, of a spot less p on its cell."""
+    """sr = st and sz (2, B, R, Z) on the axes of spots, at the depths _Z in b, by a spot less p on its cell."""
     x, weight = gauss_legendre(POINTS)
     angle = np.arcsin(c)[..., None] * x
     t = np.sin(angle) / c[..., None]

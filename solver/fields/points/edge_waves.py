@@ -1,11 +1,12 @@
-"""The short waves of a pressure, which are those of its edge: p^(k) = Re[f(k) e^(ik)] with f smooth and slow.
+"""The short waves of a pressure, which only its edge produces: p^(k) = Re[f(k) e^(ik)] with a slowly varying f.
 
-Beside the edge the product with a Bessel function, J_m(kr) = Re H_m(kr), is slow too but for a part like e^(ik(1 + r)),
-whose integral over a smooth window of short waves is nothing:
+Multiply by a Bessel function, J_m(kr) = Re H_m(kr). Beside the edge the product is a slowly varying part and a part
+like e^(ik(1 + r)), whose integral over a smooth window of short waves vanishes:
 
     p^(k) J_m(kr)  ->  Re[f(k) e^(ik) conj H_m(kr)]/2.
 
-Away from the edge nothing is left of it. So the waves that a thin film needs are as many as octaves between a and h.
+Away from the edge the integral of the first part vanishes as well. So the number of waves that a thin film needs grows
+only with the number of octaves between a and h.
 """
 
 import numpy as np
@@ -14,21 +15,21 @@ from ...numerics import special
 from ...numerics.kept import Kept
 from ..pressure import edge_rule
 
-#: f is a polynomial between so many Chebyshev points of each octave above LEAST: 4e-11 of the largest p^ at most, as
-#: much as the transform itself is off there (tests/fields/points/test_edge_waves.py).
+#: In each octave above LEAST f is the polynomial through _NODES Chebyshev points. Its error is at most 4e-11 of the
+#: largest p^, as large as the error of the transform itself (tests/fields/points/test_edge_waves.py).
 _NODES, LEAST = 20, 128.0
-#: The window begins as the normal distribution about MIDDLE of the width _WIDTH does: of the part that is left out, and
-#: farther away from the edge than _AWAY/_WIDTH, it leaves e^(-_AWAY²/4). Each octave has such a window.
+#: The window rises like the normal distribution about MIDDLE with the width _WIDTH. It reduces the part that is left
+#: out, and everything farther from the edge than _AWAY/_WIDTH, to e^(-_AWAY²/4). Each octave has such a window.
 _WIDTH, _AWAY = 40.0, 10.6
 MIDDLE, LAST = LEAST + 4.5 * _WIDTH, LEAST + 9 * _WIDTH
 #: Terms of the asymptotic series of H_0 and H_1, from x = 100 on.
 _TERMS = 7
-#: Bytes of all tables that are kept.
+#: The tables of f that were formed, at most 50 MB.
 _tables = Kept(5e7)
 
 
 def have_edge_waves(mesh):
-    """Whether short waves are those of the edge alone: there are no narrow panels elsewhere."""
+    """Whether only the edge produces short waves: the mesh has no narrow panels elsewhere."""
     return edge_rule(mesh, LEAST) is not None
 
 
@@ -59,7 +60,8 @@ _INVERSE = np.linalg.inv(np.polynomial.chebyshev.chebvander(_AT, _NODES - 1))
 
 
 def _table(mesh, first):
-    """From values at the nodes to f at the points of the octave from `first` on: (_NODES, n)."""
+    """The matrix (_NODES, n) from values at the nodes to f at the Chebyshev points of the octave that begins at
+    `first`."""
     k = first * (1.5 + 0.5 * _AT)
     s, weight = edge_rule(mesh, first)
     x, made = np.sqrt((1 - s) * (1 + s)), np.zeros((_NODES, mesh.n), dtype=complex)
@@ -70,12 +72,12 @@ def _table(mesh, first):
 
 
 def longer(k):
-    """The weight of waves k (K,) of which all are taken at all radii: from 1 to 0."""
+    """The weights (K,), from 1 down to 0, of waves k in the sums that serve all radii."""
     return special.ndtr((MIDDLE - k) * (np.sqrt(2) / _WIDTH))
 
 
 def last_octave(r):
-    """Which octave of short waves is the last that is felt at radii r (P,); -1: none is."""
+    """The number (P,) of the last octave of short waves that counts at radii r (P,); -1 if none does."""
     away = np.maximum(np.abs(1 - r), 1e-12)
     return np.floor(np.log2(_AWAY / (_WIDTH * away))).astype(int)
 
@@ -87,7 +89,8 @@ def shorter(k, octave):
 
 
 def bessels(k, r, f, most):
-    """What J_m (P, K) times p^ is, m from 0 to `most` + 2, of f (P, K) in its window, at r (P,)."""
+    """The slowly varying parts (P, K) of p^ J_m at radii r (P,), a list over m from 0 to `most` + 2; f (P, K) includes
+    its window."""
     x, phase = r[:, None] * k, (1 - r)[:, None] * k
     y = 1 / x
     slow = f * (np.cos(phase) + 1j * np.sin(phase)) * (np.sqrt(y / (2 * np.pi)) * np.exp(0.25j * np.pi))
@@ -98,7 +101,7 @@ def bessels(k, r, f, most):
 
 
 def _hankel(m, y):
-    """P - iQ of H_m(1/y), a series in y."""
+    """The factor P - iQ of conj H_m(1/y), a series in y."""
     term, total = 1.0, 1.0
     for j in range(1, _TERMS + 1):
         term = term * ((4 * m * m - (2 * j - 1) ** 2) / (8 * j) * -1j) * y

@@ -1,10 +1,12 @@
-"""The field of half-spaces at single points near the surface, with its derivatives by r and z, in closed form over k.
+"""The field of half-spaces at single points near the surface with its derivatives by r and z; the integrals over k are
+in closed form.
 
 With ζ = z - it, ρ = sqrt(r² + ζ²) and g = r/(ρ + ζ), the integrals ∫ k^j e^(-kζ) J_m dk are I_m0 = g^m/ρ and
 
     ρ² I_m,j+1 = (2j + 1) ζ I_mj - (j² - m²) I_m,j-1,    I_m,-1 = g^m/m,
 
-and each derivative by z or r is an integral with one k more: of e^(-kz), and of J_m' = (J_(m-1) - J_(m+1))/2.
+and each derivative multiplies the integrand by one more k: that of e^(-kz) by z, and by r that of J_m, whose J_m' is
+(J_(m-1) - J_(m+1))/2.
 """
 
 import numpy as np
@@ -12,25 +14,30 @@ import numpy as np
 from .. import normal, sliding
 from ..half_space import Nodes, halvings_at
 
-#: Points that are computed together: some 500 nodes each, of 25 complex numbers.
+#: Points that are computed together. Each has about 500 nodes with 25 complex numbers.
 _AT_ONCE = 32
 
 
 def normal_below(pressure, case, nu, r, z):
-    """sr + st, sr - st, sz, trz by pressure, with derivatives (JET, 4, P), at points (P,) with z > 0 of the cases
-    `case` of a :class:`~..pressure.Pressure`, of half-spaces of Poisson ratios nu (P,)."""
+    """sr + st, sr - st, sz, trz by pressure with their derivatives, (JET, 4, P), at P points.
+
+    pressure, case : :class:`~..pressure.Pressure`, and for each point its case in it (P,)
+    nu : (P,), Poisson ratios of the half-spaces; r, z : (P,), z > 0
+    """
     E, F = _potentials(pressure, case, r, z, 2)
     return np.stack(normal.stress_parts(E, F, nu), axis=1)
 
 
 def sliding_below(pressure, case, nu, r, z):
-    """The six integrals of stresses by sliding (JET, 6, P) there."""
+    """The six integrals of stresses by sliding with their derivatives, (JET, 6, P); arguments as of
+    :func:`normal_below`."""
     E, F = _potentials(pressure, case, r, z, 3)
     return np.stack(sliding.stress_parts(E, F, nu), axis=1)
 
 
 def _potentials(pressure, case, r, z, most):
-    """E_m = ∫ p^ k e^(-kz) J_m dk and F_m = ∫ p^ k (kz) e^(-kz) J_m dk with derivatives, lists over m of (JET, P)."""
+    """E_m = ∫ p^ k e^(-kz) J_m dk and F_m = ∫ p^ k (kz) e^(-kz) J_m dk with their derivatives: two lists over m of
+    arrays (JET, P)."""
     K = np.empty((most + 3, 4, len(r)))
     halvings = halvings_at(r, z)
     for count in np.unique(halvings):
@@ -45,7 +52,7 @@ def _potentials(pressure, case, r, z, most):
 
 
 def _jet(K, m, j):
-    """∫ p^ k^(j+1) e^(-kz) J_m dk and its derivatives, (JET, P)."""
+    """∫ p^ k^(j+1) e^(-kz) J_m dk and its derivatives, (JET, P), from the integrals K[m, j]."""
 
     def at(m, j):
         return K[m, j] if m >= 0 else (-1) ** m * K[-m, j]
@@ -58,7 +65,7 @@ def _jet(K, m, j):
 
 
 def _integrals(pressure, r, z, halvings, most):
-    """∫ p^ k^(j+1) e^(-kz) J_m dk (most + 3, 4, P), of one case a point."""
+    """∫ p^ k^(j+1) e^(-kz) J_m dk, (most + 3, 4, P) over m, j and the points; `pressure` has one case for each."""
     nodes = Nodes.of_each(pressure, r, halvings)
     ζ = z[:, None] - 1j * nodes.t
     real = z[:, None] ** 2 - nodes.beyond * (nodes.t + r[:, None])

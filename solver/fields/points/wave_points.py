@@ -1,7 +1,8 @@
-"""Stresses at single points, with their derivatives by r and z, of waves on one rule: docs/stresses.md, Extremes.
+"""Stresses at single points with their derivatives by r and z, as sums over the waves of one rule: docs/stresses.md,
+Extremes.
 
-The constants of the waves of each case, which do not depend on the point, are formed once. The state at a depth is
-linear in them, its derivatives by z are A and A² times it, and those by r are Bessel functions of other orders.
+The constants of the waves of a case do not depend on the point and are formed once. The state at a depth is linear in
+them; its derivatives by z are A and A² times the state, and those by r have Bessel functions of other orders.
 """
 
 from typing import NamedTuple
@@ -26,27 +27,28 @@ from ...numerics.quadrature import gauss_legendre
 from ..waves import FIRST, SHORTEST, quadrature
 from . import edge_waves
 
-#: A field that decays like e^(-kz) ends at k = _END/z: at the largest stress the rest is 1e-12 of it.
+#: The sum for a field that decays like e^(-kz) ends at k = _END/z: the rest is 1e-12 of the largest stress.
 _END = 28.0
-#: A panel of 20 Gauss points holds at most so many radians: 1e-12 of the integral.
+#: A panel of 20 Gauss points spans at most _RADIANS radians of phase: the error is 1e-12 of the integral.
 _RADIANS = 32.0
-#: A panel of short waves is at most this part of its distance from 0: they have 260/k radians at most.
+#: A panel of short waves at k is at most _SHARE k wide: at the points that they serve, their phase turns by at most
+#: 260/k for each unit of k.
 _SHARE = 0.125
-#: Below _SMALL, J2, J3, ... are series of _TERMS terms: by recurrence they lose digits.
+#: For arguments below _SMALL, J2, J3, ... are series of _TERMS terms, because the recurrence loses digits there.
 _SMALL, _TERMS = 1.0, 7
-#: Numbers in an array of states: so many waves times points are taken at once.
+#: Most waves times points that are computed together: the size of an array of states.
 _AT_ONCE = 60_000
-#: The value, and the derivatives by r, z, rr, rz, zz.
+#: Length of a jet: the value, and the derivatives by r, z, rr, rz, zz.
 JET = 6
 
 
 class OctaveWaves(NamedTuple):
-    """The waves of B cases of one octave of h.
+    """The waves of B cases whose h lies in one octave.
 
     bodies : :class:`~solver.kernels.transfer.Bodies` (B, 1); h : (B,)
     k : (K,), ascending; the first `thin` of them are below THIN/h
-    p : (B, K), k times the transform of the pressure times the weight of k
-    f : (B, K) of :mod:`.edge_waves`, of short waves next to the edge, or None: p is then without the transform
+    p : (B, K), k times the transform of the pressure times the weight of k; without the transform if f is given
+    f : (B, K) of :mod:`.edge_waves`, for the short waves next to the edge; None for all other waves
     loads : traction (S, T) -> :class:`_Constants`
     """
 
@@ -60,8 +62,13 @@ class OctaveWaves(NamedTuple):
 
 
 class _Constants(NamedTuple):
-    """Of a load, times p: the `surface` of thin layers (4, B, thin); tractions `down`, `down_less` (of the difference
-    to a half-space) and `up` (2, B, K - thin) of the waves of thick ones; `base` (2, B, K), S and T of the body."""
+    """The constants of the waves of one load, multiplied by p.
+
+    surface : (4, B, thin), the state at the surface, of waves for which the layer is thin
+    down, down_less, up : (2, B, K - thin), tractions of the waves that decay downwards, of their difference to a
+        half-space, and of the waves that decay upwards, where the layer is thick
+    base : (2, B, K), S and T at the top of the body
+    """
 
     surface: np.ndarray
     down: np.ndarray
@@ -71,8 +78,8 @@ class _Constants(NamedTuple):
 
 
 def waves_of(layers, h, pressure, radius, least, tractions):
-    """:class:`OctaveWaves` that reach radii up to `radius` and are felt at depths from `least` h on, of the
-    `tractions`: those that are felt everywhere, and the short ones next to the edge, None if there are none."""
+    """Two :class:`OctaveWaves` of the loads `tractions`, for radii up to `radius` and depths from `least` h on: the
+    waves that count everywhere, and the short ones that count only next to the edge, None if there are none."""
     octave = 2.0 ** np.floor(np.log2(h.min()))
     last = _END / (least * octave)
     first = FIRST * min(1.0, 0.5 / octave) / max(1.0, layers.n.max())
@@ -109,10 +116,11 @@ def _constants(bodies, h, k, thin, p, load):
 
 
 def sums(waves, integrands, load, orders, kind, case, r, z):
-    """The integrals over k of a load and their derivatives (JET, fields, P) at points r, z (P,) of the cases `case`.
+    """The integrals over k for a load and their derivatives, (JET, fields, P), at the points r, z (P,) of the cases
+    `case` (P,).
 
-    integrands : ``integrands(v, nu, Q, across)`` of the integrands, linear
-    orders : of their Bessel functions
+    integrands : ``integrands(v, nu, Q, across)`` returns the integrands, linear in the state v and the pair Q, across
+    orders : of the Bessel function of each integrand
     kind : :class:`~solver.kernels.transfer.StatePart` of all points
     """
     made = np.empty((JET, len(orders), len(r)))
@@ -163,7 +171,7 @@ def _slopes(J, m, k):
 
 
 def _bessels(k, r, most):
-    """J_m (P, K) of k r, m from 0 to `most` + 2."""
+    """J_m(kr) (P, K), a list over m from 0 to `most` + 2."""
     x = r[:, None] * k
     small, inverse = np.nonzero(x < _SMALL), 2 / np.maximum(x, _SMALL)
     J, few = [special.j0(x), special.j1(x)], x[small]
@@ -175,7 +183,7 @@ def _bessels(k, r, most):
 
 
 def _series(m, x):
-    """J_m below _SMALL."""
+    """J_m(x) for x < _SMALL."""
     square, term, total = -((x / 2) ** 2), (x / 2) ** m / np.prod(np.arange(1.0, m + 1)), 0.0
     for j in range(1, _TERMS + 1):
         total = total + term
@@ -184,7 +192,7 @@ def _series(m, x):
 
 
 def _state(waves, load, kind, case, z, end):
-    """State (4 of (P, K)) of the points times p, and the antiplane pair."""
+    """The states at the points, multiplied by p, a list of 4 arrays (P, K); and the antiplane pair, likewise."""
     k, h, bodies, made = waves.k[:end], waves.h[case, None], waves.bodies, waves.loads[load]
     X, x, middle = k * h, k * z[:, None], min(waves.thin, end)
     nu1, p = bodies.nu1[case], waves.p[case, :end]

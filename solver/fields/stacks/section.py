@@ -1,7 +1,8 @@
-"""What lies below one contact on a stack, and the field there.
+"""The section through the layers below one contact on a stack, and the field in it.
 
-A graded layer is as many uniform ones. Displacements and tractions go on through their interfaces, the stresses within
-the plane do not: these are taken with the modulus that the layer has at the depth itself, so that they go on too.
+A graded layer is cut into uniform sublayers. Displacements and tractions are continuous at their interfaces; the
+stresses within the plane are not. So these are computed with the modulus of the layer at the depth itself, and are
+continuous too.
 """
 
 from typing import NamedTuple
@@ -15,20 +16,21 @@ from .. import normal, sliding
 from ..field import integrals
 from ..pressure import Pressure
 
-#: A graded layer of which nothing else is said is cut into so many uniform ones in each octave of the depth; the first
-#: one in so many octaves. With twice as many, 5 octaves, stresses change by what `error` says
+#: Number of sublayers of a graded layer in each octave of the depth, by default; and number of octaves in the first
+#: layer. With twice as many, in 5 octaves, the stresses change by about their `error`
 #: (tests/stacks/test_stresses_of_stacks.py).
 SUBLAYERS, _OCTAVES = 8, 4
 
 
 class Section(NamedTuple):
-    """The layers below one contact, N layers that are given; lengths are in a, stresses in the unit of the problem.
+    """The N layers below one contact; lengths are in a, stresses in the unit of the problem.
 
-    stack : :class:`~solver.kernels.stack.Stack` of one case, of all sublayers; h : (1,), thickness of its first layer
-    last : (N,), which of the sublayers is the last of each given layer
+    stack : :class:`~solver.kernels.stack.Stack` of one case, with all sublayers; h : (1,), thickness of its first layer
+    last : (N,), index of the last sublayer of each layer
     pressure : :class:`~..pressure.Pressure`; mu : >= 0, friction
-    residual : (N,), the residual stress of each layer
-    graded, profiles : keys of the layers (1, N), None if none is graded, and the tables of profiles
+    residual : (N,), residual stress of each layer
+    graded : numbers of the layers, key -> (1, N); None if no layer is graded
+    profiles : tables of profiles
     """
 
     stack: Stack
@@ -42,7 +44,7 @@ class Section(NamedTuple):
 
     @classmethod
     def of(cls, scaled, a, pressure, mu, residual):
-        """Of one case of a problem in units R = E2* = 1, of the radius a (1,). residual : (N,)"""
+        """The section of one case of a problem in units R = E2* = 1, with the radius a (1,). residual : (N,)"""
         layers = layers_of(scaled)
         sublayers = np.where(scaled.sublayers == 0, SUBLAYERS, scaled.sublayers)
         stack, h = kernel_of(scaled.but(sublayers=sublayers), octaves=_OCTAVES)
@@ -52,7 +54,7 @@ class Section(NamedTuple):
 
     @property
     def ends(self):
-        """(N,), the depths of the interfaces, below each layer."""
+        """(N,), the depth of the interface below each layer."""
         return self.stack.tops(self.h)[0, self.last + 1]
 
     @property
@@ -60,51 +62,51 @@ class Section(NamedTuple):
         return bool(self.stack.rigid[0])
 
     def numbers(self, z, lower=False):
-        """In which layer depths z (Z,) are, from 0, or N, in the body; one at an interface in the upper, or the lower
-        one."""
+        """The layer of the depths z (Z,), counted from 0, or N for the body. A depth at an interface belongs to the
+        upper layer, or to the lower one if `lower`."""
         return np.searchsorted(self.ends, z, side="right" if lower else "left")
 
     def field(self, r, z, number, displacements=True, roughly=False):
-        """Name -> (Z, R), at radii r (R,) and depths z (Z,) in the layers `number` (Z,), counted from 0, or N, in the
-        body; displacements times the unit of stress. With mu > 0 also the amplitudes of sliding, times mu. Without
-        `displacements` the stresses alone."""
+        """Name -> (Z, R), at radii r (R,) and depths z (Z,) in the layers `number` (Z,), counted from 0, or N for the
+        body. Displacements are times the unit of stress. With mu > 0 there are also the amplitudes of sliding, times
+        mu. `displacements`: whether there are displacements, or only stresses."""
         region = self._region(z, number)
         here = self.stack, self.h, self.pressure, r, z[None], region, roughly
         G2 = self.stack.shear[0, region][:, None]
-        made = {}
+        field = {}
         for kind, factor in ((normal, 1.0), (sliding, self.mu)):
             if factor:
                 load = kind.LOAD if displacements else kind.LOAD.of_stresses()
                 whole = integrals(load, *here)[:, 0]
-                made |= {name: factor * values for name, values in kind.components(whole, G2).items()}
-        if "ux_0" in made and self.stack.slips[0]:
-            made["ux_0"] = np.full_like(made["ux_0"], np.nan)
+                field |= {name: factor * values for name, values in kind.components(whole, G2).items()}
+        if "ux_0" in field and self.stack.slips[0]:
+            field["ux_0"] = np.full_like(field["ux_0"], np.nan)
         if self.graded:
-            self._at_their_depth(made, z, number, region)
-        return made
+            self._at_their_depth(field, z, number, region)
+        return field
 
     def stresses(self, r, z, number, roughly=False):
-        """sr, st, sz, trz (4, S, Z, R), for each sign of x in sliding, with the residual stresses."""
+        """sr, st, sz, trz (4, S, Z, R), including the residual stresses, for each of the S `signs`."""
         field = self.field(r, z, number, False, roughly)
         sides = [sliding.in_plane(field, sign < 0) for sign in self.signs] if self.mu > 0 else [field]
-        made = np.array([[side[name] for side in sides] for name in normal.NAMES[:4]])
-        made[:2] += np.append(self.residual, 0.0)[number][:, None]
-        return made
+        stresses = np.array([[side[name] for side in sides] for name in normal.NAMES[:4]])
+        stresses[:2] += np.append(self.residual, 0.0)[number][:, None]
+        return stresses
 
     @property
     def signs(self):
-        """Of x in the plane y = 0, where sliding tells ahead from behind."""
+        """The signs of x in the plane y = 0, since with sliding the leading and the trailing side differ."""
         return (1.0, -1.0) if self.mu > 0 else (1.0,)
 
     def _region(self, z, number):
-        """Which sublayer the depths are in, (Z,)."""
+        """The sublayer of each depth, (Z,)."""
         tops = self.stack.tops(self.h)[0]
         first = np.append(0, self.last + 1)
         inner = np.searchsorted(tops, z, side="right") - 1
         return np.clip(inner, first[number], np.append(self.last, self.last[-1] + 1)[number])
 
     def _at_their_depth(self, field, z, number, region):
-        """Put the stresses in graded layers into `field` that the modulus at their depth makes."""
+        """Change the stresses of `field` in graded layers to those with the modulus at their depth."""
         tops, ends = np.append(0.0, self.ends), self.ends
         for j in np.flatnonzero(graded_among(self.graded)):
             rows = np.flatnonzero(number == j)
@@ -123,7 +125,7 @@ class Section(NamedTuple):
 
 
 def _with(total, sz, old, nu, more):
-    """sr + st of a material with Poisson ratio nu and `more` times the shear modulus, under the same strains in the
-    plane and the same sz, from that of a Poisson ratio `old`."""
+    """sr + st in a material with the Poisson ratio nu and `more` times the shear modulus, from `total`, sr + st in one
+    with the Poisson ratio `old`, at the same strains in the plane and the same sz."""
     of_strain = ((1 - old) * total - 2 * old * sz) / (1 + old)
     return (2 * nu * sz + (1 + nu) * more * of_strain) / (1 - nu)

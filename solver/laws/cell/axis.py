@@ -1,13 +1,14 @@
 """Stresses on the axis of a spot of a periodic cell: docs/stresses.md, Below a spot.
 
-Of the waves G != 0 of the lattice alone, with the transfer S, M of the coated body per unit pressure (S(0) = -1),
+The waves G != 0 of the lattice cause the stresses
 
-    sz = 2 pi Nbar sum q^(G) S(Gz),   sr = st = pi Nbar sum q^(G) M(Gz).
+    sz = 2 pi Nbar sum q^(G) S(Gz),   sr = st = pi Nbar sum q^(G) M(Gz),
 
-In the layer S and M are those of a half-space of its material, S = -(1 + x) e^-x, M = (x - 1 - 2 nu) e^-x, x = kz, and
-a difference that falls as waves from the interface do. For the half-space the sum over G is taken in two parts: the
-integral over all k, in closed form, and the sum less the integral of the long waves, weighted by w(k) =
-erfc((k - k0)/D)/2. So it needs few waves however near the surface.
+where S and M are the transfer of the coated body per unit pressure, S(0) = -1. In the layer S and M are those of a
+half-space of its material, S = -(1 + x) e^-x, M = (x - 1 - 2 nu) e^-x, x = kz, plus a difference that decays like waves
+from the interface. For the half-space the sum over G has two parts: the integral over all k, in closed form; and the
+difference between sum and integral of the long waves, weighted by w(k) = erfc((k - k0)/D)/2. So few waves are enough,
+however near the surface the point is.
 """
 
 import numpy as np
@@ -25,14 +26,15 @@ __all__ = ["axis_stresses", "cell_axis", "lone_on_axis", "long_waves", "transfor
 
 #: Waves above u = kh = _CUT reach the interface with less than 1e-15 of their pressure.
 _CUT = 38.0
-#: At this relative distance from h and less a point is at the interface.
+#: A point whose distance from the interface is at most this part of h counts as a point at the interface.
 _AT = 1e-9
-#: Below this X = kh the state is carried from the surface down (:mod:`~solver.kernels.transfer`).
+#: Below this X = kh the state is integrated from the surface down (:mod:`~solver.kernels.transfer`).
 _THIN = 1.0
-#: Points on each panel of t. The panels are halved so often towards t = 0, where those of a small depth are needed.
+#: Points on each panel of t, and number of times that the panels are halved towards t = 0, as points of small depth
+#: need them.
 _POINTS, _HALVINGS = 20, 48
-#: Points of a transform on a panel, beyond half of those of phi and half of the radians of its waves, and how many
-#: waves have the same (tests/laws/cell/test_rows.py).
+#: A transform has on each panel half as many points as phi, half as many as the phase of its shortest wave in radians,
+#: and _MORE. So many waves at a time have the same points (tests/laws/cell/test_rows.py).
 _MORE, _WAVES = 14, 200
 
 
@@ -48,7 +50,7 @@ def cell_axis(
     m: float = 0.0,
     side: int = 0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Stresses on the axis of a spot of the periodic cell, without those of the nominal pressure: docs/stresses.md.
+    """Stresses on the axis of a spot of the periodic cell, less those of the nominal pressure: docs/stresses.md.
 
     Parameters
     ----------
@@ -124,8 +126,8 @@ def _half_space(spot, lattice, z, nu):
 
 
 def long_waves(lattice, b, r=0.0):
-    """Waves of the lattice (W,) with their weights c w, and points k (K,) with the weights of ∫ w k dk, of the field of
-    a spot of radius b at radii up to r from its axis."""
+    """The long waves of the field of a spot of radius b, at radii up to r from its axis: the waves of the lattice (W,)
+    with their weights c w, and points k (K,) with the weights of ∫ w k dk."""
     D = 12 / (LATTICES[lattice] - b - r)
     k, c = lattice_waves(lattice, 0.0, b + r)
     nodes, weights = gauss_legendre(16)
@@ -136,7 +138,7 @@ def long_waves(lattice, b, r=0.0):
 
 
 def lone_on_axis(spot, z):
-    """E = ∫ q^ k e^(-kz) dk and F = ∫ q^ k (kz) e^(-kz) dk (Z,) of one spot, by -phi'(t)/t at points that are halved
+    """E = ∫ q^ k e^(-kz) dk and F = ∫ q^ k (kz) e^(-kz) dk (Z,) of one spot, from -phi'(t)/t on panels that are halved
     towards t = 0."""
     edges = np.append(0.0, spot.b[0] * 0.5 ** np.arange(_HALVINGS, -1, -1.0))
     nodes, weights = gauss_legendre(_POINTS)
@@ -147,7 +149,7 @@ def lone_on_axis(spot, z):
 
 
 def _between(spot, values, t):
-    """A function with `values` at the points of a spot, at t (T,): the polynomial through the points of its panel."""
+    """A function interpolated to t (T,) from its `values` at the points of a spot, by a polynomial on each panel."""
     b, (panels, size) = spot.b[0], panels_of(len(values))
     index = np.clip((t / b * panels).astype(int), 0, panels - 1)
     out = np.empty_like(t)
@@ -158,7 +160,7 @@ def _between(spot, values, t):
 
 
 def transform(spot, k):
-    """q^(k) = ∫ phi cos kt dt (K,) of one spot, to rounding: of shorter waves with more points."""
+    """q^(k) = ∫ phi cos kt dt (K,) of one spot, to rounding; shorter waves have more points."""
     b, (panels, size) = spot.b[0], panels_of(len(spot.phi[0]))
     order, out = np.argsort(k), np.empty_like(k)
     for some in np.array_split(order, 1 + len(k) // _WAVES) if len(k) else ():

@@ -1,12 +1,12 @@
-"""The micro laws of equal asperities on the coated body itself: docs/model.md, Asperities on the coated body.
+"""The micro laws of equal asperities on the coated body itself: docs/coated_body.md.
 
-The unknown is y = b/Bbar, the radius of a spot over that of the disc of its cell, Bbar = 1/sqrt(pi Nbar). With P, G and
-Q of the family of a case (:mod:`.family`) and p* = 2 E Bbar/(3 Ra), A* = Bbar²/Ra as in the disc cell,
+The unknown is y = b/Bbar, the radius of a spot over that of a disc with the area of the cell, Bbar = 1/sqrt(pi Nbar).
+With P, G and Q of the family of a case (:mod:`.family`), and p* = 2 E Bbar/(3 Ra), A* = Bbar²/Ra as in the disc cell,
 
     q = (2/pi) y³ e^P,   g = y² e^G,   λ = y²,   p_max/p* = (3/pi) y e^Q.
 
-P, G and Q end where the spots are no circles any more. Beyond, they soon are straight lines in ln y, so that Newton's
-method gets through: such a contact is outside the law, whose largest pressure :func:`end` says.
+P, G and Q end where the spots are no longer circles. Beyond the end they soon become straight lines in ln y, so that
+Newton's method converges. Such a contact is outside the law, whose largest pressure :func:`end` returns.
 """
 
 from functools import partial
@@ -23,16 +23,17 @@ __all__ = [
 ]
 
 _AT = {name: i for i, name in enumerate(NUMBERS)}
-#: Newton steps from the guess, which is right to 1e-2 or better: the third is below rounding.
+#: Newton steps from the guess, which is right to 1e-2 or better: the third step is below rounding.
 _STEPS = 3
-#: Numbers in a row of no cases: as many as may be.
+#: Length of a row if there are no cases: any number does.
 _ANY = 64
-#: gamma and beta of g ~ gamma q^beta: few spots are lone ones, with q = (2/pi) y³ and g = y².
+#: gamma and beta of g ~ gamma q^beta: small spots are isolated ones, with q = (2/pi) y³ and g = y².
 EDGE = (np.pi / 2) ** (2 / 3), 2 / 3
 
 
 def rows_of(lattice, kernel, m, h, Nbar):
-    """The numbers (B, K) of the families of B cases, :meth:`.family.Family.row`, which the functions below take.
+    """The numbers (B, K) of the families of B cases, :meth:`.family.Family.row`, which are `rows` in the functions
+    below.
 
     lattice : "square", "hex" or "disc"; kernel, m, h : of the body, as in `on_body` of :class:`~solver.laws.law.Law`
     """
@@ -42,8 +43,8 @@ def rows_of(lattice, kernel, m, h, Nbar):
 
 
 def stacked(members, index):
-    """The rows (B, K) of families or summits, as long as the longest, by the index (B,) of each case; of one family a
-    view of one row."""
+    """The rows (B, K) of B cases from their families or summits, `members`, by the `index` (B,) of each case. All have
+    the length of the longest. If there is only one member, they are a view of one row."""
     if not members:
         return np.zeros((0, _ANY))
     terms = max(member.terms for member in members)
@@ -52,7 +53,7 @@ def stacked(members, index):
 
 
 def of_spots(name, lattice, scales, **rest):
-    """`on_body` of the :class:`~solver.laws.law.Law` of equal asperities of this name, on a lattice. `scales` and
+    """`on_body` of the :class:`~solver.laws.law.Law` of this name, for equal asperities on a lattice. `scales` and
     `rest` are those of the law."""
     parts = {"curve": spot_curve, "area": spot_area, "peak": spot_peak, "edge": _edge, "guess": spot_guess, "end": _end}
     law = Law(name=f"{name}_on_body", scales=scales, from_pressure=spot_from_pressure, **parts, **rest)
@@ -64,14 +65,15 @@ def _bound(law, lattice, kernel, m, h, E, Nbar, Ra):
 
 
 def end(bound):
-    """The largest nominal pressures (B,) that a law knows, in its unit of p*; infinite of laws without an end."""
+    """The largest nominal pressures (B,) for which a law has numbers, in the unit of p*; infinite for laws without an
+    end."""
     if bound.law.end is None:
         return np.full(len(bound.p_star), np.inf)
     return bound.p_star * np.broadcast_to(bound.law.end(*bound.own), (len(bound.p_star), 1))[:, 0]
 
 
 def number(rows, name):
-    """One of the NUMBERS of the families of B cases, (B, 1)."""
+    """The number of this name, one of the NUMBERS, of the families of B cases, (B, 1)."""
     return rows[:, _AT[name], None]
 
 
@@ -81,7 +83,7 @@ def settled_slope(rows):
 
 
 def _along(rows, y):
-    """x = 2 v - 1 of the series at y (B, m), dx/d ln y, and ln(y/end), 0 where y is not beyond the end."""
+    """x = 2 v - 1 of the series at y (B, m), dx/d ln y, and ln(y/end), which is 0 where y is not beyond the end."""
     scale, last = number(rows, "scale"), number(rows, "end")
     past_end = np.log(np.maximum(y / last, 1.0))
     beta, width = scale * np.minimum(y, last), 2 * number(rows, "width")
@@ -123,7 +125,8 @@ def spot_curve(y, rows):
 
 
 def spot_guess(q, rows):
-    """y with q(y) = q, roughly: by the inverse of the family, a series in asinh(r/h), r the radius of a lone spot."""
+    """y with q(y) = q, roughly, by the inverse of the family: a series in asinh(r/h), where r is the radius of a lone
+    spot."""
     r, last = np.cbrt(np.pi / 2 * np.maximum(q, 0.0)), number(rows, "end_r")
     x = 2 * number(rows, "width_r") * np.arcsinh(number(rows, "scale") * np.minimum(r, last)) - 1
     inside, _ = clenshaw(rows[:, -GUESS:], x)

@@ -1,4 +1,4 @@
-"""The families of cells on coated bodies, with their peaks, which are kept: docs/model.md."""
+"""The families of cells on coated bodies, and their peaks, which are cached: docs/coated_body.md."""
 
 from typing import NamedTuple
 
@@ -11,13 +11,16 @@ from .summits import SUMMIT
 
 __all__ = ["Member", "members", "peaks_of"]
 
-#: Bytes of the peaks that are kept: some 2,000 of families whose largest pressure leaves the middle.
-_kept = Kept(2e7)
+#: The peaks in use, at most this many bytes: some 2,000 families whose largest pressure leaves the middle.
+_peaks = Kept(2e7)
 
 
 class Member(NamedTuple):
-    """A family: the key that tells it from others, its :class:`~.spot.Cell`, and its largest radius (unit l); `known`
-    is False of a body that no law knows. `alone` : its spots have loads of their own (:mod:`.summits`)."""
+    """A family: the key that tells it from others, its :class:`~.spot.Cell`, and its largest radius, in l.
+
+    known : False if no law can use the family
+    alone : whether its spots have loads of their own (:mod:`.summits`)
+    """
 
     key: tuple
     cell: Cell
@@ -27,8 +30,8 @@ class Member(NamedTuple):
 
 
 def members(lattice, pitch, kernel, m):
-    """The different :class:`Member` of B cases, a list, and the index (B,) of that of each; arguments as of
-    :func:`~.family.families`, where the lattice may be "summit"."""
+    """The different families of B cases, a list of :class:`Member`, and the index (B,) of each case's family. Arguments
+    as in :func:`~.family.families`; the lattice may also be "summit"."""
     alone = lattice == SUMMIT
     lattice = "disc" if alone else lattice
     first, index = different(lattice, pitch, kernel, m)
@@ -41,6 +44,6 @@ def members(lattice, pitch, kernel, m):
 
 
 def peaks_of(member):
-    """The :class:`~.peak.Peaks` of a family, or :class:`~.peak.SummitPeaks`, kept for the next time."""
+    """The :class:`~.peak.Peaks` of a family, or its :class:`~.peak.SummitPeaks`, from the cache."""
     make = summit_peaks if member.alone else peaks
-    return _kept.get(member.key, lambda: make(member.cell, member.reach))
+    return _peaks.get(member.key, lambda: make(member.cell, member.reach))

@@ -1,13 +1,13 @@
-"""Where in a spot the pressure is largest: docs/model.md, Asperities on the coated body.
+"""The largest pressure in a spot, and its place: docs/coated_body.md, The pressure inside a spot.
 
 With phi of :mod:`.spot` and f(t) = -phi'(t)/t, the pressure at r = sqrt(b² - s²) is
 
     q(r) = ∫ f(t) t/sqrt(t² - r²) dt, t from r to b,   = ∫ f(sqrt(r² + u²)) du, u from 0 to s:
 
 a smooth function of s from the edge, s = 0, to the middle, s = b. So it is a polynomial in s/b on each of a few panels.
-Below a hard film on a soft body the largest pressure leaves the middle at some radius b, in a ring that widens, and
-may come back to the middle at a larger one, where the middle has overtaken the ring. A table of the radii between these
-says how large it is in the ring and where.
+On a hard film over a soft body, the place of the largest pressure leaves the middle at some radius b and becomes a ring
+that widens with b. At a larger b the pressure in the middle may overtake that in the ring. For the radii in between, a
+table has the pressure in the ring and the radius of the ring.
 """
 
 from functools import lru_cache
@@ -22,32 +22,34 @@ from .summits import parts
 
 __all__ = ["NARROW", "Peaks", "SummitPeaks", "U", "may_leave_the_middle", "peaks", "pressures", "summit_peaks"]
 
-#: The largest pressure stays in the middle where b/h is below NARROW, and wherever L - 1 nowhere exceeds _HARD: it
-#: leaves it from 1.04 on, as on a plate that nothing supports, and from 1.6 on, whatever the Poisson ratios and the
-#: interface; in stacks no earlier (tests/laws/cell/test_peak.py).
+#: The largest pressure stays in the middle where b/h is below NARROW, and wherever L - 1 exceeds _HARD nowhere. It
+#: leaves the middle only for b/h above 1.04, the value on a plate without support, and only if the largest L - 1 is
+#: above 1.6, whatever the Poisson ratios and the interface; in stacks not earlier (tests/laws/cell/test_peak.py).
 NARROW, _HARD = 1.0, 1.3
-#: u = kh at which L - 1 is looked at.
+#: The u = kh at which L - 1 is evaluated for this.
 U = np.geomspace(1e-4, 12, 60)
 #: Nodes of the polynomials on a panel of s/b (Chebyshev's, with both ends), and the widest panel in h.
 _NODES, _WIDEST = 32, 5.0
-#: Radii at which the cell is solved, by the powers of ln(b/h): the pressures between are right to 1e-7 of themselves
-#: (tests/laws/cell/test_peak.py).
+#: Number of radii at which the cell is solved, as coefficients of a polynomial in ln of the largest b/h over NARROW.
+#: The pressures between them have a relative error of 1e-7 (tests/laws/cell/test_peak.py).
 _RADII = 14, 8, 3
-#: So many radii are looked at, and around each end of a ring _ROUNDS times _SECTIONS more: it is then right to 1e-7.
+#: Number of radii at which the place of the peak is examined; and around each radius where a ring begins or ends, in
+#: each of _ROUNDS rounds, _SECTIONS more. That radius is then right to 1e-7.
 _LOOKED_AT, _SECTIONS, _ROUNDS = 96, 13, 5
-#: Terms of the table on each of its pieces, which are halved at most _HALVINGS times, until what the pressure and r²
-#: miss between is below _SAME.
+#: Number of terms of the table on each of its pieces. A piece is halved, at most _HALVINGS times, until the errors of
+#: the pressure and of r² between the nodes are below _SAME.
 _TERMS, _HALVINGS, _SAME = 14, 6, 1e-8
 #: Steps of Newton's method to the place of the largest pressure, from the best of the nodes.
 _STEPS = 5
 
 
 class Peaks(NamedTuple):
-    """The largest pressure in spots of a cell, by their radius.
+    """The largest pressure in spots of a cell, as a function of their radius.
 
-    ends : (n + 1,), ln b (unit l) at the ends of the pieces of the table; below the first the peak is in the middle
-    ring, lifts : (n,) bool: on this piece it is in a ring; the pressure is below 0 somewhere inside
-    series : (n, 2, terms), Chebyshev series in ln b: of the largest pressure over 2 b/pi, and of (r/b)² of its place
+    ends : (n + 1,), ln b, b in l, at the ends of the pieces of the table; below the first end the peak is in the middle
+    ring : (n,) bool, whether on this piece the peak is in a ring
+    lifts : (n,) bool, whether on this piece the pressure is below 0 somewhere inside the spot
+    series : (n, 2, terms), Chebyshev series in ln b: of the largest pressure over 2 b/pi, and of (r/b)² at its place
     """
 
     ends: np.ndarray
@@ -56,9 +58,10 @@ class Peaks(NamedTuple):
     series: np.ndarray
 
     def at(self, b, p_max):
-        """The largest pressure, and its radius over b, (B,) each.
+        """The largest pressure, and the radius of its place over b, (B,) each.
 
-        b : (B,), radii in l, up to the largest of the table; p_max : (B,), pressures in the middle, E = Ra = l = 1
+        b : (B,), radii in l, at most the largest of the table
+        p_max : (B,), pressures in the middle; units E = Ra = l = 1
         """
         w = np.log(b)
         piece = np.minimum(np.searchsorted(self.ends, w, side="right"), len(self.ring)) - 1
@@ -75,18 +78,18 @@ class Peaks(NamedTuple):
         return p, r
 
     def lifts_off(self, b):
-        """Whether the pressure is below 0 inside of a spot of one of the radii up to b (B,): bool."""
+        """(B,) bool: whether in a spot of some radius up to b (B,) the pressure is below 0 somewhere."""
         first = np.min(self.ends[:-1][self.lifts], initial=np.inf)
         return np.log(b) > first
 
 
 def in_the_middle():
-    """:class:`Peaks` of cells whose largest pressure is in the middle at any radius."""
+    """:class:`Peaks` of cells whose largest pressure is in the middle for all radii."""
     return Peaks(np.zeros(1), np.zeros(0, dtype=bool), np.zeros(0, dtype=bool), np.zeros((0, 2, _TERMS)))
 
 
 def may_leave_the_middle(cell):
-    """Whether the largest pressure of some spot may be beside the middle."""
+    """Whether in some spot of a :class:`~.spot.Cell` the largest pressure may be outside the middle."""
     return cell.L1 is not None and bool(cell.L1(U).max() > _HARD)
 
 
@@ -100,16 +103,20 @@ def peaks(cell, reach):
     rows = in_groups(cell, b, lambda some: pressures(spots(cell, some, N), y).T, len(y)) / (2 * b / np.pi)
     series = np.linalg.solve(_vander(_roots(count), count), rows.T)
 
-    def looked_up(at):
+    def largest_at(at):
         """:class:`_Largest` at ln b (B,)."""
         return largest(_vander((2 * at - w[0] - w[1]) / (w[1] - w[0]), count) @ series, breaks)
 
-    return _table(looked_up, w)
+    return _table(largest_at, w)
 
 
 class SummitPeaks(NamedTuple):
-    """The pressures of spots of their own load under the pressure p of others, over 2 b/pi, at nodes of panels of s/b
-    between `breaks`: Chebyshev series (2, terms, nodes) in ln b between both `w`, of those without p and of those by p.
+    """The pressures, over 2 b/pi, in spots that have their own load and feel the nominal pressure p of others.
+
+    w : (2,), the smallest and the largest ln b
+    breaks : ends of the panels of s/b
+    series : (2, terms, nodes), Chebyshev series in ln b of the pressures at the nodes of the panels: without p, and
+        their change for each p
     """
 
     w: np.ndarray
@@ -122,7 +129,7 @@ class SummitPeaks(NamedTuple):
         return T @ self.series[0] + p[:, None] * (T @ self.series[1])
 
     def at(self, b, p_max, p):
-        """As of :class:`Peaks`, under the nominal pressures p (B,)."""
+        """As :meth:`Peaks.at`, under the nominal pressures p (B,)."""
         values, r, lone = np.array(p_max, dtype=float), np.zeros(len(b)), 2 * b / np.pi
         some = np.flatnonzero(np.log(b) >= self.w[0]) if len(self.series[0]) else np.zeros(0, dtype=int)
         if len(some):
@@ -152,7 +159,7 @@ def summit_peaks(cell, reach):
 
 
 def _count(w):
-    """How many radii are solved between both `w`, ln b."""
+    """Number of radii that are solved between both `w`, ln b."""
     return int(np.polynomial.polynomial.polyval(w[1] - w[0], _RADII))
 
 
@@ -162,8 +169,8 @@ def _breaks(most):
 
 
 class _Largest(NamedTuple):
-    """The largest pressures (B,), (r/b)² of their places, whether these are in a ring, and whether some pressure is
-    below 0."""
+    """Arrays (B,): the largest pressure, (r/b)² of its place, whether this place is a ring, and whether some pressure
+    is below 0."""
 
     value: np.ndarray
     square: np.ndarray
@@ -178,12 +185,12 @@ def pressures(spot, y):
 
 @lru_cache(maxsize=32)
 def _weights(count, y_bytes):
-    """From values of f at `count` points t/b to q/b at y: (Y, count)."""
+    """The matrix (Y, count) that makes q/b at y from values of f at `count` points t/b."""
     panels, size = panels_of(count)
     y, rows, nodes = np.frombuffer(y_bytes), [], gauss_legendre(size)[0]
     x, weights = gauss_legendre(size + 8)
     ends = np.arange(panels + 1) / panels
-    # of the variable u/b: where t = sqrt(r² + u²) passes the ends of the panels
+    # the u/b at which t = sqrt(r² + u²) reaches the ends of the panels
     u = np.sqrt(np.maximum(y[:, None] ** 2 - (1 - ends) * (1 + ends), 0.0))
     for j in range(panels):
         some = np.flatnonzero(u[:, j + 1] > 0)
@@ -202,7 +209,7 @@ def largest(values, breaks):
     panels, row = values.reshape(len(values), -1, _NODES), np.arange(len(values))
     best = _highest(values)
     j, k = best // _NODES, best % _NODES
-    # a node that two panels share belongs to the one into which the pressure rises
+    # a node that two panels share belongs to the panel into which the pressure rises
     onward = (k == _NODES - 1) & (panels[row, j] @ _slopes()[-1] > 0)
     j, k = np.where(onward, j + 1, j), np.where(onward, 0, k)
     series = panels[row, j] @ _to_series()
@@ -221,55 +228,55 @@ def largest(values, breaks):
 
 
 def _highest(values):
-    """Index (B,) of the largest of the local maxima among pressures (B, P nodes) outside of the middle, which is the
-    last; of the node beside the middle where there is none."""
+    """Index (B,) of the largest local maximum of the pressures (B, P nodes) outside the middle, which is the last node.
+    If there is none, it is that of the node next to the middle."""
     inside = values[:, 1:-1]
     peaks = (inside >= values[:, :-2]) & (inside >= values[:, 2:])
     highest = 1 + np.where(peaks, inside, -np.inf).argmax(axis=1)
     return np.where(peaks.any(axis=1), highest, values.shape[1] - 2)
 
 
-def _table(looked_up, w):
-    """:class:`Peaks` of a function of ln b, between both `w`."""
+def _table(largest_at, w):
+    """:class:`Peaks` from `largest_at`, a function of ln b that returns :class:`_Largest`, between both `w`."""
     at = np.linspace(*w, _LOOKED_AT)
-    kind = _kind(looked_up(at))
+    kind = _kind(largest_at(at))
     last = np.flatnonzero(np.diff(kind))
     ends, row = np.stack([at[last], at[last + 1]]), np.arange(len(last))
     for _ in range(_ROUNDS if len(last) else 0):
         fine = np.linspace(*ends, _SECTIONS)
-        changed = _kind(looked_up(fine.ravel())).reshape(fine.shape) != kind[last]
+        changed = _kind(largest_at(fine.ravel())).reshape(fine.shape) != kind[last]
         first = np.where(changed[1:].any(axis=0), 1 + changed[1:].argmax(axis=0), _SECTIONS - 1)
         ends = np.stack([fine[first - 1, row], fine[first, row]])
     edges, pieces = [w[0], *ends[1], w[1]], []
     for low, high, kind_there in zip(edges[:-1], edges[1:], [kind[0], *kind[last + 1]], strict=True):
-        pieces += _pieces(looked_up, low, high, kind_there, _HALVINGS)
+        pieces += _pieces(largest_at, low, high, kind_there, _HALVINGS)
     lows, highs, kinds, series = (np.array(column) for column in zip(*pieces, strict=True))
     return Peaks(np.append(lows, highs[-1]), kinds % 2 == 1, kinds >= 2, series)
 
 
 def _kind(peaks):
-    """1 in a ring, and 2 more where it lifts off."""
+    """1 if the peak is in a ring, plus 2 if the pressure is below 0 somewhere."""
     return peaks.ring + 2 * peaks.lifts
 
 
-def _pieces(looked_up, low, high, kind, halvings):
-    """(low, high, kind, series) of pieces of the table; those in the middle need no series."""
+def _pieces(largest_at, low, high, kind, halvings):
+    """Pieces of the table, (low, high, kind, series) each. A piece whose peak is in the middle needs no series."""
     if kind % 2 == 0:
         return [(low, high, kind, np.zeros((2, _TERMS)))]
-    peaks = looked_up(_on(low, high, _roots(_TERMS)))
+    peaks = largest_at(_on(low, high, _roots(_TERMS)))
     series = np.linalg.solve(_vander(_roots(_TERMS), _TERMS), np.stack([peaks.value, peaks.square], axis=1)).T
     between = (_roots(_TERMS)[1:] + _roots(_TERMS)[:-1]) / 2
-    peaks = looked_up(_on(low, high, between))
+    peaks = largest_at(_on(low, high, between))
     missed = np.abs(series @ _vander(between, _TERMS).T - [peaks.value, peaks.square])
     if halvings == 0 or (missed.max(axis=1) <= _SAME * np.array([peaks.value.max(), 1.0])).all():
         return [(low, high, kind, series)]
     middle = (low + high) / 2
     halves = (low, middle), (middle, high)
-    return [piece for half in halves for piece in _pieces(looked_up, *half, kind, halvings - 1)]
+    return [piece for half in halves for piece in _pieces(largest_at, *half, kind, halvings - 1)]
 
 
 def _on(low, high, x):
-    """The value at x in [-1, 1] of the interval from `low` to `high`."""
+    """The point of the interval from `low` to `high` that corresponds to x in [-1, 1]."""
     return low + (high - low) * (1 + x) / 2
 
 
@@ -279,7 +286,7 @@ def _roots(count):
 
 
 def _ends():
-    """The nodes (_NODES,) of a panel in [-1, 1], with both ends."""
+    """The nodes (_NODES,) of a panel in [-1, 1]; both ends are nodes."""
     return -np.cos(np.pi * np.arange(_NODES) / (_NODES - 1))
 
 
@@ -294,17 +301,17 @@ def _vander(x, count):
 
 @lru_cache(maxsize=1)
 def _to_series():
-    """From values at the nodes of a panel to Chebyshev coefficients, from the right, (nodes, nodes)."""
+    """The matrix (nodes, nodes) that makes Chebyshev coefficients from a row of values at the nodes of a panel."""
     return np.linalg.inv(_vander(_ends(), _NODES)).T
 
 
 @lru_cache(maxsize=1)
 def _derivative():
-    """From Chebyshev coefficients to those of the derivative, from the right, (nodes, nodes)."""
+    """The matrix (nodes, nodes) that makes Chebyshev coefficients of the derivative from a row of coefficients."""
     return np.array([np.append(np.polynomial.chebyshev.chebder(row), [0.0]) for row in np.eye(_NODES)])
 
 
 @lru_cache(maxsize=1)
 def _slopes():
-    """From values at the nodes of a panel to derivatives there, (nodes, nodes)."""
+    """The matrix (nodes, nodes) that makes derivatives at the nodes from a column of values there."""
     return _vander(_ends(), _NODES) @ _derivative().T @ _to_series().T

@@ -1,10 +1,10 @@
 """The micro law of a surface itself: the contact of one period of heights, by conjugate gradients.
 
-One period of N × M heights on a body with the kernel L: a pressure of the Fourier amplitudes p(k) moves its surface by
-2 L(k)/k p(k) (E1* = 1), without k = 0, whose part is the nominal contact's. The pressure sought is >= 0, has the mean
-p, and makes the gap 0 where it presses (Polonsky and Keer, Wear 231, 1999, 206). That is a quadratic program, whose
-steps along conjugate directions cost two Fourier transforms each. The residual is divided by the kernel, so that the
-number of steps hardly grows with N.
+One period has N × M heights and lies on a body with the kernel L. A pressure with the Fourier amplitudes p(k) moves the
+surface by 2 L(k)/k p(k) (E1* = 1); k = 0 is left out, since it belongs to the nominal contact. The solution is a
+pressure >= 0 with the mean p whose gap is 0 wherever it is positive (Polonsky and Keer, Wear 231, 1999, 206). It solves
+a quadratic program. A step along a conjugate direction costs two Fourier transforms. The residual is divided by the
+kernel, so that the number of steps hardly grows with N.
 """
 
 from collections.abc import Callable
@@ -14,12 +14,12 @@ from numpy.typing import ArrayLike
 
 __all__ = ["periodic_rows"]
 
-#: A solution has been found when the gap under the pressures is this part of the range of the heights; most steps: a
-#: layer of n = 100 takes 2,700 at 256 × 256 points.
+#: The iteration has ended when the gap under the pressures is at most this part of the range of the heights. Largest
+#: number of steps: a layer of n = 100 takes 2,700 with 256 × 256 points.
 _CLOSED, _STEPS = 1e-9, 20_000
-#: A point that joins the contact has at least this part of the mean pressure: any that is not 0.
+#: A point that joins the contact has at least this part of the mean pressure. Any number above 0 does.
 _JOINS = 1e-12
-#: The kernel at k = 0, which the preconditioner needs to be a number, over its value at the longest wave.
+#: The preconditioner needs a finite kernel at k = 0. This is its value there over that at the longest wave.
 _MEAN = 1.0
 
 
@@ -77,9 +77,10 @@ def periodic_rows(
 
 
 def response_of(shape, dx, dy, kernel, mirrored=False):
-    """Displacement over pressure of the waves of a period, as `numpy.fft.rfft2` has them; 0 of k = 0.
+    """Displacement over pressure for each wave of a period, in the order of `numpy.fft.rfft2`; 0 for k = 0.
 
-    mirrored : the period is the patch (N, M) beside its mirror images, of waves as `scipy.fft.dctn` has them
+    mirrored : whether the period consists of the patch (N, M) and its mirror images; the waves are then in the order of
+        `scipy.fft.dctn`
     """
     ky = 2 * np.pi * np.fft.fftfreq(shape[0], dy)
     kx = 2 * np.pi * np.fft.rfftfreq(shape[1], dx)
@@ -98,50 +99,53 @@ def response_of(shape, dx, dy, kernel, mirrored=False):
 def pressed(depths, response, mean, start, mirrored=False):
     """The pressures (N, M) of a period, its approach A, and whether the iteration has ended.
 
-    depths : (N, M), of the surface below its highest summit; response, mirrored : of :func:`response_of`; mean : of the
-    pressure; start : (N, M), pressures to begin with, of this mean
+    depths : (N, M), depth of each point below the highest summit
+    response, mirrored : as in :func:`response_of`
+    mean : mean pressure
+    start : (N, M), first pressures, with this mean
     """
 
-    def moved(p):
+    def displacement(p):
         return waves_times(p, response, mirrored)
 
     inverse = np.where(response > 0, 1 / np.where(response > 0, response, 1.0), 0.0)
     inverse[0, 0] = _MEAN / response.max()
 
-    def eased(residual, pressed_on):
-        """The residual divided by the kernel, where there is contact, without its mean there."""
-        quotient = waves_times(np.where(pressed_on, residual, 0.0), inverse, mirrored)
-        return np.where(pressed_on, quotient - quotient[pressed_on].mean(), 0.0)
+    def preconditioned(residual, contact):
+        """The residual divided by the kernel, less its mean over the `contact` (N, M) bool; 0 outside."""
+        quotient = waves_times(np.where(contact, residual, 0.0), inverse, mirrored)
+        return np.where(contact, quotient - quotient[contact].mean(), 0.0)
 
     p, direction, before, allowed = start, np.zeros_like(start), 1.0, _CLOSED * np.ptp(depths)
     restart = True
     for _ in range(_STEPS):
         touching = p > 0
-        gap = moved(p) + depths
+        gap = displacement(p) + depths
         A = gap[touching].mean()
         residual = gap - A
         if np.abs(residual[touching]).max() <= allowed and residual.min() >= -allowed:
             return p, A, True
-        z = eased(residual, touching)
+        z = preconditioned(residual, touching)
         now = (residual * z)[touching].sum()
         direction = np.where(touching, z + (0.0 if restart else now / before) * direction, 0.0)
         before = now
-        along = moved(direction)
+        along = displacement(direction)
         along = along - along[touching].mean()
         step = (residual * direction)[touching].sum() / (along * direction)[touching].sum()
         p = np.maximum(p - step * direction, 0.0)
-        apart = (p == 0) & (residual < 0)
-        restart = bool(apart.any())
+        joins = (p == 0) & (residual < 0)
+        restart = bool(joins.any())
         if restart:
-            # the same step with the points that join: one pressure for all makes hard layers come and go for ever
-            joining = -step * eased(residual, touching | apart)
-            p = np.where(apart, np.maximum(joining, _JOINS * mean), p)
+            # the same step for the points that join: with one pressure for all, points on hard layers would join and
+            # leave for ever
+            joining = -step * preconditioned(residual, touching | joins)
+            p = np.where(joins, np.maximum(joining, _JOINS * mean), p)
         p = p * (mean / p.mean())
     return p, np.nan, False
 
 
 def waves_times(field, factors, mirrored):
-    """A field (N, M) whose waves, of :func:`response_of`, have been multiplied by factors."""
+    """A field (N, M) after its waves, in the order of :func:`response_of`, have been multiplied by `factors`."""
     if mirrored:
         from scipy.fft import dctn, idctn  # imports scipy.special, half of the time of `import solver`
 

@@ -1,4 +1,4 @@
-"""The micro law of a lattice on a coated body, at given contact fractions: the equation itself, no table."""
+"""The micro law of a lattice on a coated body at given contact fractions, from the equation itself, without tables."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +11,7 @@ from .spot import Cell, spots
 
 __all__ = ["cell_rows"]
 
-#: The largest contact fraction: beyond, the series of the neighbours has too few terms, and the spots merge.
+#: The largest contact fraction. Beyond, the series of the neighbours has too few terms, and the spots merge.
 MOST = {"square": 0.78, "hex": 0.78, "disc": 0.78}
 
 
@@ -29,23 +29,24 @@ def cell_rows(
     interfaces: list | None = None,
     rigid_base: bool = False,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The micro law of equal asperities on a coated body: docs/model.md, Asperities on the coated body.
+    """The micro law of equal asperities on a coated body: docs/coated_body.md.
 
     Parameters
     ----------
-    lattice : "square", "hex", or "disc", the disc cell of Eqs (6), (7) whose layer has the waves of "hex"
+    lattice : "square", "hex", or "disc", the disc cell of Eqs (6), (7), whose layer has the waves of "hex"
     lam : contact fraction pi Nbar b² in (0, 0.78]; the angular mean of the spots is right up to 0.4
     l_over_h : pitch l = 1/sqrt(Nbar) over the thickness of the layer at the surface, > 0
-    n, nu1, nu2, bonding : E1*/E2*, 0 on a rigid base, Poisson ratios, "bonded" or "frictionless"; of one layer
+    n, nu1, nu2, bonding : for one layer: E1*/E2*, 0 on a rigid base; Poisson ratios; "bonded" or "frictionless"
     m : E1*/E3* of layer and punch, >= 0
-    layers : of a stack, [(h, n, nu), ...] from the top, n = E_j*/E2*, in place of n and nu1
-    interfaces : below each layer "bonded", "frictionless" or (cn, ct), compliances in h/E2*; None: all are bonded
-    rigid_base : of a stack: n = E_j*/E1*, and nu2 is not used
+    layers : for a stack, in place of n and nu1: [(h, n, nu), ...] from the top, n = E_j*/E2*
+    interfaces : for a stack, below each layer "bonded", "frictionless" or (cn, ct), compliances in h/E2*; None: all are
+        bonded
+    rigid_base : whether a stack is on a rigid base: then n = E_j*/E1*, and nu2 is not used
 
     Returns
     -------
-    p, A, p_max : arrays to which the arguments broadcast; nominal pressure, approach and the pressure in the middle of
-        the spot, in units of E1* l/Ra, l²/Ra, E1* l/Ra
+    p, A, p_max : arrays of the shape to which the arguments broadcast; nominal pressure, approach and the pressure in
+        the middle of the spot, in units of E1* l/Ra, l²/Ra, E1* l/Ra
 
     Raises
     ------
@@ -76,7 +77,7 @@ def cell_rows(
 
 
 def refuse_cells(lattice, lam, pitch, m) -> None:
-    """Raise ValueError for a lattice, contact fraction, pitch over h or m out of its bounds."""
+    """Raise ValueError if the lattice, the contact fraction, the pitch over h or m is out of its bounds."""
     if lattice not in MOST:
         raise ValueError(f'lattice = "{lattice}": must be one of {", ".join(MOST)}')
     _refuse(lam=(lam, (lam > 0) & (lam <= MOST[lattice])), l_over_h=(pitch, (pitch > 0) & (pitch <= 1e4)))
@@ -84,13 +85,13 @@ def refuse_cells(lattice, lam, pitch, m) -> None:
 
 
 def refuse_layers(n, nu1, nu2, bonding) -> None:
-    """Raise ValueError for numbers of one layer and its body out of their bounds."""
+    """Raise ValueError if a number of a layer or its body is out of its bounds."""
     _refuse(n=(n, n >= 0), nu1=(nu1, _is_nu(nu1)), nu2=(nu2, _is_nu(nu2)))
     _refuse(bonding=(bonding, np.isin(bonding, BONDINGS)))
 
 
 def of_kernel(kernel: Kernel, m: float):
-    """The function u (W,) -> (L - 1)/(1 + m) (W,) of the kernel of one case."""
+    """The function u (W,) -> (L - 1)/(1 + m) (W,) of one case, from its kernel."""
     return lambda u: kernel.decaying_part(u[None, :])[0][0] / (1 + m)
 
 
@@ -117,7 +118,7 @@ def _is_nu(nu):
 
 
 def _refuse(**checks):
-    """Raise ValueError for the first of name=(value, where it is allowed) that is not allowed everywhere."""
+    """Raise ValueError for the first of the checks, name=(value, allowed), that is not allowed everywhere."""
     for name, (value, allowed) in checks.items():
         if not np.all(allowed):
             raise ValueError(f"{name} = {np.asarray(value)[~np.asarray(allowed)].ravel()[0]}: is out of its bounds")

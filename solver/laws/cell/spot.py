@@ -1,13 +1,13 @@
-"""The spot of a periodic cell on a coated body: its radius given, its load, approach and pressure.
+"""The spot of a periodic cell on a coated body: its load, approach and pressure at a given radius.
 
-In units l = Ra = E = 1, with the Abel transform phi of the pressure, q^(k) = int_0^b phi cos kt dt and phi(b) = 0,
+In units l = Ra = E = 1, with phi, the Abel transform of the pressure, q^(k) = int_0^b phi cos kt dt and phi(b) = 0,
 
     pi phi(t) + 2 int_0^b phi(s) N(t, s) ds = A - t²   (+ 2 p sqrt(Bbar² - t²) in the disc cell),
     N(t, s) = [N(t + s) + N(t - s)]/2,   N = M + K of :mod:`.sums`   (K alone in the disc cell),
     p = 2 pi int phi dt,   p_max = -int phi'(t)/t dt.
 
 M is the part of the neighbours on a half-space, K that of the layer. The equation is linear in A, in the shape t² and
-in p: each has its own right-hand side, and phi(b) = 0 gives A. phi' comes from the equation differentiated by t.
+in p: each has its own right-hand side, and phi(b) = 0 gives A. phi' follows from the derivative of the equation by t.
 """
 
 from typing import NamedTuple
@@ -19,22 +19,24 @@ from .sums import LATTICES, lone_waves, neighbours, waves
 
 __all__ = ["Cell", "CellSpots", "panels_of", "pieces", "spots"]
 
-#: Points on a panel of the radius, least number of points, and the widest panel in h (tests/laws/cell/test_rows.py).
+#: Points on a panel of the radius, smallest number of points, and the widest panel in h (tests/laws/cell/test_rows.py).
 POINTS, _LEAST, _WIDEST = 24, 48, 5.0
-#: N is a polynomial of this degree on each piece of x. A piece is at most half of h, whose waves have their singularity
-#: at 2 h i, and a fifth of the distance to that of the neighbours at d: the next term is then below rounding.
+#: N is a polynomial of this degree on each piece of x. A piece is at most half as long as h, since the waves of the
+#: layer have a singularity at 2 h i, and at most a fifth of the distance to d, where the neighbours have theirs. The
+#: next term is then below rounding.
 _DEGREE, _OF_H, _OF_D = 11, 0.5, 0.2
-#: Numbers of points of one panel, and the b/h up to which each serves where speed counts: 1e-10 at n = 1000, where
-#: rounding is as large, and 1e-11 of other layers (tests/laws/cell/test_family.py).
+#: (points, b/h): number of points on one panel, and the b/h up to which it is enough where speed counts. The error is
+#: 1e-10 at n = 1000, where rounding is as large, and 1e-11 for other layers (tests/laws/cell/test_family.py).
 FEW = ((16, 2.5), (24, 4.0), (32, 7.0))
 
 
 class Cell(NamedTuple):
     """Cells of one lattice on one body.
 
-    lattice : "square", "hex", or "disc", whose layer has the waves of "hex"; "lone": of one spot alone, and no equation
+    lattice : "square", "hex", or "disc", whose layer has the waves of "hex"; "lone" for a single spot, only in
+        :func:`pieces`
     pitch : l/h
-    L1 : function of u = kh (W,) : L(u) - 1 (W,) of the body, over 1 + m under an elastic punch; None without a layer
+    L1 : function of u = kh (W,) -> L(u) - 1 (W,) of the body, over 1 + m under an elastic punch; None without a layer
     """
 
     lattice: str
@@ -43,8 +45,12 @@ class Cell(NamedTuple):
 
 
 class CellSpots(NamedTuple):
-    """Spots of the radii b (S,): nominal pressure p, approach A, pressure p_max in the middle; (S,) each. And phi and
-    -phi'(t)/t at the points t of each, with their weights w; (S, T) each. Units E = Ra = l = 1."""
+    """Spots with the radii b (S,), in units E = Ra = l = 1.
+
+    p, A, p_max : (S,), nominal pressure, approach, pressure in the middle
+    t, w : (S, T), points of each spot and their weights
+    phi, fall : (S, T), phi and -phi'(t)/t at these points
+    """
 
     b: np.ndarray
     p: np.ndarray
@@ -57,14 +63,14 @@ class CellSpots(NamedTuple):
 
 
 class _Pieces(NamedTuple):
-    """N and dN/dx as polynomials on pieces of x: `edges` (n + 1,) and coefficients (degree + 1, n), in the distance
-    from the middle of a piece over half of its width."""
+    """N and dN/dx as polynomials on pieces of x: `edges` (n + 1,), and coefficients (degree + 1, n). The variable is
+    the distance from the middle of a piece over half of its width."""
 
     edges: np.ndarray
     coefficients: np.ndarray
 
     def at(self, x):
-        """N and dN/dx at x of any shape."""
+        """N and dN/dx at x; any shape."""
         index = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.edges) - 2)
         half = np.diff(self.edges) / 2
         inverse = (1 / half)[index]
@@ -108,8 +114,8 @@ def pieces(cell, reach):
 
 
 def _summed(k, c, middle, half, nodes):
-    """Sums (nodes, pieces) of c (W,) times cos kx at the nodes of pieces, by the addition theorem for all
-    pieces of one width: a tenth of the cosines."""
+    """Sums (nodes, pieces) of c (W,) times cos kx at the nodes of all pieces. The addition theorem, for all pieces of
+    one width together, saves nine tenths of the cosines."""
     total = np.empty((len(nodes), len(middle)))
     widths, of_width = np.unique(np.round(half / half.max(), 12), return_inverse=True)
     for i in range(len(widths)):
@@ -120,8 +126,7 @@ def _summed(k, c, middle, half, nodes):
 
 
 def points(cell, reach, sparing=False):
-    """Points and weights (T,) on [0, 1] for radii up to `reach`; `sparing`: as many as FEW
-    says."""
+    """Points and weights (T,) on [0, 1] for radii up to `reach`; `sparing`: whether their number may be one of FEW."""
     if sparing:
         for count, most in FEW:
             if cell.L1 is None or reach * cell.pitch <= most:
@@ -134,24 +139,24 @@ def points(cell, reach, sparing=False):
 
 
 def panels_of(count):
-    """How many panels `count` points of a spot are on, and how many are on each."""
+    """Number of panels on which `count` points of a spot lie, and number of points on each."""
     return (1, count) if any(count == few for few, _ in FEW) else (count // POINTS, POINTS)
 
 
 def kernels(N, ends, t, w):
-    """2 N(t, s) and its derivative by t, each with the weight of s, at the ends (S, T + 1) and the points t (S, T), of
-    the weights w (S, T): (S, T + 1, T)."""
+    """2 N(t, s) and its derivative by t, each times the weight of s, (S, T + 1, T). The first argument has the values
+    `ends` (S, T + 1); the second has the points t (S, T) with the weights w (S, T)."""
     far, near = ends[:, :, None] + t[:, None, :], ends[:, :, None] - t[:, None, :]
     (sum_, d_sum), (difference, d_difference) = N.at(far), N.at(np.abs(near))
     return (sum_ + difference) * w[:, None, :], (d_sum + np.sign(near) * d_difference) * w[:, None, :]
 
 
 def spots(cell, b, N=None, rule=None):
-    """:class:`CellSpots` of a :class:`Cell` of the radii b (S,), in l, 0 < b < d/2.
+    """:class:`CellSpots` of a :class:`Cell` with the radii b (S,), in l, 0 < b < d/2.
 
-    N : :func:`pieces` of the cell up to the largest radius and farther, where others are solved too: the radii then
-        have as few points as serve the largest of them
-    rule : points and weights on [0, 1], if these are not to be chosen
+    N : :func:`pieces` of the cell, at least up to the largest radius, for callers that solve many groups of radii.
+        The radii then have only as many points as the largest of them needs
+    rule : points and weights on [0, 1]; None: they are chosen here
     """
     b = np.asarray(b, dtype=float)
     (x, weights), N = rule or points(cell, b.max(), N is not None), N or pieces(cell, b.max())
@@ -169,7 +174,7 @@ def spots(cell, b, N=None, rule=None):
     at_b = (right[:, -1] - np.einsum("st,stk->sk", kernel[:, -1], phi)) / np.pi
     load = 2 * np.pi * np.einsum("st,stk->sk", w, phi)
     if disc:
-        # phi(b) = 0 and p = its load, for A and p
+        # two equations for A and p: phi(b) = 0, and p equals the load of phi
         rest = at_b[:, 0] * (1 - load[:, 2]) + at_b[:, 2] * load[:, 0]
         A = (at_b[:, 1] * (1 - load[:, 2]) + at_b[:, 2] * load[:, 1]) / rest
         p = (A * load[:, 0] - load[:, 1]) / (1 - load[:, 2])

@@ -1,9 +1,10 @@
-"""One spot of its own radius and load on a coated body, in the mean field of others: for asperities of random heights.
+"""One spot with a radius and a load of its own on a coated body, in the mean field of the other spots: for asperities
+of random heights.
 
-Its own load acts by the kernel of a lone spot on the layer, that of the others as their mean, the nominal pressure p:
-by the half-space's field outside of its cell, as in the disc cell, and by the part of the layer for the waves of the
-hexagonal lattice, less that for the spot itself. With N1 of the lone spot, Nh of the lattice, and the shape s
-of the spots of equal heights (of the disc cell, load 1, the same radius),
+The load of the spot itself acts through the kernel of a lone spot on the layer. The loads of the others act through
+their mean, the nominal pressure p: by the field of a half-space outside the cell, as in the disc cell, and by the part
+of the layer for the waves of the hexagonal lattice, less that of the spot itself. N1 is the kernel of the lone spot, Nh
+that of the lattice, and s the phi of a spot of equal heights (disc cell, load 1, the same radius). Then
 
     pi phi(t) + 2 int_0^b phi N1 ds = A - t² + p [2 sqrt(Bbar² - t²) - 2 int_0^b s (Nh - N1) ds].
 
@@ -13,9 +14,9 @@ It is linear in p. In units of the disc cell, with c = b/Bbar = sin θ, v = cos 
     load       f = (2/pi) [c³ e^P + q (θ - v c + F)],
     p_max/p*     = (3/pi) c e^Q + (2/pi) q (θ + D),
 
-in which G, P, Q, B, F and D are smooth functions of b/h, all 0 without a layer. With a load that is the mean it is the
-disc cell of the family. Were the load of others its own, resolved cells of random heights would have A and λ up to 70 %
-off; so they are within 8 % (tests/laws/heights/test_heights_on_body.py).
+where G, P, Q, B, F and D are smooth functions of b/h, all 0 without a layer. A spot whose load is the mean is the disc
+cell of the family. A and λ of resolved cells of random heights are within 8 %
+(tests/laws/heights/test_heights_on_body.py). If each spot felt others of its own load, they would be up to 70 % off.
 """
 
 from typing import NamedTuple
@@ -29,21 +30,23 @@ from .spot import Cell, CellSpots, kernels, pieces, points, spots
 
 __all__ = ["SUMMIT", "SUMMIT_NUMBERS", "Lookup", "Parts", "Summit", "at", "clenshaw", "parts", "summit"]
 
-#: The numbers of a summit before its series: b/h over c, 1/asinh and the largest c of the series: that of the family of
-#: disc cells; and whether they go on beyond as straight lines in ln c, 1, or constant, 0, where that family ends early.
+#: The numbers of a summit before its series, in this order:
+#: scale : b/h over c
+#: width, end : 1/asinh(largest b/h), and the largest c, of the series, as in the family of disc cells
+#: on : beyond the end the series are straight lines in ln c (1), or constant (0) if that family ends early
 SUMMIT_NUMBERS = ("scale", "width", "end", "on")
 SERIES = ("G", "P", "Q", "B", "F", "D")
-#: Terms of the series by the pitch over h, and their number at most: the laws of heights are right to 2e-4.
-_TERMS, _MORE, _ENOUGH, _SMALL = ((2.0, 16), (24.0, 28), (np.inf, 56)), 1.5, 130, 1e-7
-#: Polynomials of a lookup: their number for each term of the series, and their degree: right to 1e-9.
+#: As in :mod:`.family`, with fewer terms, since the laws of heights are right only to 2e-4.
+_TERMS, _ENOUGH, _SMALL = ((2.0, 16), (24.0, 28), (np.inf, 56)), 130, 1e-7
+#: Polynomials of a lookup: number for each term of the series, and degree. They are right to 1e-9.
 _PIECES, _DEGREE = 6, 5
-_kept = Kept(2e7)
+_summits = Kept(2e7)
 #: `cell` of the :class:`~solver.laws.law.Law` of random heights.
 SUMMIT = "summit"
 
 
 class Summit(NamedTuple):
-    """Series (6, N) of G, P, Q, B, F and D; pitch over h, and the largest radius of the series, in l."""
+    """Pitch over h, the largest radius of the series, in l, and the series (6, N) of G, P, Q, B, F and D."""
 
     pitch: float
     reach: float
@@ -54,7 +57,8 @@ class Summit(NamedTuple):
         return self.series.shape[1]
 
     def row(self, terms):
-        """Its numbers, (len(SUMMIT_NUMBERS) + 6 `terms`,): SUMMIT_NUMBERS, then the series, zeros behind each."""
+        """Its numbers, (len(SUMMIT_NUMBERS) + 6 `terms`,): SUMMIT_NUMBERS, then the series, each filled up with
+        zeros."""
         Bbar = 1 / np.sqrt(np.pi)
         scale, end = self.pitch * Bbar, self.reach / Bbar
         series = np.zeros((len(SERIES), terms))
@@ -64,13 +68,13 @@ class Summit(NamedTuple):
 
 
 def summit(key, disc, kernel, m, i):
-    """The :class:`Summit` of case i with the key of its family `disc` of disc cells (:mod:`.family`), kept for the next
-    time; that of no layer where no law has the family."""
-    return _kept.get(key, lambda: Summit(disc.pitch, disc.reach, _made(disc, kernel.take([i]), float(m[i]))))
+    """The :class:`Summit` of case i, cached under the `key` of its family `disc` of disc cells (:mod:`.family`). If no
+    law can use the family, it is the summit without a layer."""
+    return _summits.get(key, lambda: Summit(disc.pitch, disc.reach, _series_of(disc, kernel.take([i]), float(m[i]))))
 
 
-@np.errstate(all="ignore")  # of bodies that are none
-def _made(disc, kernel, m):
+@np.errstate(all="ignore")  # the numbers may be those of no real body
+def _series_of(disc, kernel, m):
     """The series of a :class:`Summit`."""
     none = np.zeros((len(SERIES), 1))
     if not disc.known:
@@ -86,9 +90,14 @@ def _made(disc, kernel, m):
 
 
 class Parts(NamedTuple):
-    """Spots of radii b (S,) of their own load: phi and -phi'(t)/t (S, T, 3) of A, of the shape and of p, each alone, at
-    points t with weights w (S, T); their load and pressure in the middle (S, 3), and phi at b (S, 3); and the
-    :class:`~.spot.CellSpots` of equal heights."""
+    """Solutions of the module's equation for S radii, with three right-hand sides: 1 (for A), t² (the shape), and the
+    factor of p.
+
+    t, w : (S, T), points and weights
+    phi, fall : (S, T, 3), phi and -phi'(t)/t
+    load, middle, at_b : (S, 3), load, pressure in the middle, and phi at b
+    equal : :class:`~.spot.CellSpots` of equal heights
+    """
 
     t: np.ndarray
     w: np.ndarray
@@ -110,8 +119,8 @@ class Parts(NamedTuple):
 
 
 def parts(cell, b, of_lattice, lone):
-    """:class:`Parts` of radii b (S,) by the equation of the module. cell : of disc cells; of_lattice, lone :
-    :func:`~.spot.pieces` of it and of a lone spot"""
+    """:class:`Parts` for the radii b (S,). cell : a disc cell; of_lattice, lone : :func:`~.spot.pieces` of this cell
+    and of a lone spot."""
     rule = points(cell, b.max(), sparing=True)
     t, w = (b[:, None] * values for values in rule)
     equal = spots(cell, b, of_lattice, rule)
@@ -131,7 +140,7 @@ def parts(cell, b, of_lattice, lone):
 
 
 def _corrections(cell, b, of_lattice, lone):
-    """G, P, Q, B, F and D (6, S) at radii b (S,)."""
+    """G, P, Q, B, F and D (6, S) at the radii b (S,)."""
     _, _, _, _, load, middle, at_b, _ = parts(cell, b, of_lattice, lone)
     # phi(b) = 0 gives A = (part of the shape) - p (part of the others)
     of_shape, of_others = at_b[:, 1] / at_b[:, 0], at_b[:, 2] / at_b[:, 0]
@@ -149,7 +158,8 @@ def _corrections(cell, b, of_lattice, lone):
 
 
 def clenshaw(coefficients, x):
-    """A Chebyshev series of coefficients (B, N) at x (B, m), and its derivative by x: Clenshaw's recurrence."""
+    """Chebyshev series with the coefficients (B, N) at x (B, m), and their derivatives by x, by Clenshaw's
+    recurrence."""
     value, before, slope, slope_before = np.zeros((4, *x.shape))
     twice = 2 * x
     for c in coefficients.T[:0:-1]:
@@ -159,7 +169,7 @@ def clenshaw(coefficients, x):
 
 
 def at(rows, which, c):
-    """One of the SERIES (its index) of the rows (B, K) of B cases at c (B, m), and its derivative by ln c."""
+    """The series with the index `which` of SERIES at c (B, m), and its derivative by ln c; rows (B, K) of B cases."""
     terms = (rows.shape[1] - len(SUMMIT_NUMBERS)) // len(SERIES)
     first = len(SUMMIT_NUMBERS) + which * terms
     scale, width, end, on = rows[:, : len(SUMMIT_NUMBERS)].T[..., None]
@@ -171,7 +181,7 @@ def at(rows, which, c):
 
 
 class Lookup:
-    """Four of the SERIES, G, P, B and F of one row (K,), by short polynomials: fast for many points."""
+    """Four of the SERIES, G, P, B and F, of one row (K,), as short polynomials: fast for many points."""
 
     def __init__(self, row):
         self.scale, self.width, self.end, self.on = row[: len(SUMMIT_NUMBERS)]
@@ -183,7 +193,7 @@ class Lookup:
         self.polynomials = np.linalg.solve(np.vander(nodes, increasing=True), np.stack(values).transpose(0, 2, 1))
 
     def at(self, c):
-        """G, P, B and F at c of any shape, and their derivatives by ln c: two lists."""
+        """Two lists: G, P, B and F at c, which has any shape, and their derivatives by ln c."""
         beta = self.scale * np.minimum(c, self.end)
         place = self.width * np.arcsinh(beta) * self.count
         index = np.clip(place.astype(int), 0, self.count - 1)

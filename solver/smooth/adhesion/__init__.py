@@ -1,1 +1,1 @@
-"""Contacts that stick: one law of adhesion a file, and where they are pulled off."""
+"""Contacts with adhesion: one file for each law of adhesion, and the pull-off."""

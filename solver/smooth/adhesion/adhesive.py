@@ -1,4 +1,4 @@
-"""Smooth contacts that stick: the answers of a batch."""
+"""Smooth contacts with adhesion: the solutions of a batch."""
 
 from dataclasses import replace
 from functools import partial
@@ -17,17 +17,18 @@ from .machine import Holder, machine
 from .maugis import Maugis, ring_pressure, ring_stress
 from .pull import States, Turn, above_turn, below, highest, last_minimum
 
-#: A load or depth as near as this to that of pull-off is it, relative: rounding, by the units of what was returned.
+#: A load or depth whose relative difference to that of pull-off is at most _SAME counts as that of pull-off: users
+#: return the pull-off that they got, with the rounding of a change of units.
 _SAME = 64 * np.finfo(float).eps
-#: Where load and depth of pull-off are off by this part, nothing is known of contacts that are pulled off.
+#: Where the relative error of load and depth at pull-off is at least this, PULLED_OFF cannot be decided.
 _UNKNOWN = 0.1
-#: Errors of numbers that may be 0 are relative at least to this part of the pull of adhesion.
+#: Errors of numbers that may be 0 are relative to at least this part of what adhesion takes from them.
 _LEAST = 0.1
 
 
 def solve(part, shape, body, x):
-    """:class:`~...solution.Solution` of cases of one base, one shape and one law of adhesion, w > 0, in units R = E2* =
-    1, at the radii x (m,)."""
+    """:class:`~...solution.Solution` of cases with w > 0 of one base, one shape and one law of adhesion, in units R =
+    E2* = 1, with profiles at the radii x (m,)."""
     if str(part.adhesion[0]) == "dmt":
         return dmt.solve(part, shape, body, machine(part), x)
     law, every, ring = Jkr(shape, body, part.w_adhesion), np.arange(len(part)), None
@@ -58,9 +59,12 @@ def solve(part, shape, body, x):
 
 @batch.of_cases
 class Pulled(NamedTuple):
-    """The parts of B cases that do not depend on their load or depth: the `holder` of the punch; its
-    :class:`~.pull.Turn`, and the state to which the contact jumps where the punch only touches; and the Turn of a
-    machine that holds the `control`."""
+    """The parts of B cases that do not depend on their load or depth.
+
+    holder, turn : what holds the punch, and the :class:`~.pull.Turn` of its Q
+    jumped : the state to which the contact jumps when the punch just touches
+    control, of_control : a holder that prescribes the control itself, and the Turn of its Q
+    """
 
     holder: Holder
     turn: Turn
@@ -70,8 +74,8 @@ class Pulled(NamedTuple):
 
 
 def pulled(part, law):
-    """:class:`Pulled` of the cases, and how often the equation was solved for each (B,). Cases that differ in the value
-    of their control alone have one search."""
+    """:class:`Pulled` of the cases, and how often the equation was solved for each (B,). Cases that differ only in the
+    value of their control share one search."""
     first, same = _alike(part)
     few, law = part.take(first), law.take(first)
     curve, holder = States(law), Holder.by(machine(few))
@@ -86,15 +90,15 @@ def pulled(part, law):
 
 
 def _alike(part):
-    """Places of cases of which no two have the same parameters, and for each case (B,) the one that has its own."""
+    """Places of one case for each different set of parameters, and for each case (B,) the number of its set."""
     codes = [np.unique(values, return_inverse=True)[1] for values in part.parameters.values()]
     _, first, same = np.unique(np.stack(codes), axis=1, return_index=True, return_inverse=True)
     return first, same.ravel()
 
 
 def _at_minimum(part, state, at_turn):
-    """The states. At pull-off itself, `at_turn` (B,), the slope of the control is infinite in place of 0, so that the
-    radius gets no error from that of the control."""
+    """The states, where at pull-off itself, `at_turn` (B,), the slope of the control is infinite instead of 0: then an
+    error of the control adds nothing to the error of the radius."""
     if part.control == "a":
         return state
     name = f"d{part.control}"
@@ -102,9 +106,9 @@ def _at_minimum(part, state, at_turn):
 
 
 def _answered(part, shape, state, ends, counts, x, ring=None):
-    """The solution of the states, with PULLED_OFF where they are NaN.
+    """The solution with these states; its status is PULLED_OFF where they are NaN.
 
-    ends : the numbers of pull-off and pull-in, by how much they are off, and the :class:`~..state.Scales`
+    ends : the numbers of pull-off and pull-in by name, their relative error, and the :class:`~..state.Scales`
     """
     pulls, off, scales = ends
     solution, _ = answer(part, shape, state, counts, x, ring, scales)
@@ -116,24 +120,24 @@ def _answered(part, shape, state, ends, counts, x, ring=None):
 
 
 def _scales(law, off, state):
-    """:class:`~..state.Scales` of the states: load and depth pass through 0, so that their errors are relative to those
-    of pull-off at least, the state `off`. These may be 0 too: then to a tenth of what adhesion takes there; as for
-    p(0), of what it takes in the middle of the contact."""
+    """:class:`~..state.Scales` of the states. Load and depth pass through 0, so their errors are relative to at least
+    their values at pull-off, the state `off`. Those may be 0 too; so at least to a tenth of what adhesion takes there.
+    Errors of p(0) are relative to at least a tenth of what adhesion takes from it."""
     P, D, _ = _LEAST * law.taken(off)
     return Scales(np.fmax(np.abs(off.P), P), np.fmax(np.abs(off.D), D), _LEAST * law.taken(state)[2])
 
 
 def _off(state):
-    """Relative error (B,) of load and depth at pull-off. Either may be 0, as the depth of a power 3/2 under loads: then
-    it is relative to what adhesion takes."""
+    """Relative error (B,) of load and depth at pull-off, each relative to at least what adhesion takes from it, because
+    either may be 0: the depth is for the shape r^(3/2) under a load."""
     P, D = (np.abs(state.A) * v for v in (state.response.flat_P, state.response.flat_D))
     return state.P_error / np.maximum(np.abs(state.P), P) + state.D_error / np.maximum(np.abs(state.D), D)
 
 
 def _asked(part, curve, pulls):
-    """x (B,) of the asked branch where P or D is given, NaN where it has no such state; and whether the control is at
-    its minimum (B,). The largest radius with the value of the control is on the stable branch where it is beyond the
-    :class:`~.pull.Turn` of the holder of the punch."""
+    """x (B,) of the given branch for a given P or D, NaN if that branch has no such state; and whether the control is
+    at its minimum (B,). The largest radius with the value of the control belongs to the stable branch if it is above
+    the :class:`~.pull.Turn` of the holder of the punch."""
     control, of_control, turn = pulls.control, pulls.of_control, pulls.turn
     least, unstable = control.of(of_control.state.P, of_control.state.D), part.branch == "unstable"
     at_turn = (np.abs(part.value - least) <= _SAME * np.abs(least)) & ~of_control.at_axis
@@ -149,14 +153,14 @@ def _asked(part, curve, pulls):
 
 
 def _start(part, curve):
-    """First guess of x (B,): without adhesion."""
+    """First guess of x (B,): that of the contact without adhesion."""
     value = np.maximum(part.value, 0.0)
     return guess(part.control, np.where(value > 0, value, np.nan), curve.law.shape, curve.law.body, curve.radii)
 
 
 def _jump(curve, holder, turn):
-    """x (B,) to which the contact jumps from where the punch only touches, Q = 0: beyond the :class:`~.pull.Turn`; or
-    below it, where Q is positive there."""
+    """x (B,) to which the contact jumps when the punch just touches, Q = 0: above the :class:`~.pull.Turn`, or below it
+    if Q is positive at the Turn."""
     least = holder.of(turn.state.P, turn.state.D)
     x = above_turn(curve, holder, np.where(least <= 0, 0.0, np.nan), turn, turn.x + 1)
     if (rest := least > 0).any():
@@ -165,7 +169,8 @@ def _jump(curve, holder, turn):
 
 
 def _flat(part, law, x):
-    """A flat punch: it holds at its radius down to the load, or depth, at which its edge gives way."""
+    """The solution for flat punches: the contact keeps the radius of the punch down to the load or depth at which its
+    edge gives way."""
     off, state = law.at(law.shape.least()), pinned(part, law.shape, law.body)
     holds = (state.A >= off.A * (1 + _SAME)) & (part.branch == "stable")
     pulls = {"P_off": off.P, "D_off": off.D, "a_off": off.a, "P_in": 0 * off.a, "a_in": off.a}

@@ -1,7 +1,8 @@
-"""Load and depth at many radii, as two terms each: one of the shape alone, and the pull of the adhesion.
+"""Load and depth at many radii, each as two terms: that of the shape alone, and the pull of the adhesion.
 
-Along the curve of a contact that sticks P = P₀ - pull_P and D = D₀ - pull_D. All four are positive and smooth functions
-of the radius, and those of :mod:`.jkr` follow w and E as powers. So curves of many works of adhesion need them once.
+Along the curve of a contact with adhesion P = P₀ - pull_P and D = D₀ - pull_D. All four terms are positive, smooth
+functions of the radius. Under :mod:`.jkr` they are proportional to powers of w and E, so they are computed once for the
+curves of all works of adhesion.
 """
 
 from typing import NamedTuple
@@ -18,13 +19,14 @@ from ..tabulated_body import where_slow
 from .jkr import Jkr
 from .maugis import Maugis, ring_stress
 
-#: Sublayers in each octave of a graded layer: answers with both are extrapolated, as of errors that fall like 1/m².
+#: Two numbers m of sublayers in each octave of a graded layer. The terms are extrapolated from both: errors fall like
+#: 1/m².
 SUBLAYERS = (4, 8)
 
 
 class CurveTerms(NamedTuple):
     """P₀, D₀, pull_P and pull_D, in units R = E2* = 1: `values` (4, B, m), and their derivatives `slopes` (4, B, m) by
-    the variable of :class:`~..radius.Radii`. Numbers that a contact does not have are NaN."""
+    the variable of :class:`~..radius.Radii`. NaN where there is no contact."""
 
     values: np.ndarray
     slopes: np.ndarray
@@ -33,7 +35,7 @@ class CurveTerms(NamedTuple):
 def curve_terms(problem, x):
     """:class:`CurveTerms` of B contacts with w > 0, of one base, shape and law of adhesion, in units R = E2* = 1.
 
-    x : (B, m), at which radii; the load, depth or radius of the problem do not count
+    x : (B, m), the radii, in the variable of :class:`~..radius.Radii`; the value of the problem's control is ignored
     """
     if not is_graded(problem).any():
         return _curve_terms(problem, x)
@@ -42,7 +44,7 @@ def curve_terms(problem, x):
 
 
 def extrapolated(few, many):
-    """The arrays of a graded layer from those with few and with many sublayers, :data:`SUBLAYERS`."""
+    """The arrays of graded layers, extrapolated from those with few and with many sublayers, :data:`SUBLAYERS`."""
     return ((4 * more - less) / 3 for less, more in zip(few, many, strict=True))
 
 
@@ -59,7 +61,7 @@ def _curve_terms(problem, x):
 
 
 def _at(part, shape, body, a):
-    """The four (4, b), and their derivatives by the radius a (b,)."""
+    """The four terms (4, b), and their derivatives by the radius a (b,)."""
     r, none = respond(shape, body, a), 0 * a
     free, grows = (r.P, r.D), (r.S * r.slope, r.slope)
     word = str(part.adhesion[0])

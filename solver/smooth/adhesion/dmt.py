@@ -1,7 +1,7 @@
-"""Adhesion that acts only outside of the contact, after Derjaguin, Muller and Toporov, of the paraboloid.
+"""Adhesion of a paraboloid that acts only outside of the contact, after Derjaguin, Muller and Toporov.
 
-The attraction of the undeformed profiles, 2π w R, adds to the load, whatever lies under the surface, and the shape of
-the contact is that without adhesion: P = P₀(a) - 2π w, D = D₀(a). It is pulled off at a = 0.
+The attraction of the undeformed profiles, 2π w R on any body, adds to the load, and the surfaces keep the shape that
+they have without adhesion: P = P₀(a) - 2π w and D = D₀(a) with R = 1. Pull-off is at a = 0.
 """
 
 from dataclasses import replace
@@ -15,7 +15,7 @@ from ..state import Scales, State, answer
 
 
 def solve(part, shape, body, k, x):
-    """:class:`~...solution.Solution` of cases of one base with w > 0 and this law in units R = E2* = 1; k (B,) is the
+    """:class:`~...solution.Solution` of cases of one base with w > 0 and this law, in units R = E2* = 1; k (B,) is the
     stiffness of the machine that holds the punch."""
     pull = 2 * np.pi * part.w_adhesion
     without_pull = part.value + pull if part.control == "P" else part.value
@@ -39,8 +39,8 @@ def solve(part, shape, body, k, x):
 
 
 def _jump(shape, body, pull, k):
-    """The :class:`~..galerkin.Response` without adhesion at which D + (P - pull)/k is 0; where k is infinite, all its
-    numbers are 0."""
+    """The :class:`~..galerkin.Response` without adhesion for which D + (P - pull)/k = 0; its P and a are 0 where k is
+    infinite."""
     radii, pieces = Radii(shape), []
 
     def evaluate(x, index):

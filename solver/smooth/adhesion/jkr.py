@@ -1,15 +1,15 @@
 """Adhesion at the edge of a contact after Johnson, Kendall and Roberts, on any kernel.
 
-An edge that gives way when it gains the work of adhesion w for each area has the edge value
+An edge that gives way when each opened area releases the energy w, the work of adhesion, has the edge value
 
     A = -sqrt(2π a w/E),
 
-where E is the modulus of the bodies that touch, the layer at the surface and the punch. So a radius has one load and
-one depth. The slopes of both along the curve are
+where E is the modulus of the two bodies that touch, the layer at the surface and the punch. So each radius has one load
+and one depth. Their slopes along the curve are
 
     dD/da = dD₀/da + A (flat_D/(2a) + d flat_D/da),       dP/da = S dD/da + 2 E A/flat_D,
 
-the second because dS/da = 2 E/flat_D², the energy that is released.
+The second follows from dS/da = 2 E/flat_D², the energy release of a flat punch.
 """
 
 from typing import NamedTuple
@@ -20,7 +20,7 @@ from ...numerics import batch
 from ..galerkin import respond
 from ..state import State
 
-#: Numbers above this have all their digits.
+#: Numbers above this have all their digits; those below may underflow.
 _SMALL = 1e-290
 
 
@@ -31,10 +31,11 @@ class Jkr(NamedTuple):
     shape: object
     body: object
     w: np.ndarray
-    reaches_axis = False  # at small radii the edge pulls more than the shape presses
+    reaches_axis = False  # the curve turns before a = 0: at small radii the edge pulls more than the shape presses
 
     def taken(self, state):
-        """The parts (3, B) that adhesion takes from load, depth and p(0) of states, as on a half-space."""
+        """The amounts (3, B) that adhesion takes from load, depth and p(0) of states; that of p(0) is the one on a
+        half-space."""
         pull = np.abs(state.A)
         r = state.response
         return np.array([pull * r.flat_P, pull * r.flat_D, pull * r.E / (np.pi * state.a)])

@@ -1,7 +1,7 @@
-"""Stand-ins for contacts that stick where their equations lose their digits: narrow rings, hardly any adhesion.
+"""Substitutes for contacts with adhesion whose equations lose their digits: narrow rings, and hardly any adhesion.
 
-The narrower the ring of :mod:`.maugis`, the nearer are its contacts to those of :mod:`.jkr`; and there is a work of
-adhesion so small that it changes no digit of a contact.
+Contacts with a narrow ring of :mod:`.maugis` are replaced by those of :mod:`.jkr`, to which they tend as the ring
+narrows. Contacts whose work of adhesion is too small to change a digit are replaced by those without adhesion.
 """
 
 from dataclasses import replace
@@ -12,21 +12,21 @@ from ...solution import PULLS, Solution
 from ...status import Status
 from .maugis import ring_stress
 
-#: The numbers of contacts with a ring, d wide, are farther from those of an edge by at most this times d/a of pull-off:
-#: 0.2 to 0.3 (tests/smooth/test_zero.py). From this part on nothing is gained.
+#: The relative difference between contacts with a ring of the width d and those with an edge is at most _OF_RING d/a,
+#: with a of pull-off; it is 0.2 to 0.3 d/a (tests/smooth/test_zero.py). Rings with d/a above _WIDE are not replaced.
 _OF_RING, _WIDE = 2.0, 0.1
-#: A work of adhesion above this always counts, in units R = E2* = 1; one that changes load and depth by less than this
-#: part changes no digit; and two contacts are the same up to this part.
+#: A work of adhesion above _COUNTS, in units R = E2* = 1, is never left out. Below it, one that changes load and depth
+#: by less than the part _NO_DIGIT is. Contacts whose numbers differ by less than the part _SAME are the same.
 _COUNTS, _NO_DIGIT, _SAME = 1e-20, 1e-16, 1e-9
-#: Below this rings have no digits at pull-off.
+#: Below this work of adhesion rings have no digits at pull-off.
 _DEEP = 1e-100
 _WITH_ERROR = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
 
 
 def with_edges(part, body, solution, solve_edges, x):
-    """The `solution` of contacts with rings. Where contacts with an edge, from ``solve_edges(part, index, x)``, are
-    more accurate, they stand instead: their error is that of the edge and the change by the ring, which is about
-    π E w/(4 σ₀²) wide."""
+    """The `solution` of contacts with rings. Cases for which contacts with an edge, from ``solve_edges(part, index,
+    x)``, are more accurate have those numbers instead; the error then includes the effect of the ring, whose width is
+    about π E w/(4 σ₀²)."""
     failed = np.isin(solution.status, (Status.DIVERGED, *_WITH_ERROR)) & ~(solution.error <= part.rtol)
     sigma, none = ring_stress(part), np.full(len(part), np.nan)
     with np.errstate(all="ignore"):
@@ -35,7 +35,7 @@ def with_edges(part, body, solution, solve_edges, x):
     if not len(index):
         return solution
     few, edge = solution.take(index), solve_edges(part.but(adhesion="jkr", sigma0=none, z0=none).take(index), index, x)
-    wide = ~(width[index] < _WIDE * edge.a_off / _OF_RING)  # at pull-off, which has an equation with digits then
+    wide = ~(width[index] < _WIDE * edge.a_off / _OF_RING)  # then the equation of rings has digits at pull-off
     pulls = {name: np.where(wide, getattr(few, name), getattr(edge, name)) for name in PULLS}
     error = edge.error + _OF_RING * width[index] / np.where(wide, edge.a, np.fmin(edge.a, edge.a_off))
     pulled = (edge.status == Status.PULLED_OFF) & (few.status == Status.DIVERGED) & ~wide
@@ -46,8 +46,9 @@ def with_edges(part, body, solution, solve_edges, x):
 
 
 def without(part, body, solution, solve_free, x):
-    """The `solution` of contacts that stick. Where it failed, or is another contact, although the work of adhesion is
-    too small to change a digit, it has the numbers of the contact without adhesion, from ``solve_free(part, x)``."""
+    """The `solution` of contacts with adhesion. Cases whose work of adhesion is too small to change a digit, but whose
+    solution failed or differs from the contact without adhesion, have the numbers of the latter instead, from
+    ``solve_free(part, x)``."""
     tiny = (part.w_adhesion < _COUNTS) & (part.value > 0) & ((part.branch == "stable") | (part.control == "a"))
     index = np.flatnonzero(tiny)
     if not len(index):

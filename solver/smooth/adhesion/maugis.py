@@ -1,6 +1,6 @@
 """Adhesion in a ring around the contact, after Maugis and Dugdale, of any shape on any kernel.
 
-The stress -σ₀ acts where a < r < c, up to the gap w/σ₀. Inside c the pressure is -σ₀ and that of a contact with
+The stress -σ₀ acts where a < r < c; at c the gap is w/σ₀. The pressure inside of c is -σ₀ plus that of a contact with
 φ(a) = 0, whose equation (:mod:`..galerkin`) has F - Q in place of F,
 
     Q(t) = (2 σ₀/E) [sqrt(c² - t²) + c ∫ (L - 1) J1(kc) cos kt dk/k],      P = 2 E a ∫₀¹ y dτ - π c² σ₀,
@@ -9,7 +9,8 @@ and the gap at c is f(c) - D + u(c),
 
     u(c) = (2/E) [∫₀ᵃ φ dt/sqrt(c² - t²) + ∫ (L - 1) J0(kc) φ̂ dk] - (2 σ₀ c/E) [2/π + ∫ (L - 1) J1(kc) J0(kc) dk/k].
 
-So a and γ = c/a have one w; for a given w, γ is searched at each radius. With t = c sin z nothing is singular at a = c.
+So a and γ = c/a determine w; for a given w, γ is searched at each radius. With t = c sin z the integrands stay regular
+as c -> a.
 """
 
 from typing import NamedTuple
@@ -27,19 +28,20 @@ from ..shape_terms import functions, lifted_drop, longest
 from ..state import State
 from ..tabulated_body import excess
 
-#: Relative steps in a and in γ - 1 of the differences that are the slopes of P and D, of fourth order.
+#: Relative step, in a and in γ - 1, of the fourth-order differences that give the slopes of P and D.
 _STEP = 2e-3
-#: Rounding of P and D for each function of the basis; and by how much ln w, or ln(γ - 1), is off where it is found.
+#: _ROUNDING: relative rounding of P and D for each function of the basis. _NEAR: error of ln w, or of ln(γ - 1), at the
+#: end of its search.
 _ROUNDING, _NEAR = 1e-15, 1e-13
 #: Rings that are computed together.
 _TOGETHER = 64
-#: Points of the rule in z besides those for the basis, whose last function turns by 4N quarters on it.
+#: Points of the rule in z beyond those for the basis, whose last function turns by 4N quarters over the rule.
 _MORE = 24
 
 
 class Ring(NamedTuple):
     """Contacts at given a and γ, (B,) each: the work of adhesion, load, depth, and errors of all three. `bent` (B, N):
-    what of y is a polynomial."""
+    the part of y that the layer adds to the right-hand side of a half-space, a polynomial."""
 
     w: np.ndarray
     P: np.ndarray
@@ -51,8 +53,13 @@ class Ring(NamedTuple):
 
 
 class RingResponse(NamedTuple):
-    """How B bodies respond to a ring: y (B, N), and the parts (B,) of the kernel in D, `at_edge`, and in u(c), `moved`;
-    errors (3, B) of y_0 and of these two; `changes` (B, N), by how much y may be off."""
+    """How B bodies respond to a ring.
+
+    y : (B, N), coefficients
+    at_edge, moved : (B,), the parts of D and of u(c) that come from the kernel
+    errors : (3, B), of y_0, at_edge and moved
+    changes : (B, N), estimated errors of y
+    """
 
     y: np.ndarray
     at_edge: np.ndarray
@@ -69,10 +76,10 @@ class Maugis(NamedTuple):
     body: object
     w: np.ndarray
     sigma: np.ndarray
-    reaches_axis = True  # where the ring is wide, P and D rise with a from a = 0
+    reaches_axis = True  # the curve may reach a = 0: with a wide ring P and D rise from there on
 
     def taken(self, state):
-        """About the parts (3, B) that adhesion takes from load, depth and p(0) of states."""
+        """The approximate amounts (3, B) that adhesion takes from load, depth and p(0) of states."""
         c = state.a * state.zone
         return np.array([np.pi * c**2 * self.sigma, 2 * c * self.sigma / self.body.E, self.sigma])
 
@@ -84,10 +91,10 @@ class Maugis(NamedTuple):
         center = self.ring(a, over, with_errors=True)
         by_a, by_over = self._slopes(a, over)
         dP, dD = (by_a[i] - by_over[i] * by_a[0] / by_over[0] for i in (1, 2))
-        off = (center.w_error + _NEAR * self.w) / np.abs(by_over[0])  # by how much ln(γ - 1) may be off
+        off = (center.w_error + _NEAR * self.w) / np.abs(by_over[0])  # estimated error of ln(γ - 1)
         errors = center.P_error + off * np.abs(by_over[1]), center.D_error + off * np.abs(by_over[2])
         N, none = center.bent.shape[1], np.zeros_like(center.bent)
-        pressed = np.pi * (a * (1 + np.exp(over))) ** 2 * self.sigma  # so much more load is borne inside of c
+        pressed = np.pi * (a * (1 + np.exp(over))) ** 2 * self.sigma  # the load inside of c is larger by this
         nan, ones = np.full_like(a, np.nan), np.ones_like(a)
         response = Response(
             a, self.body.E * ones, center.P + pressed, center.D, ones, ones, dD, nan, *errors, nan, nan, N * ones,
@@ -96,7 +103,7 @@ class Maugis(NamedTuple):
         return State(a, 0 * a, center.P, center.D, dP, dD, *errors, 1 + np.exp(over), response)
 
     def _over(self, a):
-        """ln(γ - 1) (B,) at which the ring has the work w."""
+        """ln(γ - 1) (B,) of the ring whose work of adhesion is w."""
 
         def off(x, index):
             part = self.take(index)
@@ -121,7 +128,7 @@ class Maugis(NamedTuple):
         return by_a / a, by_over
 
     def ring(self, a, over, with_errors=False):
-        """The :class:`Ring` at a and ln(γ - 1) (B,); the errors of the basis only `with_errors`."""
+        """The :class:`Ring` at a and ln(γ - 1) (B,); its errors include those of the basis only if `with_errors`."""
         c = a * (1 + np.exp(over))
         octave, place = (np.zeros(len(a), dtype=int),) * 2
         if self.body.kernel is not None:
@@ -129,7 +136,7 @@ class Maugis(NamedTuple):
             octave = np.maximum(octave, OCTAVES[0])
         usable = np.isfinite(c)
         edge = np.sqrt(np.exp(over) * (2 + np.exp(over)))
-        parts = np.nan_to_num(16 * longest(self._ends(a, c / a, edge))).astype(int)  # these have rules of their own
+        parts = np.nan_to_num(16 * longest(self._ends(a, c / a, edge))).astype(int)  # each has its rule
         kinds, pieces = 32 * (2 * (octave * 16 + place) + self.shape.even) + parts, []
         for kind in np.unique(kinds[usable]).tolist():
             index = np.flatnonzero(usable & (kinds == kind))
@@ -145,7 +152,7 @@ class Maugis(NamedTuple):
         return out
 
     def _ring(self, a, over, octave, place, with_errors):
-        """The :class:`Ring` where h/c is in one octave and class of stiffness."""
+        """The :class:`Ring` of contacts whose h/c lies in one octave and one class of stiffness."""
         N, E, gamma = size_of(octave, bool(self.shape.even[0])) + 4, self.body.E, 1 + np.exp(over)
         edge = np.sqrt(np.exp(over) * (gamma + 1))  # sqrt(γ² - 1)
         z, dz = self._rule(a, gamma, edge, N)
@@ -171,7 +178,7 @@ class Maugis(NamedTuple):
         )  # fmt: skip
 
     def _layer(self, a, gamma, which, side, with_errors):
-        """The :class:`RingResponse` of contacts whose right-hand side on a half-space is `side` (B, N)."""
+        """The :class:`RingResponse` of contacts; on a half-space their right-hand side is `side` (B, N)."""
         if self.body.kernel is None:
             return RingResponse(side, 0 * a, 0 * a, np.zeros((3, len(a))), 0 * side)
         N, (d, cosine, by, q) = side.shape[1], self._waves(a, gamma, *which, side.shape[1])
@@ -199,8 +206,8 @@ class Maugis(NamedTuple):
         return RingResponse(y, at_edge, moved, np.array([of_y, of_edge, of_moved]) + of_waves, changes)
 
     def _rule(self, a, gamma, edge, N):
-        """Points z and weights (B, Q), τ = γ sin z <= 1. Beyond each kink of the shape, and beyond 0 where it is not
-        smooth in r², the variable is y in z = start + width y²."""
+        """Points z and weights (B, Q), for τ = γ sin z <= 1. For a shape that is not smooth in r², the panels begin at
+        0 and at each kink, and the points are Gauss points y in z = start + width y²."""
         ends = self._ends(a, gamma, edge)
         if self.shape.even[0]:
             y, w = gauss_legendre(_MORE + 2 * N)
@@ -210,7 +217,8 @@ class Maugis(NamedTuple):
         return (low + width * y**2).reshape(len(a), -1), (width * (2 * y * w)).reshape(len(a), -1)
 
     def _ends(self, a, gamma, edge):
-        """Ends of panels (B, K) in z, at the kinks of the shape; those outside of the contact are at its edge."""
+        """Ends of panels (B, K) in z: 0, the kinks of the shape and the edge, which stands in for kinks outside of the
+        contact."""
         end = np.arctan2(1.0, edge)[:, None]  # arcsin(1/γ)
         if self.shape.even[0]:
             return np.hstack([0 * end, end])
@@ -218,7 +226,7 @@ class Maugis(NamedTuple):
         return np.hstack([0 * end, np.minimum(np.arcsin(kinks / gamma[:, None]), end), end])
 
     def _waves(self, a, gamma, octave, place, N):
-        """d_m (B, N, G), cos κ, κγ and the weights of ∫ (L - 1) · dκ (B, G) each."""
+        """d_m (B, N, G); cos κ, κγ, and the weights of the integral of L - 1 over κ, (B, G) each."""
         k, weight = quadrature(octave, place)  # in 1/c
         by = np.broadcast_to(k, (len(a), len(k)))
         L1 = excess(self.body, by * (self.body.h / (a * gamma))[:, None])
@@ -227,12 +235,12 @@ class Maugis(NamedTuple):
 
 
 def ring_stress(part):
-    """σ₀ (B,) of cases in which it, or the range z₀ = w/(0.97 σ₀), is given."""
+    """σ₀ (B,) of cases that give it or the range z₀ = w/(0.97 σ₀)."""
     return np.where(np.isnan(part.sigma0), part.w_adhesion / (0.97 * part.z0), part.sigma0)
 
 
 def ring_pressure(part, zone, x):
-    """The pressure (B, m) at x (m,) inside the contact that the tension in the ring outside it adds."""
+    """The pressure (B, m) at x (m,) inside of the contact that the tension in the ring adds."""
     sigma = ring_stress(part)[:, None]
     edge = np.sqrt((zone - 1) * (zone + 1))[:, None]
     return sigma * (2 / np.pi * np.arctan2(np.sqrt((1 - x) * (1 + x)), edge) - 1)

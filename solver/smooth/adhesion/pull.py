@@ -1,11 +1,12 @@
-"""Where a contact that sticks is pulled off, and which of its radii have a given load or depth.
+"""The pull-off of a contact with adhesion, and the radii with a given load or depth.
 
-What moves the punch has the stiffness k, and the end of it is moved by Q = D + P/k: the depth where k is infinite, and
-where k is 0, the load itself. Along the curve of :mod:`.jkr` the contact is stable where Q rises with a. From large
-radii down Q falls, to its last minimum: there the punch is pulled off. A stiff plate has more minima, at smaller radii.
+A machine of the stiffness k holds the punch; its far end moves by Q = D + P/k, which is the depth for an infinite k.
+For k = 0, Q stands for the load. Along the curve of :mod:`.jkr` the contact is stable where Q rises with a. From large
+radii down Q falls to its last minimum, and there the punch is pulled off. On a stiff plate Q has more minima, at
+smaller radii.
 
-Q is looked at on radii from above the last minimum down. Between two of them it is a cubic polynomial with the right
-slopes; where that turns within, radii in between are looked at too.
+The search evaluates Q at radii from above the last minimum down. Between two neighbours it takes Q as the cubic
+polynomial with the right values and slopes; where that has an extremum, it evaluates the middles as well.
 """
 
 from typing import NamedTuple
@@ -19,26 +20,27 @@ from ...shapes.shape import column
 from ..radius import LAST, MOST, Radii, rising_root
 from .jkr import State
 
-#: Distance of the radii in the variable of :class:`~..radius.Radii`, and how many are looked at together.
+#: Distance of the radii in the variable of :class:`~..radius.Radii`, and how many are evaluated together.
 _STEP, _TOGETHER = 0.25, 8
-#: Radii begin at this multiple of the largest radius of pull-off of a half-space which yields as the body does to any
-#: wave; and end where what the shape adds to the slope of D is below this part of what the edge takes, and below this
-#: part of the thickness of the first layer.
+#: The radii begin at _ABOVE times the radius of pull-off on the softest half-space: the one that yields to every wave
+#: as much as the body does to any. They end where the shape adds to the slope of D less than _BELOW of what the edge
+#: takes, and a is below _THIN of the thickness of the first layer.
 _ABOVE, _BELOW, _THIN = 4.0, 1e-3, 0.02
-#: Beyond the flat part, (a - b)/b where the search ends: there the slope of a frustum is that of its corner.
+#: For shapes with a flat part of the radius b, the search ends at (a - b)/b = _CORNER: the slope of a frustum is that
+#: at its corner there.
 _CORNER = 1e-6
-#: Waves u = kh at which the kernel is looked at.
+#: Waves u = kh at which the kernel is evaluated.
 _WAVES = np.geomspace(1e-9, 30.0, 72)
-#: The first step of that search is no longer than others, up to this distance.
+#: If the first Newton step of :func:`highest` is longer than this, the search starts at its end.
 _FAR = 100.0
-#: Below this the square of a number is 0.
+#: Below this the square of a number underflows.
 _SMALL = 1e-150
-#: Width of a bracket, in the variable, in which a minimum or a radius is found.
+#: Width of a bracket, in the variable, at which the search for a minimum or a radius ends.
 _NARROW = 1e-14
 
 
 class States:
-    """The states of B cases by the variable x of their radii; every state that was computed is kept."""
+    """The states of B cases as functions of the variable x of their radii; `counts` (B,) counts evaluations."""
 
     def __init__(self, law):
         self.law, self.radii = law, Radii(law.shape)
@@ -52,8 +54,9 @@ class States:
 
 
 def highest(law, radii):
-    """x (B,) beyond every minimum of Q. On a half-space of modulus E, which yields to the edge as that of the surface
-    does, all are below the radius at which F²/a = 9π w/(2 E); E is that to which the body yields most."""
+    """x (B,) above every minimum of Q. On a half-space with the modulus E of the surface all minima lie below the
+    radius at which F²/a = 9π w/(2 E); on a layered body E is divided by the largest factor by which the body yields
+    more to a wave."""
     body = law.body
     softest = np.ones(len(law.w))
     if body.kernel is not None:
@@ -70,13 +73,14 @@ def highest(law, radii):
 
     start = np.where(np.isfinite(radii.most) | (radii.least > 0), -1.0, np.log(0.05))
     g, slope = evaluate(start, np.arange(len(start)))
-    start = np.where(np.abs(g / slope) > _FAR, start - g / slope, start)  # tiny w: more steps than there are
+    start = np.where(np.abs(g / slope) > _FAR, start - g / slope, start)  # tiny w: the search would run out of steps
     x, _ = rising_root(evaluate, start)
     return np.where(radii.ends, np.minimum(x + np.log(_ABOVE), LAST), x + np.log(_ABOVE))
 
 
 def lowest(law, x, index, radii):
-    """(b,) bool of the cases `index`: Q falls everywhere below x, or x is next to the corner of the flat part."""
+    """(b,) bool for the cases `index`: Q falls with a everywhere below x, or x is next to the corner of the flat
+    part."""
     a, _ = radii.at(x, index)
     part, w, E = law.shape.take(index), law.w[index], law.body.E[index]
     slope = part.lifted_slope(column(a))[:, 0]
@@ -89,8 +93,13 @@ def lowest(law, x, index, radii):
 
 @batch.of_cases
 class Turn(NamedTuple):
-    """The last minimum of Q in B cases: x, the state there, and whether it is the corner of the flat part, where x is
-    -inf. `above` is an x beyond every minimum. `at_axis`: it is at a = 0, and `x` the least that was looked at."""
+    """The last minimum of Q in B cases.
+
+    above : an x above every minimum
+    x, state : of the minimum
+    corner : whether the minimum is at the corner of the flat part, where x is -inf
+    at_axis : whether it is at a = 0; then `x` is the least that was evaluated
+    """
 
     above: np.ndarray
     x: np.ndarray
@@ -100,7 +109,7 @@ class Turn(NamedTuple):
 
 
 def last_minimum(curve, holder, start):
-    """The :class:`Turn` of B cases from x = `start` (B,), beyond it, down."""
+    """The :class:`Turn` of B cases, searched from x = `start` (B,), above every minimum, down."""
 
     def slope(x, index):
         state, _ = curve.at(x, index)
@@ -124,8 +133,8 @@ def last_minimum(curve, holder, start):
 
 
 class Interval(NamedTuple):
-    """Neighbours low < high in x, and Q and its slope dQ by a there; (B,) each. `ended`: there are none; then `low` is
-    the last x."""
+    """Neighbours low < high in x, and Q and its slope dQ by a at both, (B,) each. Where the search `ended` without
+    finding any, `low` is the last x and the rest is NaN."""
 
     low: np.ndarray
     high: np.ndarray
@@ -137,10 +146,11 @@ class Interval(NamedTuple):
 
 
 def descend(curve, holder, start, wanted, until=-np.inf):
-    """The highest :class:`Interval` below `start` (B,) which is `wanted`. Where Q falls it goes on until `until` (B,).
+    """The highest :class:`Interval` below `start` (B,) that is `wanted`. A search ends at the :func:`lowest` x, but not
+    while Q is below `until` (B,).
 
-    wanted : ``wanted(Q, dQ, index) -> (b, m - 1) bool`` of Q and its slope (b, m) at radii that go down, for the
-        intervals of the cases `index`
+    wanted : ``wanted(Q, dQ, index) -> (b, m - 1) bool``: which intervals of the cases `index` are wanted, from Q and
+        its slope (b, m) at descending radii
     """
     size, until = len(start), np.broadcast_to(until, len(start))
     out = Interval(*np.full((6, size), np.nan), np.ones(size, dtype=bool))
@@ -167,7 +177,8 @@ def descend(curve, holder, start, wanted, until=-np.inf):
 
 
 def _note(out, index, hits, x, Q, dQ):
-    """Write the first of the intervals that are `hits` (b, m - 1) into `out`, at `index`; (b,) bool, there is one."""
+    """Write for each case the first interval that is one of its `hits` (b, m - 1) into `out`, at `index`; returns
+    whether there is one (b,)."""
     rows, first = np.flatnonzero(hits.any(axis=1)), hits.argmax(axis=1)
     places, index_of = first[rows], index[rows]
     for low, high, values in zip(out[:6:2], out[1:6:2], (x, Q, dQ), strict=True):
@@ -185,7 +196,7 @@ def _looked_at(curve, holder, x, index):
 
 
 def _turns(curve, x, Q, dQ, index):
-    """(b,) bool: between two radii at which Q rises, or falls, the cubic polynomial through both turns."""
+    """(b,) bool: between some neighbours with slopes of the same sign the cubic polynomial has extrema."""
     _, da = curve.radii.at(x.ravel(), np.repeat(index, x.shape[1]))
     slope = dQ * da.reshape(x.shape)
     pairs = ((values[:, 1:], values[:, :-1]) for values in (Q, slope))
@@ -193,7 +204,7 @@ def _turns(curve, x, Q, dQ, index):
 
 
 def _with_middles(curve, holder, x, Q, dQ, index):
-    """x, Q and dQ with the middles of all intervals."""
+    """x, Q and dQ with those at the middles of all intervals inserted."""
     middles = _looked_at(curve, holder, (x[:, 1:] + x[:, :-1]) / 2, index)
     out = [np.empty((len(index), 2 * x.shape[1] - 1)) for _ in range(3)]
     for array, ends, inner in zip(out, (x, Q, dQ), middles, strict=True):
@@ -202,8 +213,8 @@ def _with_middles(curve, holder, x, Q, dQ, index):
 
 
 def above_turn(curve, holder, value, turn, start):
-    """x (B,) > turn.x at which Q has the `value` (B,), which is not below Q at the :class:`Turn`; `start` is a first
-    guess. NaN where there is none."""
+    """x (B,) > turn.x at which Q has the `value` (B,), at least that at the :class:`Turn`; NaN where there is none.
+    `start` is a first guess."""
     Q_off = holder.of(turn.state.P, turn.state.D)
     scale = np.maximum(np.abs(value), np.abs(Q_off))
 
@@ -218,8 +229,8 @@ def above_turn(curve, holder, value, turn, start):
 
 
 def below(curve, holder, value, start, rising):
-    """The largest x (B,) < `start` at which Q has the `value` (B,); NaN where there is none. `rising` : Q rises with a
-    there, or it falls."""
+    """The largest x (B,) < `start` at which Q has the `value` (B,) and rises with a if `rising`, otherwise falls; NaN
+    where there is none."""
     sign = 1.0 if rising else -1.0
 
     def wanted(Q, _, index):

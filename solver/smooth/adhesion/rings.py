@@ -1,10 +1,10 @@
-"""Rings of attraction at many radii and of many widths, what the shape makes of them and what attraction makes, apart.
+"""Rings of attraction at many radii and of many widths: separately the part of the shape and that of the attraction.
 
-Under :mod:`.maugis` the load, the depth and the gap at the outer edge of a ring are straight lines in the stress σ₀:
+Under :mod:`.maugis` the load, the depth and the gap at the outer edge of a ring are linear in the stress σ₀:
 
     P = P₀ + σ₀ load,    D = D₀ + σ₀ depth,    w/σ₀ = gap + σ₀ opening.
 
-So curves of many works of adhesion and many stresses need the rings of one body once.
+So the rings of a body are computed once for the curves of all works of adhesion and all stresses.
 """
 
 from typing import NamedTuple
@@ -20,8 +20,8 @@ from ..tabulated_body import where_slow
 from .curve_terms import SUBLAYERS, extrapolated
 from .maugis import Maugis
 
-#: σ₀ over E of the rings from which the parts follow. With the first the shape alone counts, with the second the ring
-#: alone, to the last digits: so nothing is subtracted.
+#: σ₀/E of the two rings that give the parts. To the last digit, only the shape counts with the first and only the
+#: attraction with the second, so no digits are lost by subtraction.
 _WEAK, _STRONG = 1e-30, 1e30
 
 
@@ -37,9 +37,9 @@ class Rings(NamedTuple):
 def rings(problem, x, width):
     """:class:`Rings` of B contacts of one base and shape, in units R = E2* = 1.
 
-    x : (B, m), at which radii, as of :class:`~..radius.Radii`; the load, depth or radius of the problem do not count
-    width : (B, m) of the rings, c - a. Where the profile ends in a distance of d from the edge of the contact, the ring
-        has the width d width/(d + width)
+    x : (B, m), the radii, in the variable of :class:`~..radius.Radii`; the value of the problem's control is ignored
+    width : (B, m), widths c - a of the rings. If the profile ends at the distance d beyond the edge of the contact, the
+        ring is d width/(d + width) wide instead
     """
     if not is_graded(problem).any():
         return _rings(problem, x, width)

@@ -1,7 +1,8 @@
 """The largest stresses below the central spot of asperities that feel the coated body: docs/stresses.md, Below a spot.
 
-They are those of the waves of the cell on the axis of the spot and those of the nominal pressure on the axis of the
-contact, which is the same. At the interface tension and shear are looked for up to half of the pitch beside the axis.
+They are the sum of those of the waves of the cell and those of the nominal pressure, on the axis of the spot, which is
+the axis of the contact too. At the interface, tension and shear are searched for up to half the distance of neighbours
+from the axis.
 """
 
 import numpy as np
@@ -19,8 +20,8 @@ from ..peaks import chebyshev_nodes, in_patch
 from ..spots import with_elastic_spots
 from .felt_cells import felt_cells
 
-#: Name -> the function of sr, st, sz, trz whose largest value it is, and where: on the axis in the layer or in the
-#: body, on the axis at the interface in the layer, or at the interface.
+#: Name -> the function of sr, st, sz, trz whose largest value it is, and the place of the search: "layer" and "body",
+#: on the axis; "above", on the axis just above the interface; "interface", at the interface.
 SPOT_EXTREMES = {
     "mises1_spot": (mises, "layer"),
     "mises2_spot": (mises, "body"),
@@ -30,10 +31,10 @@ SPOT_EXTREMES = {
 }
 #: Those that may not exist: below _NOTHING of the largest pressure they are rounding, and 0.
 _MAY_LACK, _NOTHING = ("sz_interface_spot_max", "tau_interface_spot"), 1e-11
-#: Nodes of the polynomials on each panel. The first panel is this part of the least length over which stresses change,
-#: and each next one twice as wide (tests/yields/test_central_spot.py has twice as many nodes).
+#: Nodes of the polynomials on each panel; and width of the first panel, over the smallest length over which stresses
+#: change. Each panel is twice as wide as the one before (tests/yields/test_central_spot.py has twice as many nodes).
 _NODES, _FIRST = 10, 0.5
-#: Farther below the interface than this many pitches the waves of the cell are rounding.
+#: Number of pitches below the interface from which on the waves of the cell are rounding.
 _DEPTH = 6.0
 
 
@@ -41,31 +42,31 @@ _DEPTH = 6.0
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN
 def of_contacts(problem, solution, mu=0.0, residual=0.0):
     """Name of :data:`SPOT_EXTREMES` -> (2, B): the largest value in the unit of E2, and its depth in a. NaN where the
-    asperities do not feel the layer, where the contact is not solved and of bodies that are rigid; the depth is NaN of
-    what is not there.
+    asperities do not feel the layer, where the contact is not solved, and for rigid bodies. The depth of an extreme
+    that does not exist is NaN.
 
-    problem, solution : B cases and their :class:`~solver.solution.Solution`, of which a, status and model_used count.
-        Below spots that yield the stress is that of spots which do not
-    mu : >= 0, friction, of the nominal pressure alone; residual : (B,) or a number, biaxial stress of the layer, in the
+    problem, solution : B cases, and their :class:`~solver.solution.Solution`. The spots are elastic, even if the law
+        has spots that yield
+    mu : >= 0, friction of the nominal pressure only; residual : (B,) or a number, biaxial stress of the layer, in the
         unit of E2
     """
-    made = {name: np.full((2, len(problem)), np.nan) for name in SPOT_EXTREMES}
+    extremes = {name: np.full((2, len(problem)), np.nan) for name in SPOT_EXTREMES}
     for cells, loaded, (index, p_max) in _cells(problem, solution, mu, residual):
         for name, values in _largest(loaded, cells, p_max).items():
-            made[name][:, index] = values
-    for values in made.values():
+            extremes[name][:, index] = values
+    for values in extremes.values():
         values[0] *= problem.E2
-    return made
+    return extremes
 
 
 @one_blas_thread()
 @np.errstate(all="ignore")
 def section(problem, solution, r, z, body, residual=0.0):
-    """sr, st, sz and trz (4, Z, R) below the central spot of one contact, in the unit of E2, the nominal stresses on
-    the axis of the contact and about it included; None where its asperities do not feel the layer.
+    """sr, st, sz and trz (4, Z, R) below the central spot of one contact, in the unit of E2, including the nominal
+    stresses; None if its asperities do not feel the layer.
 
     r : (R,), radii from the axis in the pitch l, less than the distance of neighbours less b; z : (Z,), depths in l
-    body : bool, in the body; residual : biaxial stress of the layer, in the unit of E2
+    body : bool, whether the depths are in the body; residual : biaxial stress of the layer, in the unit of E2
     """
     for cells, loaded, _ in _cells(problem, solution, 0.0, residual):
         cell = cells[0]
@@ -75,8 +76,8 @@ def section(problem, solution, r, z, body, residual=0.0):
 
 
 def spot_of(problem, solution):
-    """Radius of the central spot, the pitch and the thickness of the layer of one contact, in units of a: (3,), NaN
-    where its asperities do not feel the layer; and half of the distance of neighbours over the pitch."""
+    """Radius of the central spot, pitch, and thickness of the layer of one contact, in units of a, (3,); and half the
+    distance of neighbours over the pitch. NaN if its asperities do not feel the layer."""
     for cells, loaded, _ in _cells(problem, solution, 0.0, 0.0) if not is_stack(problem.base).any() else ():
         if cells[0]:
             return np.array([cells[0].b[0] * cells[0].pitch, cells[0].pitch, loaded.h[0]]), half_way(cells[0])
@@ -100,15 +101,15 @@ def _cells(problem, solution, mu, residual):
 
 
 def half_way(cell):
-    """Half of the distance of neighbours, in l."""
+    """Half the distance of neighbours, in l."""
     lattice = cell.member.cell.lattice
     return LATTICES["hex" if lattice == "disc" else lattice] / 2
 
 
 def _largest(loaded, cells, p_max):
-    """The same (2, B) in units of the pressure. loaded : :class:`~..loaded.Loaded`; cells : of
+    """As :func:`of_contacts`, (2, B), in units of the pressure. loaded : :class:`~..loaded.Loaded`; cells : by
     :func:`~.felt_cells.felt_cells`; p_max : (B,)"""
-    made = {name: np.full((2, len(cells)), np.nan) for name in SPOT_EXTREMES}
+    extremes = {name: np.full((2, len(cells)), np.nan) for name in SPOT_EXTREMES}
     for i, cell in enumerate(cells):
         if cell is None:
             continue
@@ -118,12 +119,13 @@ def _largest(loaded, cells, p_max):
             for name in [name for name, (_, place) in SPOT_EXTREMES.items() if place == where] if panels else ():
                 value, z = _best(panels, SPOT_EXTREMES[name][0])
                 lacks = name in _MAY_LACK and value <= _NOTHING * p_max[i]
-                made[name][:, i] = (0.0, np.nan) if lacks else (value, z)
-    return made
+                extremes[name][:, i] = (0.0, np.nan) if lacks else (value, z)
+    return extremes
 
 
 def _best(panels, value):
-    """The largest value of a function of stresses, polynomials on panels of depths or radii, and its depth."""
+    """The largest value of a function of stresses, which are polynomials on panels of depths or radii, and its
+    depth."""
     best = -np.inf, np.nan
     for low, high, z, stresses in panels:
         largest, (_, v) = in_patch(stresses[..., None], value)
@@ -139,8 +141,8 @@ class _Case:
         self.loaded, self.cell, self.h = loaded, cell, loaded.h[0]
 
     def panels(self, where):
-        """(low, high, depth, stresses (4, nodes)) of each panel, of depths, and of radii at the depth z of the
-        interface; none of a body that is rigid."""
+        """(low, high, depth, stresses (4, nodes)) of each panel. At "interface" it is a panel of radii, at that depth;
+        elsewhere a panel of depths, and `depth` is None. A rigid body has no panels."""
         least = _FIRST * min(self.cell.b[0] * self.cell.pitch, self.h, 1.0)
         if where == "above":
             return [(self.h, self.h, None, self._on_axis(np.array([self.h]), False))]
@@ -173,11 +175,12 @@ class _Case:
     def _at_interface(self, r):
         """Stresses (4, R) at the interface at radii r (R,)."""
         cell, whole = self.cell, self.loaded.stresses(r, np.array([self.h]), False)[:, 0, 0, 0]
-        # those in the body: sz and trz, which alone are looked at, are continuous, and take fewer waves there
+        # the stresses in the body: only sz and trz count, which are continuous, and need fewer waves there
         return whole + cell.unit * cell.stresses(cell.b[0], r / cell.pitch, np.array([cell.h]), 1)[:, 0]
 
 
 def _doubling(start, first, last):
-    """Edges from `start` to `last`, the first panel `first` wide, each next one twice as wide."""
+    """Edges of panels from `start` to `last`. The first panel has the width `first`, and each further one is twice as
+    wide."""
     count = max(int(np.ceil(np.log2(1 + (last - start) / first))), 1)
     return np.minimum(start + first * (2.0 ** np.arange(count + 1) - 1), last)

@@ -1,4 +1,4 @@
-"""The cells below asperities that feel their layers, one for each contact, and the stresses below a spot of one."""
+"""The cells below asperities that feel their layers, one for each contact, and the stresses below a spot of a cell."""
 
 from itertools import product
 from typing import NamedTuple
@@ -14,14 +14,14 @@ from ...laws.cell.members import Member, members
 from ...laws.cell.spot import spots
 from ...models.spot_pressure import largest_radius
 
-#: A spot at the edge has no size; it is taken for one of this contact fraction.
+#: A spot at the edge has no size. This contact fraction stands for it.
 _LEAST = 1e-12
 
 
 class FeltCell(NamedTuple):
     """The cell of one contact, in units E = Ra = l = 1.
 
-    b : (S,), radii of the spots that are known, the first in the centre, the largest there of random heights
+    b : (S,), radii of the spots that are known. The first is in the centre; for random heights it is the largest there
     p : nominal pressure in the centre
     layers : :class:`~solver.kernels.transfer.Layered` of the contact
     pitch, unit : the length l in a, and the stress E l/Ra in E2*
@@ -45,7 +45,8 @@ class FeltCell(NamedTuple):
         return len(tops) - 1, tops[-1]
 
     def stresses(self, b, r, z, region, last=EXACT):
-        """sr, st, sz and trz (4, Z, R) of the cell below a spot of radius b: :func:`~.below_spot`."""
+        """sr, st, sz and trz (4, Z, R) of the cell below a spot of radius b:
+        :func:`~solver.fields.below_spots.below_spot` or :func:`~solver.fields.below_spots.below_summit`."""
         cell = self.member.cell
         if self.member.alone:
             return below_summit(cell, b, self.p, self.layers, r, z, region, last)
@@ -53,12 +54,14 @@ class FeltCell(NamedTuple):
 
 
 def felt_cells(scaled, a, lam, p0):
-    """A :class:`FeltCell` or None, where none is known, of each of B cases that feel their layers.
+    """A list with a :class:`FeltCell` for each of B cases whose asperities feel their layers, or None if the law has no
+    family for it.
 
-    scaled : in units R = E2* = 1, of any laws; a : (B,), radii of the contacts; lam : (B, S), λ at radii of which the
-        first is the centre, NaN beyond it where only that is known; p0 : (B,), nominal pressure in the centre
+    scaled : the cases in units R = E2* = 1, of any laws; a : (B,), radii of the contacts
+    lam : (B, S), λ at S radii, the first of which is the centre; NaN where only the centre is known
+    p0 : (B,), nominal pressure in the centre
     """
-    made, stacked = [None] * len(scaled), is_stack(scaled.base)
+    cells, stacked = [None] * len(scaled), is_stack(scaled.base)
     pitch, E = 1 / np.sqrt(scaled.Nbar), layer_modulus(scaled.n) / (1 + scaled.m)
     unit = E * pitch / scaled.Ra
     for micro, on_stack in product(dict.fromkeys(scaled.micro.tolist()), (False, True)):
@@ -74,5 +77,5 @@ def felt_cells(scaled, a, lam, p0):
             if member.known:
                 others = np.zeros(0) if member.alone or np.isnan(lam[i]).any() else lam[i, 1:]
                 radii = np.append(b, np.sqrt(np.maximum(others, _LEAST) / np.pi))
-                made[i] = FeltCell(member, radii, p0[i] / unit[i], layers.take([place]), pitch[i] / a[i], unit[i])
-    return made
+                cells[i] = FeltCell(member, radii, p0[i] / unit[i], layers.take([place]), pitch[i] / a[i], unit[i])
+    return cells

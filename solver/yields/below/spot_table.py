@@ -1,7 +1,9 @@
-"""Stresses below the spots of a family by their radius: a table, for the largest stress of many spots.
+"""A table of the stresses below the spots of a family as functions of their radius, for the largest stress of many
+spots.
 
-They are those of the waves G != 0 of a cell (:mod:`~solver.fields.below_spots`), in the layer, over Hertz's pressure of
-a lone spot of the radius, 2 b/pi (E = Ra = l = 1), at depths down to 1.5 b or h, whichever is less, and at radii in b.
+They are the stresses of the waves G != 0 of a cell (:mod:`~solver.fields.below_spots`) in the layer, over Hertz's
+pressure of a lone spot of this radius, 2 b/pi (E = Ra = l = 1). Depths go down to the smaller of 1.5 b and h; radii are
+in b.
 """
 
 from typing import NamedTuple
@@ -15,20 +17,22 @@ from ...laws.cell.spot import pieces, spots
 from ...numerics.kept import Kept
 from ..peaks import chebyshev_nodes
 
-#: Radii of the table below _SMALL h, in b, and by powers of ln(b/(_SMALL h)) beyond, in that.
+#: Number of radii b of the table up to _SMALL h, where the series are in b; and beyond, where they are in ln b, the
+#: number as a polynomial in ln of the largest b/(_SMALL h), with these coefficients.
 _SMALL, _FEW, _MORE = 1 / 1.5, 13, (6, 4, 1)
-#: Depths, the last at _DEEP b or at h; and radii from the axis, in angles arcsin(r/b), if the largest stress may be
-#: beside it. With 40 and 49 the largest stresses are the same to 1e-5 (tests/yields/test_felt_spots.py).
+#: Number of depths, the last of which is at _DEEP b or at h; and number of radii from the axis, nodes of the angle
+#: arcsin(r/b), if the largest stress may be off the axis. With 40 and 49 the largest stresses are the same to 1e-5
+#: (tests/yields/test_felt_spots.py).
 _DEPTHS, _DEEP, _RADII = 14, 1.5, 17
-#: Where the reach and the limit differ by less, they are the same.
+#: The reach and the limit are the same if they differ by less than this part.
 _SAME = 1e-12
-#: Bytes of the tables that are kept: some 200 with radii beside the axis.
+#: The tables in use, at most this many bytes: some 200 tables with radii off the axis.
 _kept = Kept(4e7)
 
 
 class Table(NamedTuple):
-    """Below spots of radii up to `reach` (unit l): sr, st, sz, trz over 2 b/pi at Z depths, nodes of Chebyshev with
-    both ends between 0 and the :func:`deepest`, and at R such nodes of arcsin(r/b), or on the axis alone.
+    """The stresses sr, st, sz, trz over 2 b/pi below spots with radii up to `reach`, in l. They are at Z depths,
+    Chebyshev's nodes from 0 to the :func:`deepest`, and at R such nodes of arcsin(r/b), or only on the axis.
 
     small, large : Chebyshev series (terms, 4, Z, R), in b up to `limit`, and in ln b beyond
     """
@@ -44,7 +48,7 @@ class Table(NamedTuple):
         return self.small.shape[2:]
 
     def at(self, b):
-        """The stresses (B, 4, Z, R) at radii b (B,) up to the reach, E = Ra = l = 1."""
+        """The stresses (B, 4, Z, R) for radii b (B,) up to the reach, in units E = Ra = l = 1."""
         few, b = b <= self.limit, np.minimum(b, self.reach)
         out = np.empty((len(b), *self.small.shape[1:]))
         along = 2 * np.log(b / self.limit) / np.log(max(self.reach / self.limit, 1 + _SAME)) - 1
@@ -68,13 +72,13 @@ class One(NamedTuple):
 
 
 def deepest(b, h):
-    """The depth down to which stresses are looked at, of any unit: 1.5 b, or h where that is less."""
+    """The depth down to which stresses are computed, in any unit of length: the smaller of 1.5 b and h."""
     return np.minimum(_DEEP * b, h)
 
 
 def table_of(felt):
-    """The :class:`Table` of the family of a :class:`~.felt_cells.FeltCell`, kept for the next time; or :class:`One`, of
-    its spot, if that has a load of its own."""
+    """The :class:`Table` of the family of a :class:`~.felt_cells.FeltCell`, from the cache; or the :class:`One` of its
+    spot, if that has a load of its own."""
     member = felt.member
     if member.alone:
         rho, z = _places(member.cell, felt.b[0])
@@ -83,9 +87,9 @@ def table_of(felt):
 
 
 def _places(cell, b):
-    """Radii from the axis in b, and depths in l, at which a table has the stresses below a spot of radius b."""
-    beside = may_leave_the_middle(cell)
-    rho = np.sin(np.pi / 4 * (1 + chebyshev_nodes(_RADII))) if beside else np.zeros(1)
+    """Radii from the axis, in b, and depths, in l, at which a table has the stresses below a spot of radius b."""
+    off_axis = may_leave_the_middle(cell)
+    rho = np.sin(np.pi / 4 * (1 + chebyshev_nodes(_RADII))) if off_axis else np.zeros(1)
     return rho, deepest(b, 1 / cell.pitch) * (1 + chebyshev_nodes(_DEPTHS)) / 2
 
 

@@ -1,28 +1,29 @@
-"""The largest values of functions of the stresses near points, many at a time, by quadratic models of the stresses in
-boxes that shrink or move by how far the models are right."""
+"""The largest values of functions of the stresses near points, many at a time: quadratic models of the stresses are
+trusted in boxes, which shrink where a model proves wrong and follow its largest value where it proves right."""
 
 import numpy as np
 
-#: Points of a model in each direction; then stencils about the best of them until they are this part of the box wide.
+#: A model is evaluated on a grid of _POINTS points in each direction, then on at most _ROUNDS stencils about the best
+#: point, until a stencil is as narrow as _LEAST of the box.
 _POINTS, _LEAST, _ROUNDS = 9, 3e-6, 20
-#: A model is right where it misses less than this part of what it promised: the box stays; else it is a quarter as
-#: wide.
+#: A model is right if its error is at most _RIGHT of the gain it promised; then the box keeps its width. Otherwise the
+#: width is multiplied by _SHRINK.
 _RIGHT, _SHRINK = 0.1, 0.25
-#: Done when a model promises less than _SAME of the value and of the scale, far below the 1e-6 that is promised; or the
-#: box is smaller than _SMALLEST; after _MOST steps at the latest (tests/yields/test_largest_stresses.py).
+#: A search ends when its model promises a gain below _SAME (value + scale), when its box is smaller than _SMALLEST, or
+#: after _MOST steps. All are far below the documented accuracy, 1e-6 (tests/yields/test_largest_stresses.py).
 _SAME, _SMALLEST, _MOST = 1e-13, 1e-8, 30
-#: A box is at most so many times as wide as the last step was long.
+#: Half the width of a box is at most _STEPS times the length of the last step.
 _STEPS = 4.0
 
 
 def climb(jets, value, start, half, low, high, scale):
-    """Largest values (T,) and their places (T, 2), each near its start.
+    """The largest values (T,) of T tasks and their places (T, 2), each near its start.
 
-    jets : ``jets(index, u, v)``, stresses with derivatives (6, 4, t) at one point (t,) for each of the tasks `index`
-    value : ``value(index, stresses)`` of (4, t, m), (t, m)
-    start, half : (T, 2), the first points (u, v), and half the widths of the boxes in which the models are trusted
+    jets : ``jets(index, u, v)`` returns stresses with derivatives (6, 4, t), at one point (u, v) for each task `index`
+    value : ``value(index, stresses)`` returns the values (t, m) of stresses (4, t, m)
+    start, half : (T, 2), the first points (u, v), and half the widths of the first boxes
     low, high : (T, 2), bounds of the region
-    scale : (T,), a number of the size of the stresses
+    scale : (T,), the magnitude of the stresses
     """
     centre, half = np.clip(start, low, high), np.where(low == high, 0.0, half)
     widest, best, place = high - low, np.full(len(start), -np.inf), centre.copy()
@@ -51,7 +52,12 @@ def climb(jets, value, start, half, low, high, scale):
 
 
 def _resized(half, widest, step, wrong, better):
-    """Halves of the widths (T, 2) of boxes after steps (T, 2), of models that were `wrong` or not (T,)."""
+    """Half the widths (T, 2) of the next boxes.
+
+    half, widest : (T, 2), half the widths of the last boxes, and their upper bounds
+    step : (T, 2), lengths of the last steps
+    wrong, better : (T,), whether the model was wrong, and whether the step reached a larger value
+    """
     far = (step >= 0.99 * half) & (half > 0) & (better & ~wrong)[:, None]
     half = half * np.where(wrong, _SHRINK, 1.0)[:, None]
     half = np.where(far, np.minimum(2 * half, widest), half)
@@ -60,8 +66,8 @@ def _resized(half, widest, step, wrong, better):
 
 
 def _highest(active, value, models, centre, low, high):
-    """Places (T, 2) and values (T,) at which the functions of models are largest in boxes: the best of a grid, then of
-    stencils about it and of the top of the parabola through each."""
+    """Places (T, 2) and values (T,) of the largest values that models have in boxes: the best point of a grid, then the
+    best of stencils about it and of the top of the parabola through each stencil."""
 
     def values_at(index, u, v):
         du, dv = u - centre[index, :1], v - centre[index, 1:]
@@ -92,7 +98,7 @@ def _highest(active, value, models, centre, low, high):
 
 
 def _around(middle, width, steps, flat):
-    """Points u, v (T, m) of grids about `middle` (T, 2); one line if all are flat."""
+    """Points u, v (T, m) of grids about `middle` (T, 2); each grid is one line along u if `flat`."""
     across, down = (axis.ravel() for axis in np.meshgrid(steps, 0 * steps[:1] if flat else steps))
     return middle[:, :1] + width[:, :1] * across, middle[:, 1:] + width[:, 1:] * down
 
@@ -104,8 +110,8 @@ def _best_of(u, v, values):
 
 @np.errstate(divide="ignore", invalid="ignore")  # where there is no parabola
 def _top(values):
-    """Where the parabola through 3 or 3 x 3 values (T, 3 or 9) has its top, in steps (T, 2) from the middle, at most 1;
-    the middle where it has none. Of boxes that are lines all rows are the same."""
+    """Places of the tops of the parabolas through 3 or 3 x 3 values (T, 3 or 9), in steps (T, 2) from the middle, each
+    cut off at 1; 0 where a parabola has no top. A box that is a line has one row of values, which stands for all."""
     f = values.reshape(len(values), -1, 3)
     row = f.shape[1] // 2
     left, here, right = np.moveaxis(f[:, row], 1, 0)

@@ -1,7 +1,7 @@
 """Stresses at points of regions of loaded bodies, with their first and second derivatives: docs/stresses.md, Extremes.
 
-A jet is (6, 4, P): sr, st, sz, trz at P points, and their derivatives by u, v, uu, uv, vv. v is the depth, and u the
-radius or, along the surface next to the edge, sqrt(1 - r²), beyond it -sqrt(r² - 1).
+A jet is an array (6, 4, P): sr, st, sz, trz at P points, and their derivatives by u, v, uu, uv, vv. v is the depth. u
+is the radius r; along the surface next to the edge it is sqrt(1 - r²) inside of the contact and -sqrt(r² - 1) outside.
 """
 
 import numpy as np
@@ -13,13 +13,14 @@ from ...fields.points.edge_waves import last_octave
 from ...fields.points.wave_points import of_normal, of_sliding, sums, waves_of
 from ...kernels.transfer import StatePart
 
-#: Above this part of the layer the half-space is a closed form, to which waves add the difference: they end sooner.
+#: Above the depth NEAR h the stresses of the half-space are taken in closed form and the waves add only the difference
+#: of the layered body: their sums need fewer waves.
 NEAR = 0.8
-#: Least depth of points that are not at the surface: the closed form has no digits less.
+#: Least depth at which the closed form is evaluated below the surface: at smaller depths it loses all digits.
 _LEAST = 1e-12
-#: The waves of one rule reach one of these 1 + r.
+#: Each rule of waves serves the points up to one of these values of 1 + r.
 _REACHES = np.append(2.0 ** np.array([1, 4 / 3]), 2.0 ** np.arange(2, 40))
-#: By this u differs where closed forms of the surface are differentiated.
+#: Step of u in the differences that differentiate the closed forms on the surface.
 _STEP = 1e-3
 #: Loads: traction, integrands, orders, closed form, components.
 _LOADS = (
@@ -29,7 +30,7 @@ _LOADS = (
 
 
 class Jets:
-    """Of the cases of a :class:`~..loaded.Loaded`; the waves are formed when a point first needs them."""
+    """Jets of the cases of a :class:`~..loaded.Loaded`; a rule of waves is formed when a point first needs it."""
 
     def __init__(self, loaded):
         self.loaded, self._waves = loaded, {}
@@ -38,7 +39,7 @@ class Jets:
     def __call__(self, region, case, side, root, u, v):
         """Jets (6, 4, P) at points of a region of :data:`~..extremes.EXTREMES`.
 
-        case, side, root : (P,), of which case, on which side, and whether u is that of the surface next to the edge
+        case, side, root : (P,), the case, the side, and whether u is the coordinate of the surface next to the edge
         u, v : (P,)
         """
         loaded, body = self.loaded, region == "body" and not self.loaded.bare
@@ -101,7 +102,7 @@ class Jets:
         return self._waves[far]
 
     def _of_surface(self, load, case, u, root, outside):
-        """The closed form on the surface, whose derivatives are differences."""
+        """The closed form on the surface; its derivatives are difference quotients."""
         low, high = (-np.inf, 0.0) if outside else (0.0, 1.0)
         middle = np.clip(u, low + _STEP, high - _STEP)
         points = np.concatenate([u, middle - _STEP, middle, middle + _STEP])
@@ -112,7 +113,8 @@ class Jets:
         return np.stack([values, first + second * (u - middle), none, second, none, none])
 
     def _on_surface(self, load, case, u, root, outside):
-        """The integrals (fields, P) of half-spaces at the surface; at the edge those of its side."""
+        """The integrals (fields, P) of half-spaces at the surface; at the edge, the limit from inside, or from
+        `outside`."""
         loaded = self.loaded
         r = np.where(root, np.sqrt(np.maximum(1 - u * np.abs(u), 0.0)), np.abs(u))
         nu = (loaded.layers.nu2 if loaded.bare else loaded.layers.nu1)[case]
@@ -131,7 +133,8 @@ class Jets:
 
 
 def _along(whole, r, u, root, outside):
-    """Derivatives by u of what has derivatives by r: where u is the root, r² is 1 - u² inside and 1 + u² outside."""
+    """Change the derivatives by r into derivatives by u: where u is the `root`, r² is 1 - u² inside of the contact and
+    1 + u² outside."""
     r, sign = np.where(root, np.maximum(r, _STEP), 1.0), 1.0 if outside else -1.0
     first, second = np.where(root, sign * u / r, 1.0), np.where(root, sign / r**3, 0.0)
     value, by_r, _, rr, _, _ = whole

@@ -1,9 +1,9 @@
 """The largest stresses in each layer of a stack, at each interface and in the body, with their places.
 
-Each layer, the lower side of each, the body, and the surface inside and outside of the contact are searched by
-themselves, on a coarse grid of radii and depths, then from its peaks with patches that shrink (:mod:`.patches`). The
-grid has the lengths of all that is there: a, the thickness of each layer and the depth of its top, and those over which
-stiff layers spread the pressure.
+Each of these regions is searched separately: the inside of each layer, its lower side, the body, and the surface inside
+and outside of the contact. A search evaluates a coarse grid of radii and depths, then refines its peaks with patches
+that shrink (:mod:`.patches`). The spacings of the grid follow the lengths over which stresses change
+(:func:`lengths_of`).
 """
 
 from typing import NamedTuple
@@ -21,8 +21,8 @@ from ..contact import of_contacts as of_one_layer
 from ..extremes import VALUES
 from .patches import climbed
 
-#: Name -> the function of the stresses whose largest value it is, and where it is looked for: in each "layer", at the
-#: "lower" side of each, on the "surface", or in the "body".
+#: Name -> the function of the stresses whose largest value it is, and the place that is searched: each "layer", the
+#: "lower" side of each, the "surface", or the "body".
 EXTREMES = {
     "mises_layer": ("mises", "layer"),
     "tresca_layer": ("tresca", "layer"),
@@ -35,33 +35,35 @@ EXTREMES = {
     "mises2": ("mises", "body"),
     "tresca2": ("tresca", "body"),
 }
-#: Of each place, the dimension over which a name has values, or none.
+#: Place -> the dimension over which its names have values, or None.
 DIMENSION = {"layer": "layer", "lower": "interface", "surface": None, "body": None}
-#: Those that may not exist: below _NOTHING of the largest pressure they are rounding, and 0.
+#: Names of extremes that need not exist: a value below _NOTHING of the largest pressure is rounding and becomes 0.
 _MAY_LACK, _NOTHING = ("s1_surface", "s1_layer", "sr_interface", "tau_interface", "sz_interface_max"), 1e-11
-#: A further place of the coarse grid is looked at too where it has this part of the best.
+#: A further peak of the coarse grid is refined if it has at least this part of the largest value.
 _RIVAL = 0.85
-#: The coarse grid: radii in a, and beyond the edge in each length; depths over the thickness of a layer, and below its
-#: top in each length; and below the last interface in each length.
+#: The coarse grid: radii in a; distances beyond the edge, in each length; depths below the top of a layer, in its
+#: thickness and in each length; depths below the last interface, in each length.
 _RADII = np.array([0, 0.2, 0.4, 0.6, 0.75, 0.85, 0.93, 0.98, 1, 1.04, 1.12, 1.25, 1.5])
 _BEYOND = np.array([0.15, 0.3, 0.6, 1, 1.6, 2.5, 4, 6])
 _OF_LAYER, _OF_LENGTH = np.array([0, 0.12, 0.3, 0.5, 0.7, 0.88, 1]), np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1])
 _BELOW = np.array([0, 0.08, 0.2, 0.35, 0.5, 0.7, 1, 1.4])
-#: Lengths closer than this factor are one. No place is farther away than _FARTHEST (a + the longest of them).
+#: A length is dropped unless it exceeds the last one kept by the factor _ALIKE. The regions end at _FARTHEST (a + the
+#: longest length).
 _ALIKE, _FARTHEST = 2.0, 10.0
 
 
 @one_blas_thread()
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN
 def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), coarse=False, only=None):
-    """Extremes of solved contacts on stacks: name -> (3, B, N), or (3, B) of what no layer has; the value in the unit
-    of E2, and its place r (signed if mu > 0) and z in a. NaN of contacts that are not solved or on no stack.
+    """Extremes of solved contacts on stacks: name -> (3, B, N), or (3, B) for the surface and the body. The three are
+    the value in the unit of E2 and its place, r (signed if mu > 0) and z in a. NaN for contacts that are not solved or
+    not on a stack.
 
-    problem, solution : B cases and their :class:`~solver.solution.Solution`, of which a, status and model_used count
+    problem, solution : B cases and their :class:`~solver.solution.Solution`; only a, status and model_used are used
     mu : >= 0, friction; residual : (B, N) or a number, biaxial stress of each layer, in the unit of E2
-    names : of :data:`EXTREMES`
-    coarse : the values alone, from the coarse grid: up to some 10 % too small
-    only : the layer or interface that is looked at, from 0; the others are NaN
+    names : some of :data:`EXTREMES`
+    coarse : whether to return only the values of the coarse grid, which are up to about 10 % too small, without places
+    only : number of the only layer or interface to search, from 0; the others are NaN
     """
     N = max(1, numbers_of(problem.parameters))
     made = {name: np.full((3, len(problem), N), np.nan) for name in names}
@@ -82,9 +84,11 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
 
 
 def mises_in(problem, solution, body, layer, mu, residual, punch=None, coarse=False):
-    """(3, B): the largest von Mises stress in the "layer" with the number `layer`, from 0, in the "body" or in the
-    "punch", and its place; of contacts on stacks and of others. Further arguments as above and in
-    :func:`~..contact.of_contacts`; residual : (B, N)"""
+    """The largest von Mises stress and its place, (3, B), of contacts on stacks and on other bodies.
+
+    body : "layer", the one with the number `layer`, from 0; "body"; or "punch"
+    residual : (B, N); further arguments as in :func:`of_contacts` here and in :func:`~..contact.of_contacts`
+    """
     if body == "punch":
         return of_one_layer(problem, solution, mu, 0.0, ("mises2",), punch, coarse)["mises2"]
     name = "mises1" if body == "layer" else "mises2"
@@ -102,15 +106,20 @@ def mises_in(problem, solution, body, layer, mu, residual, punch=None, coarse=Fa
 
 
 def _at_tip(made, case, radius):
-    """Put the infinite stresses below a sharp tip or corner into `made`."""
+    """Write the infinite stresses below a sharp tip or corner into `made`."""
     for name in {"mises_layer", "tresca_layer"} & {*made}:
         made[name][:, case, 0] = np.inf, radius, 0.0
 
 
 class StackGrid(NamedTuple):
-    """The coarse grid of a region: u (U,), v (V,), their bounds, the number of the layer, or N, and the stresses there
-    (4, S, V, U). The radius is u, or on the surface, `root`, sqrt(1 - u |u|), in which stresses are smooth up to the
-    edge; v is the depth."""
+    """The coarse grid of a region.
+
+    u, v : (U,) and (V,); v is the depth
+    bounds : ((least u, largest u), (least v, largest v))
+    number : of the layer, from 0; N for the body
+    root : whether the radius is sqrt(1 - u |u|) rather than u: on the surface stresses are smooth in this u up to the
+        edge
+    """
 
     u: np.ndarray
     v: np.ndarray
@@ -122,12 +131,12 @@ class StackGrid(NamedTuple):
         return np.sqrt(np.maximum(1 - u * np.abs(u), 0.0)) if self.root else u
 
     def stresses(self, case, u, v, roughly=False):
-        """(4, S, V, U)"""
+        """sr, st, sz, trz (4, S, V, U) at u (U,) and v (V,)."""
         return case.stresses(self.radius(u), v, np.full(len(v), self.number), roughly)
 
 
 def _of_section(case, names, coarse, only):
-    """Name -> (3, N) of one case."""
+    """Name -> value and place in each layer, (3, N), of one case; NaN where nothing was searched."""
     N, largest = len(case.ends), np.abs(case.pressure.values).max()
     made = {name: np.full((3, N), np.nan) for name in names}
     if not np.isfinite(case.pressure.values).all():
@@ -145,7 +154,7 @@ def _of_section(case, names, coarse, only):
 
 
 def _in_grids(case, grids, names, coarse):
-    """Name -> the largest value and its place (3,) in these regions; NaN without one."""
+    """Name -> the largest value in the regions of `grids` and its place, (3,); NaN if there are none."""
     made, fine = {}, [_Fine(case, grid) for grid in grids]
     on_grid = [grid.stresses(case, grid.u, grid.v, roughly=True) for grid in grids]
     for name in names:
@@ -166,8 +175,8 @@ def _in_grids(case, grids, names, coarse):
 
 
 def lengths_of(case):
-    """Lengths over which stresses change, ascending: a, the thickness of each layer, the depths of interfaces, and how
-    far stiff layers spread the pressure: h (E/E_below)^(1/3)."""
+    """Lengths over which stresses change, ascending: a, the thickness h of each layer, the depths of interfaces, and
+    the length h (E/E_below)^(1/3) over which a stiff layer spreads the pressure."""
     ends, G = case.ends, case.stack.shear[0]
     of_layers = np.append(case.last, -1)
     below = np.inf if case.rigid else G[-1]
@@ -211,19 +220,19 @@ def _grids(case, place, j, lengths):
     depths = depths[depths > 0]
     inside = StackGrid(radii, depths, ((0.0, far), (tops[j], tops[j + 1])), j)
     lower = StackGrid(radii, tops[j + 1 : j + 2], ((0.0, far), (tops[j + 1],) * 2), j)
-    # At an interface stresses may rise towards it from some radii alone, which the grid inside can miss.
+    # At some radii stresses rise towards the upper interface; the grid inside can miss these.
     upper = StackGrid(radii, tops[j : j + 1], ((0.0, far), (tops[j],) * 2), j)
     return [inside, lower, *((inner, outer) if j == 0 else (upper,))]
 
 
 def _unlike(values):
-    """Ascending values without those that differ by less than a hundredth."""
+    """The values in ascending order, without each that exceeds the one before by less than a hundredth of itself."""
     values = np.unique(values)
     return values[np.append(True, np.diff(values) > 0.01 * np.abs(values[1:]))]
 
 
 def _peaks(values, top):
-    """(side, row, column) of values (S, V, U) that are larger than their neighbours, and nearly as large as `top`."""
+    """(side, row, column) of the values (S, V, U) that no neighbour exceeds and that are nearly as large as `top`."""
     padded = np.pad(values, ((0, 0), (1, 1), (1, 1)), constant_values=-np.inf)
     rows, columns = values.shape[1:]
     around = [padded[:, a : a + rows, b : b + columns] for a in range(3) for b in range(3)]
@@ -232,20 +241,20 @@ def _peaks(values, top):
 
 
 def _refined(grid, patches, value, side, row, column):
-    """The value of a peak, and its r and z, (3,), from a coarse point."""
+    """The value of a peak and its r and z, (3,), refined from a point of the coarse grid."""
     at, half = (grid.u[column], grid.v[row]), [_spacing(grid.u, column), _spacing(grid.v, row)]
     largest, (u, v) = climbed(lambda u, v: patches(u, v)[:, side], value, at, half, grid.bounds)
     return np.array([largest, float(grid.radius(u)) * patches.case.signs[side], v])
 
 
 def _spacing(axis, at):
-    """To the neighbours of a point of a coarse axis, the larger."""
+    """The larger of the distances from a point of a coarse axis to its neighbours; 1 for an axis of one point."""
     return np.abs(np.diff(axis[max(at - 1, 0) : at + 2])).max() if len(axis) > 1 else 1.0
 
 
 class _Fine:
-    """Stresses in a region, (4, S, V, U) at u (U,), v (V,). Those of a patch are kept: several extremes begin with the
-    same."""
+    """Stresses (4, S, V, U) in a region, at u (U,) and v (V,). Results are kept, because the searches for several
+    extremes begin with the same patch."""
 
     def __init__(self, case, grid):
         self.case, self.grid, self._kept = case, grid, {}

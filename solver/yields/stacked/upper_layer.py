@@ -1,4 +1,4 @@
-"""One contact on a stack as asperities see it: the stresses of the whole contact near the surface."""
+"""The stresses of one whole contact on a stack near its surface, to which those of asperities are added."""
 
 from typing import NamedTuple
 
@@ -8,7 +8,7 @@ from ...fields.stacks.section import Section
 
 
 class UpperLayer(NamedTuple):
-    """What :class:`~..loaded.Loaded` is of one layer, of one contact on a stack.
+    """One contact on a stack, with the attributes that :class:`~..loaded.Loaded` has for bodies of one layer.
 
     section : :class:`~...fields.stacks.section.Section`
     """
@@ -21,7 +21,7 @@ class UpperLayer(NamedTuple):
 
     @property
     def h(self):
-        """(1,), thickness in a of the first layer that is given."""
+        """(1,), thickness of the first given layer, in a."""
         return self.section.ends[:1]
 
     @property
@@ -41,12 +41,12 @@ class UpperLayer(NamedTuple):
         return self.section.stack
 
     def take(self, index):
-        """Itself: there is one case."""
+        """Itself, because there is only one case."""
         return self
 
     def stresses(self, r, z, body, roughly=False):
-        """sr, st, sz, trz (4, 1, S, Z, R), as of :class:`~..loaded.Loaded`: at depths z (1, Z) or (Z,) in whichever
-        layer is there, or in the `body`."""
+        """sr, st, sz, trz (4, 1, S, Z, R), as :meth:`~..loaded.Loaded.stresses` returns them, at depths z (1, Z) or
+        (Z,): in the layer that contains the depth, or in the body if `body`."""
         z = np.asarray(z).reshape(-1)
         number = np.full(len(z), len(self.section.ends)) if body else self.section.numbers(z)
         return self.section.stresses(r, z, number, roughly)[:, None]

@@ -165,8 +165,8 @@ def test_the_disc_cell_ends_where_a_soft_layer_makes_it_wrong():
 def test_one_family_serves_a_body_at_all_radii(monkeypatch):
     """Radii R only round h sqrt(Nbar); the families of cases that differ are their own."""
     solved = []
-    make = family._made
-    monkeypatch.setattr(family, "_made", lambda *case: solved.append(case[:2]) or make(*case))
+    make = family._fields
+    monkeypatch.setattr(family, "_fields", lambda *case: solved.append(case[:2]) or make(*case))
     monkeypatch.setattr(family, "_kept", Kept(2e7))
     R = np.random.default_rng(0).uniform(0.1, 9.0, 200)
     same = {"n": 3.0, "nu1": 0.2, "nu2": 0.3, "bonded": True, "m": 0.0}

@@ -70,7 +70,7 @@ def lazily(definition: Definition, chunks: Any, command: str) -> xr.Dataset:
         more["meta"] = np.empty((0,) * array.ndim, array.dtype)
         values = solved.map_blocks(Packed(_values, name), chunks=there, name=f"{name}-{uuid4().hex}", **more)
         variables[name] = xr.Variable(array.dims, values, array.attrs)
-    return dataset_of(definition, labelled(definition, {}, command).settings_apart()).assign(variables)
+    return dataset_of(definition, labelled(definition, {}, command).settings_as_attributes()).assign(variables)
 
 
 def _lengths(chunks: Any, definition: Definition) -> tuple[tuple[int, ...], ...]:

@@ -184,7 +184,9 @@ def unsolved(who: str, parameters: dict[str, Any]) -> xr.Dataset:
     definition = from_call(call, [], options["same_piece"], tables, options["correlations"], who)
     made = labelled(definition, {"status": np.full(definition.grid.size, NOT_RUN, np.int8)}, "study.solve")
     made.variables["status"].attrs |= status_attributes()
-    contacts, _ = with_coordinates(dataset_in_units(definition, in_units(definition, made.settings_apart())), call)
+    contacts, _ = with_coordinates(
+        dataset_in_units(definition, in_units(definition, made.settings_as_attributes())), call
+    )
     return contacts
 
 
@@ -223,7 +225,7 @@ def solve_one(stresses: str = "", /, *, same_piece: bool = False, **parameters: 
 
 def _solved_parts(definition: Definition, workers: int | None, stream: TextIO | None, begun: float) -> DatasetParts:
     arrays = solved(definition, workers, stream, begun)
-    return in_units(definition, parts(definition, arrays, "study.solve").settings_apart())
+    return in_units(definition, parts(definition, arrays, "study.solve").settings_as_attributes())
 
 
 def signature() -> inspect.Signature:

@@ -109,7 +109,7 @@ def solved(want: Wanted, t: np.ndarray, stream: TextIO | None = None) -> tuple[x
     blocks = np.array_split(index, -(-len(index) // BLOCK)) if len(index) else []
     _each(f"solving {counted(len(index), 'contact')}", blocks, lambda i: solve_into(arrays, definition, i), stream)
     results = parts(definition, arrays, "study.design")
-    contacts, scene = dataset_of(definition, results.settings_apart()), definition.scene
+    contacts, scene = dataset_of(definition, results.settings_as_attributes()), definition.scene
     if want.target not in QUANTITIES:
         unknown = np.full(t.shape, np.nan)
         return contacts, Change(unknown, unknown, {})

@@ -1,7 +1,7 @@
 """The command line, `roughcoat COMMAND` or `python -m roughcoat COMMAND`: that of `study`."""
 
-from study.__main__ import command, own_modules_first
+from study.__main__ import command, search_working_folder_last
 
 if __name__ == "__main__":
-    own_modules_first()
+    search_working_folder_last()
     command()

@@ -1,12 +1,11 @@
 """Parameter studies of rough coated contacts: labelled grids, results that resume, figures and tables.
 
-`solve` and `load` are the entrance, `summary` says in words what `solve` found, `plot` draws it; `roughcoat`, or
-`python -m study`, is the same from a shell. `import roughcoat as rc` gives all that this package gives, beside a
-study.py in the working folder too. `__all__` says what is public; docs/python.md has a line for each. Names are
-imported when they are first used, so that `roughcoat --help` and complaints about a study file answer at once.
+Start with `solve` and `load`; `summary` puts the results of `solve` into words, and `plot` draws them. `roughcoat`, or
+`python -m study`, does the same from a shell. `import roughcoat as rc` has the same names as this package, even if the
+working folder has a study.py. `__all__` lists the public names; docs/python.md has a line for each. A name is imported
+when it is first used, so that `roughcoat --help` and complaints about a study file appear at once.
 
-After `import study` the names `solver` and `roughcoat` are those of roughcoat's packages, whatever a user has in the
-working folder.
+After `import study` the names `solver` and `roughcoat` mean roughcoat's packages, whatever the working folder has.
 """
 
 import os
@@ -123,11 +122,11 @@ _MODULES = {
 _BESIDE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # the folder, or zip file, of both packages
 
 
-class _OwnPackages:
-    """A finder of modules that takes `solver` from beside this package. Python asks it first: otherwise a solver.py, or
-    a folder solver, in the working folder would be imported, and run, in its place. So it is with `roughcoat`.
+class _OurPackages:
+    """A finder of modules that takes `solver` and `roughcoat` from the folder that has this package. Python asks it
+    first: otherwise a solver.py, or a folder solver, in the working folder would be imported, and run, instead.
 
-    And `study.studies`, the book, in a clone, where it lies there too: a wheel has it in this package."""
+    In a clone it takes `study.studies`, the book, from the same folder; in a wheel the book lies in this package."""
 
     @staticmethod
     def find_spec(name: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
@@ -135,26 +134,27 @@ class _OwnPackages:
         return PathFinder.find_spec(name, [_BESIDE]) if in_a_clone or name in ("roughcoat", "solver") else None
 
 
-def _take_own_solver() -> None:
-    """Let `import solver` mean roughcoat's. Raises ImportError if the program has imported another one before."""
-    own, other = _OwnPackages.find_spec("solver"), sys.modules.get("solver")
-    if own and other:
-        folders = list(getattr(other, "__path__", ()))  # none of a module that is a file
-        if [os.path.realpath(folder) for folder in folders] != [os.path.realpath(os.path.dirname(own.origin or ""))]:
+def _take_our_solver() -> None:
+    """Let `import solver` find roughcoat's solver. Raises ImportError if the program has imported another one
+    before."""
+    ours, other = _OurPackages.find_spec("solver"), sys.modules.get("solver")
+    if ours and other:
+        folders = list(getattr(other, "__path__", ()))  # a module that is a file has none
+        if [os.path.realpath(folder) for folder in folders] != [os.path.realpath(os.path.dirname(ours.origin or ""))]:
             file = getattr(other, "__file__", None) or folders[0]
             wrong = "has been imported as solver, which is a package of roughcoat as well: give it another name"
             raise ImportError(f"{file}: {wrong}", name="solver", path=file)
-    sys.meta_path.insert(0, _OwnPackages)
+    sys.meta_path.insert(0, _OurPackages)
 
 
 def _show_in_notebook() -> None:
-    """A notebook that runs shows a contact with a small picture of its pressure."""
+    """Let a running notebook show a contact with a small picture of its pressure."""
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
-    if hasattr(shell, "kernel"):  # that of IPython in a terminal has none
+    if hasattr(shell, "kernel"):  # the shell of IPython in a terminal has none
         import_module(".specimen.pictures", __name__).show_in(shell)
 
 
-_take_own_solver()
+_take_our_solver()
 _show_in_notebook()
 
 

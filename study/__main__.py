@@ -1,12 +1,11 @@
-"""Command line of roughcoat: `roughcoat COMMAND`, or `python -m study COMMAND`, which is the same; one of
+"""Command line of roughcoat: `roughcoat COMMAND`, or `python -m study COMMAND`, which does the same. The commands are
 
 point | fit | design | explore | scan | materials | docs | doctor | new | show | list | check | run | retry | status |
 verify | clean | plot | table | tradeoff.
 
 Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. A command goes on
-when its terminal is gone or its reader has left. That its answer finds a full disk is an error, 1, only of the commands
-that do nothing but answer (point, fit, design, scan, materials, docs, doctor, show, list, check, status,
---dry-run).
+when its terminal is gone or its reader has left. If the disk is too full for what a command prints, it ends with 1 only
+if it does nothing but print (point, fit, design, scan, materials, docs, doctor, show, list, check, status, --dry-run).
 """
 
 import argparse
@@ -23,8 +22,8 @@ from .commands.arguments import Parser, Version, add_columns, add_curves, add_en
 from .commands.signals import INTERRUPTED
 from .terminal import empty_buffers, interrupt, memory_message, open_closed_streams, program, say, short_of_memory
 
-# The solver computes on one BLAS thread. A BLAS library that reads this before numpy is imported does not start others;
-# without it each worker process would have a thread for each processor.
+# The solver computes on one BLAS thread. BLAS libraries read these variables when numpy is imported; otherwise they
+# would start a thread for each processor in every worker process.
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
@@ -96,8 +95,10 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("--dry-run", action="store_true", help="say what it would cost, compute a sample only")
     sub = command("computing", "retry", "compute cases of some status again", "FILE")
     add_engine(sub)
-    again = sub.add_argument("--status", required=True, action="append", metavar="NAME", help="such as iteration_limit")
-    again.completer = partial(proposed, "--status")
+    status_option = sub.add_argument(
+        "--status", required=True, action="append", metavar="NAME", help="such as iteration_limit"
+    )
+    status_option.completer = partial(proposed, "--status")
     sub = command("computing", "status", "say what has been computed", "FILE")
     sub.add_argument("--yes", action="store_true", help="count however many cases there are")
     text = "compare results with their digest: exit code 1 for what is damaged or has none"
@@ -148,7 +149,7 @@ def main(arguments=None) -> int:
 
 
 def complete(commands: argparse.ArgumentParser) -> None:
-    """If a shell asks for completions: answer it with argcomplete (an extra), if that is installed, and end."""
+    """If a shell asks for completions, answer with argcomplete (an extra), if it is installed, and end."""
     if "_ARGCOMPLETE" in os.environ:
         with suppress(ImportError):
             import argcomplete
@@ -157,19 +158,19 @@ def complete(commands: argparse.ArgumentParser) -> None:
 
 
 def perform(options, kept: str) -> int:
-    """Run a command on each of its items, whatever is wrong with the others. Returns the largest exit code."""
+    """Run a command on each of its items, even if it fails on others. Returns the largest exit code."""
     module, name = options.action
     if wrong := wrong_core() if module not in ("lookup", "beginning", "checking") else "":
         say(wrong, sys.stderr)
         return 2
     commands = import_module(f".commands.{module}", __package__)
     items = commands.items(options) if hasattr(commands, "items") else options.items
-    signals.state.working = True  # before, during imports, a signal ends the process at once
+    signals.state.working = True  # until here, during imports, a signal ends the process at once
     return max((_attempt(getattr(commands, name), options, item, kept) for item in items), default=0)
 
 
 def wrong_core() -> str:
-    """A message if the environment chooses a compiled core that there is not (docs/extending.md); else ""."""
+    """A message if the environment chooses a compiled core that does not exist (docs/extending.md); otherwise ""."""
     if os.environ.get("ROUGHCOAT_CORE"):
         from solver.compiled.library import core
 
@@ -187,7 +188,7 @@ def _attempt(act, options, item, kept: str) -> int:
         return act(options, item)
     except StudyError as error:
         text, code = str(error), error.code
-    except (OSError, MemoryError, RuntimeError) as error:  # the disk is full, say, or the scheduler is gone
+    except (OSError, MemoryError, RuntimeError) as error:  # such as a full disk, or a scheduler that is gone
         what = item if isinstance(item, str) else options.command
         if short_of_memory(error):
             text, code = f"{what}: {memory_message(error)}{kept}", 1
@@ -195,7 +196,7 @@ def _attempt(act, options, item, kept: str) -> int:
             text, code = f"{what}: {error}{kept}", 1
         else:
             raise
-    except SystemExit as ended:  # of what is not ours, such as the function of a figure: it is no end of the command
+    except SystemExit as ended:  # foreign code, such as the function of a figure, must not end the command
         text, code = f"{item}: something that it needs calls sys.exit({ended})", 1
     if interrupt.came:  # a library has turned the interrupt into this error
         raise KeyboardInterrupt
@@ -203,8 +204,8 @@ def _attempt(act, options, item, kept: str) -> int:
     return code
 
 
-def own_modules_first() -> None:
-    """Look for modules in the working folder last, where `python -m` looks first: a user may have a dask.py there."""
+def search_working_folder_last() -> None:
+    """Look for modules in the working folder last. `python -m` looks there first, where a user may have a dask.py."""
     with suppress(FileNotFoundError):  # the working folder has been deleted: nothing is in it
         first = Path(sys.path[0]).resolve()
         if not sys.flags.safe_path and first == Path.cwd() != Path(__file__).resolve().parents[1]:
@@ -213,7 +214,7 @@ def own_modules_first() -> None:
 
 def command() -> None:
     """Run `main` as the process of a command line, which ends with its exit code."""
-    os.environ["MPLBACKEND"] = "agg"  # figures are files; a notebook that calls this may have set one of its own
+    os.environ["MPLBACKEND"] = "agg"  # figures are files; a notebook that calls this may have set another backend
     open_closed_streams()
     signals.listen()
     code = main()
@@ -223,5 +224,5 @@ def command() -> None:
 
 
 if __name__ == "__main__":
-    own_modules_first()
+    search_working_folder_last()
     command()

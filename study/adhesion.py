@@ -1,4 +1,4 @@
-"""What roughness leaves of the work of adhesion of two surfaces in full contact."""
+"""The work of adhesion that remains when two rough surfaces are in full contact."""
 
 from typing import Any
 
@@ -19,24 +19,24 @@ _BLOCK = 1 << 16
 
 
 def effective_work(scan: Scan, *, form: Any = "plane", periodic: bool = False, **parameters: Any) -> float:
-    """The work of adhesion that is left when a rough surface is pressed flat, by its elastic energy (Persson):
+    """The work of adhesion less the elastic energy of a rough surface that is pressed flat (Persson):
 
-        w_eff = w - (E/4) ∫ q C(q)/L(qh) d²q,
+        w_eff = w - (E/4) ∫ q C(q)/L(qh) d²q.
 
-    with the spectrum C of the heights of a map, and E and L of what touches, of a layer or stack and the punch. It says
-    what `w_adhesion` of a smooth punch stands for a rough one whose asperities are flat. Waves shorter than two steps
-    of the scan are not in it: it is the most that may be left.
+    C is the spectrum of the heights of a map, E and L belong to the layer or stack together with the punch. A smooth
+    punch with this `w_adhesion` stands for a rough one whose asperities are pressed flat. The scan has no waves shorter
+    than two of its steps: w_eff is an upper bound.
 
     Parameters
     ----------
-    scan : a map of heights, of `roughness.read` or `roughness.height_map`; of punch or surface, or of their sum
-    form : what is taken off the heights first, as of `roughness.measure`
+    scan : a map of heights from `roughness.read` or `roughness.height_map`: the punch, the surface or their sum
+    form : the form to subtract from the heights first, as in `roughness.measure`
     periodic : whether the map is one period of the surface. If not, a Hann window hides its borders
-    parameters : those of `study.solve` with units: w_adhesion, the moduli, and the layer. `R` does not count
+    parameters : those of `study.solve` with units: w_adhesion, the moduli, and the layer. `R` has no effect
 
     Returns
     -------
-    float : in J/m². 0 and below: full contact costs more than it gives
+    float : in J/m². If it is not above 0, full contact costs at least the energy that it gains
 
     Raises
     ------
@@ -58,7 +58,7 @@ def effective_work(scan: Scan, *, form: Any = "plane", periodic: bool = False, *
         raise StudyError([f"effective_work: {scan.name} has missing points: crop it, or fill them"])
     if not isinstance(periodic, (bool, np.bool_)):
         raise StudyError([f"effective_work: periodic = {periodic!r}: must be True or False"])
-    scene, problem = _asked(parameters)
+    scene, problem = _scene_and_problem(parameters)
     q, power = _spectrum(scan, form, periodic)
     body = BODIES[str(problem.base[0])](problem)
     yields = np.ones(len(q))
@@ -69,15 +69,15 @@ def effective_work(scan: Scan, *, form: Any = "plane", periodic: bool = False, *
     return float(scene.values["w_adhesion"]) - energy
 
 
-def _asked(parameters: dict[str, Any]) -> tuple[Any, Problem]:
-    """The scene of a call and its numbers for the solver."""
-    usual = {"R": "1 um", "P": "0 N", "micro": "smooth"}
-    inputs = usual | {name: value for name, value in parameters.items() if value is not None}
+def _scene_and_problem(parameters: dict[str, Any]) -> tuple[Any, Problem]:
+    """The scene of the call's parameters, and their numbers for the solver."""
+    defaults = {"R": "1 um", "P": "0 N", "micro": "smooth"}
+    inputs = defaults | {name: value for name, value in parameters.items() if value is not None}
     if "w_adhesion" not in inputs:
         raise StudyError(["effective_work: give w_adhesion"])
     definition = from_call(inputs, [], False, {"output": {"profiles": False}}, where="effective_work")
     scene = definition.scene
-    assert scene is not None  # R has a unit, so all have
+    assert scene is not None  # R has a unit, so all inputs have one
     if definition.grid.sizes:
         several = ", ".join(definition.grid.sizes)
         raise StudyError([f"effective_work: {several} has several values: one surface at a time"])

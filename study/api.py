@@ -33,7 +33,7 @@ class Study:
     ----------
     definition : what the study computes
     results : folder of the results
-    home : the folder from which `results` is, if it is relative; None: the working folder of each moment
+    home : the folder to which `results` is relative, if it is; None: the working folder at the time of the call
     """
 
     definition: Definition
@@ -49,7 +49,7 @@ class Study:
 
     @property
     def _folder(self) -> Path:
-        """Folder of the results, short while the program is where it was when the study was loaded."""
+        """Folder of the results: a short path as long as the working folder is the one where the study was loaded."""
         return self.results if self.home in (None, _working_folder()) else self.home / self.results
 
     def run(self, **options: Any) -> Report:
@@ -57,7 +57,7 @@ class Study:
 
         Parameters
         ----------
-        options : workers, scheduler, part, retry, fail_fast, force, yes, progress: as of `study.work.plan.Order`
+        options : workers, scheduler, part, retry, fail_fast, force, yes, progress: see `study.work.plan.Order`
 
         Returns
         -------
@@ -65,8 +65,8 @@ class Study:
 
         Raises
         ------
-        StudyError : an option is wrong, or the results file that is there must not be replaced
-        OSError : something cannot be written. Blocks that are finished are kept, and the next run goes on from there
+        StudyError : an option is wrong, or there is a results file that must not be replaced
+        OSError : something cannot be written. Finished blocks are kept, and the next run goes on from there
 
         Examples
         --------
@@ -75,14 +75,14 @@ class Study:
         return run(self.definition, self._folder, command=command_line(), **options)
 
     def dry_run(self, workers: int | None = None, yes: bool = False, force: bool = False) -> Estimate:
-        """What `run` would cost, how many cases it would find computed, and with which error it would end, if any.
+        """The cost of `run`, the number of cases that it would find computed, and the error in which it would end.
 
         Computes a sample, writes nothing.
 
         Parameters
         ----------
-        workers, force : as of `run`
-        yes : changes nothing; it is there for programs that give it
+        workers, force : as for `run`
+        yes : has no effect; it exists for programs that pass it
 
         Returns
         -------
@@ -91,39 +91,38 @@ class Study:
         return dry_run(self.definition, self._folder, workers=workers, force=force)
 
     def status(self, yes: bool = False) -> dict:
-        """What has been computed.
+        """The state of the results, and how many cases have been computed.
 
         The state is "done", "outdated", "partial" or "new". For a results file that cannot be used it is "damaged",
-        "foreign" (not written by roughcoat) or "unreadable", and `reason` says what is wrong; so it does of a large
-        study if a part holds other cases than its name says, which then count as missing. A file of up to 200 MB in
-        memory is compared with its digest; `verify` compares a larger one too. Cases count as computed if they are in
-        blocks. With spreads a case counts as often as it is solved; of complete results the statuses are counted once
-        for each.
+        "foreign" (not written by roughcoat) or "unreadable", and `reason` says what is wrong. `reason` also tells if a
+        part of a large study does not hold the cases in its name; these cases count as missing. A file of up to 200 MB
+        in memory is compared with its digest; `verify` compares larger files too. Cases in blocks count as computed.
+        With spreads a case counts as often as it is solved, but complete results count the status of each case once.
 
         Parameters
         ----------
-        yes : changes nothing; it is there for programs that give it
+        yes : has no effect; it exists for programs that pass it
 
         Returns
         -------
         dict : "state", "cases", "counts" (status -> number of cases), "path" of the results, "reason"
         """
-        with suppress(FileNotFoundError):  # somebody removed the results meanwhile: look again
+        with suppress(FileNotFoundError):  # somebody removed the results meanwhile: look once more
             return glance(self._store).summary()
         return glance(self._store).summary()
 
     def verify(self) -> Condition:
-        """Compare all of the results file with its digest, and with the study: that it has these cases.
+        """Compare the whole results file with its digest, and its cases with those of the study.
 
         Returns
         -------
-        Condition : its `kind` is "sound" where nothing is wrong, else `reason` says what is: `study.files.examine`.
+        Condition : its `kind` is "sound" if nothing is wrong, otherwise `reason` says what is: `study.files.examine`.
             It is "outdated" for undamaged results of another definition
         """
         return verified(self._store).verdict()
 
     def clean(self) -> list[str]:
-        """Remove blocks that hold no case of the study as it is. Never touches results.
+        """Remove blocks that hold no case of the study as it is now. Never touches results.
 
         Returns
         -------
@@ -139,7 +138,8 @@ class Study:
 
         Parameters
         ----------
-        partial : give the blocks computed so far instead, with status 127 (not run) for the rest
+        partial : open the blocks computed so far if the results are incomplete; the other cases have status 127, not
+            run
 
         Returns
         -------
@@ -147,9 +147,9 @@ class Study:
 
         Raises
         ------
-        StudyError : there are none, none of this definition, or they are damaged
+        StudyError : there are no results of this definition, or they are damaged
         """
-        grid = self.definition.grid  # its laws and tables are those of the results
+        grid = self.definition.grid  # it has the laws and tables of the results
         values = {name: array for name, (_, array) in grid.values.items()}
         state = glance(self._store)
         partly = partial and state.is_one and not state.is_complete
@@ -160,7 +160,7 @@ class Study:
 
         Parameters
         ----------
-        x, y, hue, where : as of `study.plot`; so are colour, scale and limits
+        x, y, hue, where : as for `study.plot`, with colour, scale and limits
 
         Returns
         -------
@@ -168,7 +168,7 @@ class Study:
 
         Raises
         ------
-        StudyError : there are no results, or what `study.plot` raises
+        StudyError : there are no results, or `study.plot` raises it
         """
         from .figures.plots import plot
 
@@ -180,8 +180,8 @@ def load(path: str | os.PathLike, results: str | os.PathLike = "results") -> Stu
 
     Parameters
     ----------
-    path : of the file, or the name of a study in studies/ or of one that comes with roughcoat, such as "dlc_on_steel"
-    results : folder of the results, of the working folder as it is now, wherever the program goes later
+    path : path of the file, or the name of a study in studies/ or of one that comes with roughcoat: "dlc_on_steel"
+    results : folder of the results, relative to the working folder of this call, even if the program changes it later
 
     Returns
     -------
@@ -189,7 +189,7 @@ def load(path: str | os.PathLike, results: str | os.PathLike = "results") -> Stu
 
     Raises
     ------
-    StudyError : the file is not there, or has mistakes: all of them, a line each
+    StudyError : the file does not exist, or has mistakes: a line for each
 
     Examples
     --------
@@ -200,7 +200,7 @@ def load(path: str | os.PathLike, results: str | os.PathLike = "results") -> Stu
 
 
 def _working_folder() -> Path | None:
-    """None if it has been deleted."""
+    """The working folder; None if it has been deleted."""
     try:
         return Path.cwd()
     except FileNotFoundError:

@@ -1,6 +1,7 @@
-"""All figures and tables by name: what each needs, whether it is up to date, and the files that it is written to.
+"""All figures and tables by name: the studies that each needs, whether it is up to date, and its files.
 
-Those beside studies are run when they are asked for; a list of names runs none (`study.figures.figure_files`).
+Files of figures beside studies are run when one of their figures is needed; a list of the names runs none
+(`study.figures.figure_files`).
 """
 
 import io
@@ -22,17 +23,17 @@ from .inputs.definition import StudyError
 __all__ = ["FIGURES", "TABLES", "captions", "compose", "draw", "tabulate"]
 Folder = str | os.PathLike
 ENDINGS = {"figure": ("csv", "pdf", "png"), "table": ("txt", "csv", "tex"), "drawing": ("svg", "pdf", "png")}
-CAPTIONS = "captions"  # name among the figures of the file that holds all captions
+CAPTIONS = "captions"  # counts as a figure: the file that holds all captions
 NOT_THIN = (
     '"Layer not thin" above a figure: the largest of the errors of a, D, p(0), pmax and Ar/An of the thin-layer model '
     "is above 10 %. That of the quantity shown may be smaller; the figures on the exact layer show it."
 )
-LETTERED = 8  # most panels that get letters; more stand in rows and columns with headings
-LETTERS = 21  # letters on an inch of the line above a figure that states its parameters
+LETTERED = 8  # at most so many panels get letters; more of them have headings of rows and columns instead
+LETTERS = 21  # letters per inch in the line of parameters above a figure
 
 
 def usual(kind: str) -> list[str]:
-    """What "all" stands for: the figures ("figure"), or tables ("table"), that need no study that takes minutes."""
+    """The names that "all" stands for: figures ("figure") or tables ("table") except those that need a long study."""
     listed = sorted(names(kind, long=False))
     return [*listed, CAPTIONS] if kind == "figure" else listed
 
@@ -43,12 +44,12 @@ def needed(kind: str, name: str) -> tuple[str, ...]:
 
 
 def what(kind: str, name: str) -> str:
-    """How the record of a folder calls it: "figure fig03", "table validity"."""
+    """The name of a figure or table in the record of a folder: "figure fig03", "table validity"."""
     return f"{kind} {stem(name)}"
 
 
 def stem(name: str) -> str:
-    """The name of its files: that of FOLDER/NAME is NAME."""
+    """The name of the files of a figure or table: NAME for FOLDER/NAME."""
     return name.rpartition("/")[2]
 
 
@@ -58,15 +59,15 @@ def endings(kind: str, name: str) -> tuple[str, ...]:
 
 
 def digest(kind: str, name: str, results) -> str:
-    """The digest of all that the files of a figure or table follow from: results, code, libraries."""
-    made = entry(kind, name)
-    paths = [path for study in made.studies if (path := results_of(Path(results), study)).exists()]
-    copied = list(copies(made)) if isinstance(made, Drawing) else []
+    """The digest of all that decides the files of a figure or table: results, code, libraries."""
+    recipe = entry(kind, name)
+    paths = [path for study in recipe.studies if (path := results_of(Path(results), study)).exists()]
+    copied = list(copies(recipe)) if isinstance(recipe, Drawing) else []
     return record.digest_of(what(kind, name), endings(kind, name), paths, [*code_of(kind, name), *copied])
 
 
 def outdated(kind: str, name: str, results, folder) -> bool:
-    """Whether a file of a figure or table is missing, has changed, or was not made by `renewed` of the same digest."""
+    """Whether a file of a figure or table is missing or has changed, or `renewed` made it with another digest."""
     if (kind, name) == ("figure", CAPTIONS):
         return True  # it depends on all results, so it is written each time
     files = [f"{stem(name)}.{ending}" for ending in endings(kind, name)]
@@ -74,29 +75,29 @@ def outdated(kind: str, name: str, results, folder) -> bool:
 
 
 def renewed(kind: str, name: str, results="results", folder="figures") -> list[Path]:
-    """Write a figure or table, as `draw` and `tabulate` do, and put it into the record of the folder."""
+    """Write a figure or table, like `draw` and `tabulate`, and enter it in the record of the folder."""
     if (kind, name) == ("figure", CAPTIONS):
         return draw(name, results, folder)
-    made_of, paths = written(kind, name, results, folder)
-    return noted(kind, name, folder, made_of, paths)
+    digest_of_sources, paths = written(kind, name, results, folder)
+    return noted(kind, name, folder, digest_of_sources, paths)
 
 
 def written(kind: str, name: str, results: Folder, folder: Folder, bare: bool = False) -> tuple[str, list[Path]]:
-    """Write a figure or table; the digest of what its files follow from, and the files."""
-    made_of = digest(kind, name, results)  # before: results that change meanwhile make it outdated
+    """Write a figure or table. Returns its `digest` and its files."""
+    digest_of_sources = digest(kind, name, results)  # taken first: if results change meanwhile, the figure is outdated
     if bare:
-        return made_of, draw(name, results, folder, bare=True)
-    return made_of, (tabulate if kind == "table" else draw)(name, results, folder)
+        return digest_of_sources, draw(name, results, folder, bare=True)
+    return digest_of_sources, (tabulate if kind == "table" else draw)(name, results, folder)
 
 
-def noted(kind: str, name: str, folder: Folder, made_of: str, paths: list[Path]) -> list[Path]:
-    """Put what `written` gives into the record of the folder; returns the paths."""
-    record.note(Path(folder), what(kind, name), made_of, paths)
+def noted(kind: str, name: str, folder: Folder, digest_of_sources: str, paths: list[Path]) -> list[Path]:
+    """Enter a digest and files, as `written` returns them, in the record of the folder. Returns the files."""
+    record.note(Path(folder), what(kind, name), digest_of_sources, paths)
     return paths
 
 
 def compose(name: str, results: Folder = "results") -> tuple[Figure, Columns, str]:
-    """A figure as it will be written.
+    """A figure as `draw` writes it.
 
     Parameters
     ----------
@@ -139,7 +140,7 @@ def draw(name: str, results: Folder = "results", folder: Folder = "figures", bar
     ----------
     name : of the figure
     results, folder : folders of the results, and of the files that are written
-    bare : without the parameters above the figure, which captions.md has
+    bare : whether to leave out the parameters above the figure; captions.md has them
 
     Returns
     -------
@@ -147,7 +148,7 @@ def draw(name: str, results: Folder = "results", folder: Folder = "figures", bar
 
     Raises
     ------
-    StudyError : as `compose`
+    StudyError : as for `compose`
     """
     if name == CAPTIONS:
         return [write(Path(folder) / "captions.md", captions(results))]
@@ -159,7 +160,7 @@ def draw(name: str, results: Folder = "results", folder: Folder = "figures", bar
 
 
 def without_parameters(figure: Figure) -> Figure:
-    """The figure without what stands above it."""
+    """The figure without the line of parameters above it."""
     figure.suptitle("").set_in_layout(False)
     return figure
 
@@ -170,7 +171,7 @@ def copies(drawing: Drawing) -> list[Path]:
 
 
 def captions(results: Folder = "results") -> str:
-    """A paragraph for each figure whose studies have results: what it shows, and the parameters of its studies.
+    """A paragraph for each figure whose studies have results: its caption, and the parameters of its studies.
 
     Parameters
     ----------
@@ -191,14 +192,16 @@ def captions(results: Folder = "results") -> str:
 
 
 def save(stem: Path, figure: Figure, columns: Columns, title: str) -> list[Path]:
-    """Write what `compose` gives as STEM.csv, .pdf and .png."""
+    """Write a figure that `compose` returned as STEM.csv, .pdf and .png."""
     rows = zip(*(np.asarray(column).tolist() for column in columns.values()), strict=True)
     contents: dict[str, str | bytes] = {"csv": csv_text(columns, rows)}
-    for ending, dated in (("png", {}), ("pdf", {"CreationDate": None})):
+    for ending, metadata in (("png", {}), ("pdf", {"CreationDate": None})):
         page = io.BytesIO()
         with style():
-            figure.savefig(page, format=ending, metadata={"Title": title} | dated)
-            figure.set_layout_engine(None)  # the second keeps the layout, which takes long to find for many axes
+            figure.savefig(page, format=ending, metadata={"Title": title} | metadata)
+            figure.set_layout_engine(
+                None
+            )  # the second file keeps the layout of the first: it takes long to find for many axes
         contents[ending] = page.getvalue()
     return [write(stem.with_suffix(f".{ending}"), contents[ending]) for ending in ENDINGS["figure"]]
 

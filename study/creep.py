@@ -1,4 +1,4 @@
-"""The load on a body that creeps, as the load on an elastic body with the same contact."""
+"""The load on a creeping body, replaced by the load on an elastic body with the same contact."""
 
 from typing import Any
 
@@ -7,34 +7,34 @@ import numpy as np
 from .inputs.definition import StudyError
 from .terminal import shown
 
-#: Below this step over retardation time the difference of two near numbers is replaced by its series.
+#: If a time step over the retardation time is shorter, a series replaces the difference of two nearly equal numbers.
 _SHORT = 1e-3
 
 
 def effective_load(t: Any, P: Any, prony: dict[str, Any]) -> np.ndarray:
-    """The load P̃ under which an elastic body has the contact that a body that creeps has at the time t:
+    """The load P̃ that gives an elastic body the contact of a creeping body at the time t:
 
         P̃(t) = E0 ∫ J(t - s) dP(s),   E0 J(t) = J0 + Σ J_i (1 - exp(-t/tau_i)).
 
-    J is the creep compliance of all that deforms, E0 the modulus that the elastic contact is then computed with: of a
-    layer on a rigid base, or of a half-space, under a rigid punch, with a Poisson's ratio that does not change. Before
-    t[0] there is no load: P[0] comes at t[0] at once. Between the times the load is linear; two equal times are a step.
+    J is the creep compliance of all that deforms: a layer on a rigid base, or a half-space, under a rigid punch, with a
+    Poisson's ratio that does not change. E0 is the modulus for the computation of the elastic contact. The load is 0
+    before t[0], where it jumps to P[0]. Between the times it is linear; two equal times are a step.
 
     Parameters
     ----------
-    t : array (times,), in any unit; it never falls
-    P : array (times,), the load in any unit, from 0 on; it never falls, since radius and load no longer belong
-        together when the contact shrinks
+    t : array (times,), in any unit; never falls
+    P : array (times,), the load in any unit, at least 0; never falls, since an effective load does not exist for a
+        contact that shrinks
     prony : "J0", a number >= 0, and "J" and "tau", numbers or arrays (terms,), >= 0 and > 0, tau in the unit of t;
         J0 alone is an elastic body
 
     Returns
     -------
-    numpy.ndarray : P̃ (times,), in the unit of P. `study.solve(P=P̃, ...)` has the radii and depths
+    numpy.ndarray : P̃ (times,), in the unit of P. `study.solve(P=P̃, ...)` gives the radii and depths
 
     Raises
     ------
-    StudyError : a ValueError. A load or time that falls, or input that cannot be used
+    StudyError : a ValueError. The load or time falls, or an input cannot be used
 
     Examples
     --------
@@ -54,7 +54,7 @@ def effective_load(t: Any, P: Any, prony: dict[str, Any]) -> np.ndarray:
         wanted = "only a load that never falls, from 0 on, has an effective load; cut the curve there"
         raise _wrong(f"P falls at t = {times[place]:g}: {wanted}")
     J0, J, tau = _terms(prony)
-    delayed = np.zeros((len(times), len(tau)))  # of each term, ∫ (1 - exp(-(t - s)/tau)) dP
+    delayed = np.zeros((len(times), len(tau)))  # for each term ∫ (1 - exp(-(t - s)/tau)) dP
     for i in range(1, len(times)):
         x = (times[i] - times[i - 1]) / tau
         delayed[i] = delayed[i - 1] - (loads[i - 1] - delayed[i - 1]) * np.expm1(-x) + steps[i] * _share(x)
@@ -62,7 +62,8 @@ def effective_load(t: Any, P: Any, prony: dict[str, Any]) -> np.ndarray:
 
 
 def _share(x: np.ndarray) -> np.ndarray:
-    """1 - (1 - exp(-x))/x: the part of a rise that has come when the rise ends; it takes x retardation times."""
+    """1 - (1 - exp(-x))/x: the share of a delayed rise that has come at the end of a load ramp over x retardation
+    times."""
     with np.errstate(invalid="ignore"):
         return np.where(x < _SHORT, x / 2 - x**2 / 6 + x**3 / 24, 1 + np.expm1(-x) / np.where(x > 0, x, 1.0))
 

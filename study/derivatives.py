@@ -23,7 +23,7 @@ from .inputs.vocabulary import VOCABULARY, bodies_of
 
 #: Results that have sensitivities.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
-#: Inputs are moved by this part of their spread. The change of a formula is then linear to 1e-6.
+#: Inputs are moved by this share of their spread. The change of a formula is then linear to 1e-6.
 _STEP = 1e-3
 _COMMENT = "d ln result/d ln input; by nu1, nu2 and nu_punch d ln result/d ratio"
 
@@ -31,22 +31,22 @@ _COMMENT = "d ln result/d ln input; by nu1, nu2 and nu_punch d ln result/d ratio
 def sensitivities(contact: xr.Dataset) -> xr.Dataset:
     """Derivatives of results by their inputs: d ln result/d ln input; by a Poisson ratio d ln result/d ratio.
 
-    The cases are solved again from the inputs that the dataset has. Held fixed are all other inputs: the one of P, a
-    and D that is given, and with it B and beta that were fitted, and the model that `base = "auto"` took.
+    The cases are solved again from the inputs in the dataset. Each derivative holds all other inputs fixed: the given
+    one of P, a and D, fitted values of B and beta, and the model that `base = "auto"` took.
 
     Parameters
     ----------
-    contact : results of `study.solve` or of a results file, in SI units or dimensionless; a selected part too
+    contact : results of `study.solve` or of a results file, in SI units or dimensionless, or a part of them
 
     Returns
     -------
-    xarray.Dataset : `a_sensitivity`, and so on of P, D, p0, p_max, Ar_An and dP_dD, over the dimensions of the contact
-        and `input`, the names of its inputs that are numbers; NaN of cases that have not converged. 0 where an input
-        does not act or is 0
+    xarray.Dataset : `a_sensitivity`, and likewise for P, D, p0, p_max, Ar_An and dP_dD, over the dimensions of the
+        contact and `input`, the names of its inputs that are numbers. NaN for cases that have not converged; 0 if an
+        input does not act or is 0
 
     Raises
     ------
-    StudyError : a dataset that is no result of `study.solve`, has lost an input or SI units, or has an unknown law
+    StudyError : the dataset is no result of `study.solve`, has lost an input or SI units, or has an unknown law
 
     Examples
     --------
@@ -68,9 +68,8 @@ def sensitivities(contact: xr.Dataset) -> xr.Dataset:
 
 
 def _by_inputs(contacts: Contacts, x: Any) -> tuple[dict, dict]:
-    """Result, A0 too -> input -> sensitivity (B,); and input -> d p/d ln input (B, m) at the radii x, in the unit of p.
-
-    NaN in cases that have not converged.
+    """Two tables: result, also A0 -> input -> sensitivity (B,); and input -> d p/d ln input (B, m) at the radii x, in
+    the unit of p. NaN for cases that have not converged.
     """
     dataset, problem, numbers, scene, dims, shape = contacts
     used = [name for name in problem.known.table(numbers_of(numbers)) if name in numbers and _counts(problem, name)]
@@ -83,7 +82,7 @@ def _by_inputs(contacts: Contacts, x: Any) -> tuple[dict, dict]:
         logs = {name: _by_si(by_input, of_si, VOCABULARY[name].powers) for name, by_input in logs.items()}
         p = _by_si(p, of_si, VOCABULARY["p"].powers, solution.p)
         p = {name: values * of_all_cases(scene.unit, dims, shape)[:, None] for name, values in p.items()}
-    # those of the control are exact; a load or depth of 0 has no logarithm
+    # sensitivities of the control are exact; a load or depth of 0 has no logarithm
     control, good = problem.control, (solution.status == 0) & (dataset["status"].values.ravel() == 0)
     sized = np.where(problem.value == 0, np.nan, 0.0)
     logs[control] = {name: 0 * values + (name == control) + sized for name, values in logs["a"].items()}
@@ -95,8 +94,8 @@ def _by_inputs(contacts: Contacts, x: Any) -> tuple[dict, dict]:
 def spread_of_formula(case: xr.Dataset, formula: Callable[[xr.Dataset], Any]) -> float:
     """The standard deviation of a formula of one contact whose inputs have independent spreads.
 
-    The formula is called with the contact moved along its derivatives: results, profile p and inputs. NaN if spreads
-    are correlated, or if the case cannot be solved again.
+    The formula is evaluated for contacts whose results, profile p and inputs are moved along their derivatives. NaN if
+    spreads are correlated, or if the case cannot be solved again.
     """
     if correlated(case):
         return np.nan
@@ -124,7 +123,7 @@ def spread_of_formula(case: xr.Dataset, formula: Callable[[xr.Dataset], Any]) ->
 
 
 def relative_spreads(case: xr.Dataset, names: Iterable[str]) -> dict[str, float]:
-    """Input of one contact with a spread -> spread over value; of a Poisson ratio the spread."""
+    """Input of one contact that has a spread -> spread over value, but for a Poisson ratio the spread itself."""
     spreads = {name: float(case[f"{name}_spread"]) for name in names if f"{name}_spread" in case.coords}
     return {name: spread if is_ratio(name) else spread / float(case[name]) for name, spread in spreads.items()}
 
@@ -136,7 +135,7 @@ def correlated(contact: xr.Dataset) -> bool:
 
 
 def _counts(problem: Problem, name: str) -> bool:
-    """Whether an input is a number on which the answer of some case depends, and no setting."""
+    """Whether an input is a number, not a setting, and some case depends on it."""
     parameter, rows = problem.known.parameters[name], lexicon_of(problem.known).rows
     setting = rows[name].role == "numerics" if name in rows else False
     counts = parameter.interval and not parameter.whole and not setting
@@ -144,13 +143,14 @@ def _counts(problem: Problem, name: str) -> bool:
 
 
 def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[str, np.ndarray]]:
-    """Input -> {input of the solver, or scale: d ln(it)/d ln input, (B,)}. Poisson ratios have no logarithm."""
+    """Input -> {s: d ln s/d ln input, (B,)} of inputs s of the solver and scales s. Poisson ratios have no
+    logarithm."""
     values = scene.values
     unit = {"R"} if "R1" in values or scene.scale else set()
     names = [name for name in values if np.any(np.isfinite(values[name])) and name not in unit]
-    follow = {"n", "m", "table_unit", LAW_UNIT, *(ratio for _, _, ratio in moduli_of(values))}
-    given = [name for name in scene.lexicon.parameters_of(scene.parameters) if name in scene.parameters]
-    pure_numbers = [name for name in given if name not in {*values, *follow}]
+    dependent = {"n", "m", "table_unit", LAW_UNIT, *(ratio for _, _, ratio in moduli_of(values))}
+    names_of_solver = [name for name in scene.lexicon.parameters_of(scene.parameters) if name in scene.parameters]
+    pure_numbers = [name for name in names_of_solver if name not in {*values, *dependent}]
     pure_numbers += ["n"] * ("E1" not in values) + ["m"] * ("E_punch" not in values)
     ones = np.ones(int(np.prod(shape)))
     flat = {}
@@ -160,9 +160,10 @@ def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[
 
 
 def _by_si(logs: dict, inputs: dict, powers: tuple[int, int], value: Any = 1.0) -> dict[str, np.ndarray]:
-    """The derivatives of a result in E2*^i R^j by inputs in SI units, from those by the solver's inputs.
+    """The derivatives of a result by inputs in SI units, from those by the solver's inputs.
 
-    value : of the result, where the derivatives are not of its logarithm
+    powers : i and j of the result's unit E2*^i R^j
+    value : of the result, if the derivatives are not those of its logarithm
     """
     scales = dict(zip(SCALES, powers[::-1], strict=True))
     still = 0 * next(iter(logs.values()))
@@ -170,7 +171,7 @@ def _by_si(logs: dict, inputs: dict, powers: tuple[int, int], value: Any = 1.0) 
     def by(changes: dict) -> np.ndarray:
         changes = {key: change.reshape(-1, *[1] * (still.ndim - 1)) for key, change in changes.items()}
         parts = [logs[key] * change for key, change in changes.items() if key in logs]
-        with np.errstate(invalid="ignore"):  # p may be infinite at an edge: what it changes by is NaN
+        with np.errstate(invalid="ignore"):  # p may be infinite at an edge: its change is NaN
             return sum(parts, still) + sum(scales[key] * changes.get(key, 0.0) for key in SCALES) * value
 
     return {name: by(changes) for name, changes in inputs.items() if any(key in logs for key in changes)}

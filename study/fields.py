@@ -1,4 +1,4 @@
-"""Stresses of contacts: at points of layer and body, and where they are largest."""
+"""Stresses of contacts: at points of layer and body, and their largest values."""
 
 import re
 from dataclasses import replace
@@ -28,9 +28,9 @@ from .specimen.quantities import quantity
 from .terminal import shown
 
 SIGNS = "tension is positive; z points down from the surface"
-#: Radii and depths in a that are taken where none are given: r = 1, where p ends, is among them.
+#: Default radii and depths, in a. They include r = 1, where p ends.
 _RADII, _DEPTHS = np.linspace(0, 2, 41), np.linspace(0, 2, 41)
-#: Larger coefficients of friction, and residual stresses over E2*, are slips of the keyboard.
+#: Larger coefficients of friction, or residual stresses over E2*, must be typing errors.
 _MOST_FRICTION, _MOST_RESIDUAL = 1e3, 1e6
 _LONG_NAMES = {
     "sr": "radial stress",
@@ -55,32 +55,33 @@ def stresses(
     sigma_res: float | str = 0.0,
     **parameters: Any,
 ) -> xr.Dataset:
-    """Stresses and displacements in layer and body of contacts that are solved: docs/stresses.md.
+    """Stresses and displacements in layer and body of solved contacts: docs/stresses.md.
 
-    z points down from the surface; tension is positive. The contacts are solved again from the inputs that the dataset
-    has. A thin layer has the field of the exact layer under its pressure.
+    z points down from the surface; tension is positive. The contacts are solved again from the inputs in the dataset. A
+    thin layer has the field of the exact layer under the same pressure.
 
     Parameters
     ----------
-    contact : results of `study.solve` or of a results file, in SI units or dimensionless; a selected part too
-    r, z : radii and depths >= 0 in units of a, one-dimensional; with mu > 0 r may be negative: behind the contact. The
+    contact : results of `study.solve` or of a results file, in SI units or dimensionless, or a part of them
+    r, z : radii and depths >= 0 in units of a, one-dimensional; if mu > 0, r may be negative: behind the contact. The
         largest radius is 27,000 h, or 5.6 a if that is more; without a layer 1e9 a
-    mu : >= 0; with mu > 0 the punch slides in full, and the plane y = 0 is given: r is x, trz is sxz, ur is ux
-    sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where the contact has units. Of stacks
-        that of all layers, or a list of one for each
-    parameters : those of `study.solve`, in place of the contact
+    mu : coefficient of friction >= 0; if mu > 0 the punch slides everywhere, and the results belong to the plane y = 0:
+        r is x, trz is sxz, ur is ux
+    sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" if the contact has units. Stacks take
+        one value for all layers or a list with one for each
+    parameters : the parameters of `study.solve`, in place of the contact
 
     Returns
     -------
     xarray.Dataset : over the dimensions of the contact, `r` and `z`: sr, st, sz, trz, ur, uz, the principal stresses
-        s1, s2, s3, mises, tresca; NAME_above and NAME_below at the interface, in the layer and in the body, of stacks
-        over `interface`, 1 below the first layer; and `stress_error`, of any stress relative to the largest. NaN of
-        cases that have not converged, in a rigid body, and at an interface that is not there. At the edge of a flat
-        punch and of what sticks they are infinite
+        s1, s2, s3, mises, tresca; NAME_above and NAME_below at the interface, in the layer and in the body; for stacks
+        these have the dimension `interface`, 1 below the first layer. `stress_error` is the error of any stress,
+        relative to the largest. NaN for cases that have not converged, in a rigid body, and at an interface that does
+        not exist. Stresses are infinite at the edge of a flat punch and of surfaces that stick
 
     Raises
     ------
-    StudyError : an argument that is out of its bounds or not finite; a dataset that cannot be solved again
+    StudyError : an argument is out of bounds or not finite, or the dataset cannot be solved again
 
     Examples
     --------
@@ -100,8 +101,10 @@ def stresses(
     _refuse_far_away(r, contacts, solution)
     fields = fields_of(contacts.problem, solution, np.abs(r), z, mu)
     residual, bare = residual_stresses(sigma_res, contacts), is_bare(contacts.problem.base)
-    residual = np.where(bare[:, None], 0.0, np.pad(residual, ((0, 0), (0, 1))))  # the last is that of the body
-    layer = np.sum(z[:, None] > (_ends(contacts) / solution.a[:, None])[:, None], axis=2)  # in which z is, from 0
+    residual = np.where(bare[:, None], 0.0, np.pad(residual, ((0, 0), (0, 1))))  # the last one belongs to the body
+    layer = np.sum(
+        z[:, None] > (_ends(contacts) / solution.a[:, None])[:, None], axis=2
+    )  # number of the layer with the depth z, from 0
     at_places = np.take_along_axis(residual, layer, axis=1), residual[:, :-1], residual[:, 1:]
     compressible, variables = np.where(bare, contacts.problem.nu2, contacts.problem.nu1) < 0.5, {}
     stacked = numbers_of(contacts.problem.parameters) > 0
@@ -143,15 +146,15 @@ def _ends(contacts: Contacts) -> np.ndarray:
 
 
 def with_numbered_layers(contacts: Contacts) -> Contacts:
-    """The contacts with the material of the first layer of their stacks called as that of the others, so that `layer`
-    can be the number of a layer."""
+    """The contacts with the material of the first layer of a stack named like those of the other layers. `layer` is
+    then free to be the number of a layer."""
     names = {"layer": "layers.1.material"} if "layer" in (*contacts.dataset.coords, *contacts.dims) else {}
     dims = tuple(names.get(dim, dim) for dim in contacts.dims)
     return contacts._replace(dataset=contacts.dataset.rename(names), dims=dims)
 
 
 def numbered(contacts: Contacts, *dims: str) -> dict:
-    """Coordinates of layers and interfaces of stacks, counted from 1 at the surface."""
+    """Coordinates of the layers and interfaces of stacks: numbers from 1 at the surface."""
     numbers = np.arange(1, numbers_of(contacts.problem.parameters) + 1)
     words = {"layer": "layer, from the surface down", "interface": "interface, below the layer of the same number"}
     return {dim: (dim, numbers, {"long_name": words[dim]}) for dim in dims}
@@ -172,34 +175,39 @@ _WHERE = {"": "", "_above": ", in the layer at the interface", "_below": ", in t
 def extremes(
     contact: xr.Dataset | None = None, mu: float = 0.0, sigma_res: float | str = 0.0, **parameters: Any
 ) -> xr.Dataset:
-    """Where and how large the stresses of contacts are at most: docs/stresses.md.
+    """The largest stresses of contacts, and their places: docs/stresses.md.
 
     z points down from the surface; tension is positive; 1 is the layer, 2 the body under it. Without a layer the body
-    is 2. The contacts are solved again from the inputs that the dataset has.
+    is 2. The contacts are solved again from the inputs in the dataset.
 
     Parameters
     ----------
-    contact : results of `study.solve` or of a results file, in SI units or dimensionless; a selected part too
-    mu : >= 0; with mu > 0 the punch slides in full, and the extremes are those in the plane y = 0
-    sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where the contact has units. Of stacks
-        that of all layers, or a list of one for each
-    parameters : those of `study.solve`, in place of the contact
+    contact : results of `study.solve` or of a results file, in SI units or dimensionless, or a part of them
+    mu : coefficient of friction >= 0; if mu > 0 the punch slides everywhere, and the extremes are those in the plane
+        y = 0
+    sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" if the contact has units. Stacks take
+        one value for all layers or a list with one for each
+    parameters : the parameters of `study.solve`, in place of the contact
 
     Returns
     -------
     xarray.Dataset : over the dimensions of the contact: mises1, mises2, tresca1, tresca2, s1_surface, s1_layer,
         sr_interface1 (which cracks a layer that bends), tau_interface, sz_interface_max, sz_interface_min; each with
-        its place NAME_r and NAME_z in units of a, where NAME_r is x, and behind the contact < 0, if mu > 0. Tension or
-        shear that is not there is 0 at the place NaN. NaN of cases that have not converged and of bodies that are
-        rigid or not there. Where asperities feel the layer besides: mises1_spot, mises2_spot and sr_interface1_spot
-        below the middle of the central spot, sz_interface_spot_max and tau_interface_spot up to half of the pitch
-        beside it, each with its depth NAME_z; the stresses of the nominal pressure are in them. Of stacks mises_layer,
-        tresca_layer and s1_layer over `layer`, sr_interface, tau_interface, sz_interface_max and sz_interface_min over
-        `interface`, both counted from 1 at the surface, beside s1_surface, mises2 and tresca2
+        its place NAME_r and NAME_z in units of a. If mu > 0, NAME_r is x, < 0 behind the contact. If a contact has no
+        tension or shear, the value is 0 and its place NaN. NaN for cases that have not converged, and for bodies that
+        are rigid or do not exist.
+
+        If asperities feel the layer: also mises1_spot, mises2_spot and sr_interface1_spot below the middle of the
+        central spot, sz_interface_spot_max and tau_interface_spot up to half of the pitch beside it, each with its
+        depth NAME_z; they include the stresses of the nominal pressure.
+
+        Stacks have s1_surface, mises2 and tresca2; mises_layer, tresca_layer and s1_layer over `layer`; and
+        sr_interface, tau_interface, sz_interface_max and sz_interface_min over `interface`. Layers and interfaces
+        count from 1 at the surface
 
     Raises
     ------
-    StudyError : an argument that is out of its bounds or not finite; a dataset that cannot be solved again
+    StudyError : an argument is out of bounds or not finite, or the dataset cannot be solved again
 
     Examples
     --------
@@ -237,7 +245,7 @@ def extremes(
     return variables.assign_coords(numbered(contacts, "layer", "interface") if stacked else {})
 
 
-#: What the extremes of stacks are called.
+#: Extreme of stacks -> its long name.
 _OF_STACKS = {
     "mises_layer": "largest von Mises stress of each layer",
     "tresca_layer": "largest Tresca stress of each layer",
@@ -247,36 +255,37 @@ _OF_STACKS = {
     "sz_interface_max": "largest axial tension at each interface",
     "sz_interface_min": "largest axial compression at each interface",
 }
-#: Of a stack of one layer the names of one layer -> the same over layers.
+#: Extreme of contacts with one layer -> the same extreme of stacks, which has a value for each layer.
 _OF_ONE_LAYER = {"mises1": "mises_layer", "tresca1": "tresca_layer", "sr_interface1": "sr_interface"}
 
 
 def _axes_of(name: str) -> tuple:
-    """The dimension of an extreme of stacks beside those of the contacts."""
+    """The further dimension of an extreme of stacks, besides those of the contacts."""
     dim = of_stacks.DIMENSION[of_stacks.EXTREMES[name][1]] if name in of_stacks.EXTREMES else None
     return (dim,) if dim else ()
 
 
 def _with_stacks(others: dict, values: dict) -> dict:
-    """The extremes of stacks, and of contacts beside them that have no layers; of one layer by its own names too."""
-    made = {
+    """The extremes of stacks; `others` fill in for contacts without layers. Stacks of one layer also have the names of
+    contacts with one layer."""
+    extremes = {
         name: parts if _axes_of(name) else np.where(np.isnan(parts[0]), others[name], parts)
         for name, parts in values.items()
     }
     if values["mises_layer"].shape[2] == 1:
-        made |= {name: values[same][..., 0] for name, same in _OF_ONE_LAYER.items()}
-    return made
+        extremes |= {name: values[same][..., 0] for name, same in _OF_ONE_LAYER.items()}
+    return extremes
 
 
 def _solved(contacts: Contacts) -> Any:
-    """The solution of the cases; one that is not converged in the dataset is not either."""
+    """The solution of the cases. A case that is not converged in the dataset counts as invalid."""
     solution = solve(contacts.problem)
-    there = contacts.dataset["status"].values.ravel() == Status.CONVERGED
-    return replace(solution, status=np.where(there, solution.status, Status.INVALID_INPUT))
+    converged = contacts.dataset["status"].values.ravel() == Status.CONVERGED
+    return replace(solution, status=np.where(converged, solution.status, Status.INVALID_INPUT))
 
 
 def contact_of(who: str, contact: Any, parameters: dict[str, Any]) -> xr.Dataset:
-    """The contact, or that of the parameters of `study.solve`. Raises StudyError for both and for neither.
+    """The contact, or the solution of the parameters of `study.solve`. Raises StudyError for both and for neither.
 
     who : the name of the public function, for messages
     """
@@ -290,7 +299,7 @@ def contact_of(who: str, contact: Any, parameters: dict[str, Any]) -> xr.Dataset
 
 
 def refuse_both(who: str, contact: Any, parameters: dict[str, Any]) -> None:
-    """Raise StudyError where there is a contact beside inputs, or neither."""
+    """Raise StudyError if a call has both a contact and inputs, or neither."""
     if contact is not None and parameters:
         raise StudyError([f"{who}: {next(iter(parameters))}: give a contact or its inputs, not both"])
     if contact is None and not parameters:
@@ -341,7 +350,7 @@ def residual_stresses(sigma_res: Any, contacts: Contacts) -> np.ndarray:
 
 
 def residual_stress(sigma_res: Any, contacts: Contacts) -> float:
-    """In Pa, or without a unit where the contact has none. Raises StudyError."""
+    """The residual stress in Pa, or without a unit if the contact has none. Raises StudyError."""
     single = not contacts.scene and np.ndim(sigma_res) == 0 and hasattr(sigma_res, "item")
     sigma_res = plain(sigma_res.item() if single else sigma_res)
     number = type(sigma_res) in (int, float)
@@ -375,7 +384,9 @@ def _labelled(contacts: Contacts, values: np.ndarray, axes: Any, about: dict[str
 
 
 def carried(contact: xr.Dataset, variables: dict[str, xr.Variable]) -> xr.Dataset:
-    """A dataset of these variables with the coordinates of the contact; `x` is dropped."""
+    """A dataset of these variables with the coordinates of the contact except `x`."""
     dims = {*contact["status"].dims}
-    left_out = [name for name, own in contact.variables.items() if name in contact.data_vars or {*own.dims} - dims]
+    left_out = [
+        name for name, variable in contact.variables.items() if name in contact.data_vars or {*variable.dims} - dims
+    ]
     return contact.drop_vars(left_out).assign(variables)

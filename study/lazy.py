@@ -1,4 +1,4 @@
-"""A dataset of dask arrays: a chunk of the grid is solved when its numbers are asked for, wherever dask computes."""
+"""A dataset of dask arrays: dask solves a chunk of the grid when its numbers are needed."""
 
 from dataclasses import replace
 from math import prod
@@ -20,7 +20,7 @@ from .work.engine import blocks_of_grid
 
 
 class Chunks(NamedTuple):
-    """What every task gets.
+    """The argument of every task: the grid and its chunks.
 
     definition : of the whole grid
     ends : dimension of the grid -> where its chunks end, with 0 before them
@@ -30,7 +30,7 @@ class Chunks(NamedTuple):
     ends: dict[str, np.ndarray]
 
     def within(self, number: int) -> Definition:
-        """The definition of the cases in the chunk of a number."""
+        """The definition of the cases in the chunk with this number."""
         place = np.unravel_index(number, [len(ends) - 1 for ends in self.ends.values()])
         window = {}
         for (dim, ends), at in zip(self.ends.items(), place, strict=True):
@@ -42,35 +42,36 @@ class Chunks(NamedTuple):
 def lazily(definition: Definition, chunks: Any, command: str) -> xr.Dataset:
     """The dataset of a grid whose results are dask arrays. The solver has one task for each chunk.
 
-    chunks : dimension of the results -> length of a chunk, or the lengths of all; -1 or no entry: the dimension whole;
-        "auto": as many cases as a block of a study has. Or one of these for every dimension
+    chunks : dimension of the results -> the length of its chunks, or a tuple of all lengths; -1, or no entry, makes one
+        chunk of the dimension; "auto" makes chunks with as many cases as a block of a study. A single value holds for
+        every dimension
 
     Raises StudyError for chunks that do not fit the grid.
     """
-    from roughcoat.elsewhere import Packed  # no other call needs it
+    from roughcoat.elsewhere import Packed  # imported here, since no other call needs it
 
     dims = definition.in_results({dim: dim for dim in definition.grid.sizes})
     lengths = _lengths(chunks, definition)
     ends = {dim: np.cumsum([0, *along]) for dim, along in zip(dims.values(), lengths, strict=True)}
-    each = Chunks(definition, ends)
+    chunks_of_grid = Chunks(definition, ends)
     shape = tuple(map(len, lengths))
     numbers = dask.array.from_array(np.arange(prod(shape)).reshape(shape), chunks=1)
-    # The grid is an item of dask of its own, which goes to a worker once and not with every chunk: an array of one
-    # element, since with query planning `map_blocks` loses a Delayed among its arguments (dask 2026.8).
-    call = dask.array.from_array(_element(Packed(_solved, each)), chunks=(), name=f"contacts-{uuid4().hex}")
+    # The grid is a separate item of dask, so that it goes to a worker once and not with every chunk. It is an array of
+    # one element, since with query planning `map_blocks` loses a Delayed among its arguments (dask 2026.8).
+    call = dask.array.from_array(_element(Packed(_solved, chunks_of_grid)), chunks=(), name=f"contacts-{uuid4().hex}")
     empty = np.empty((0,) * len(shape), dtype=object)
-    solved = dask.array.map_blocks(_called, call, numbers, meta=empty, name=f"solve-{uuid4().hex}")
-    # one case, not solved, has the names, types, dimensions and attributes of all results
-    first = each._replace(ends={dim: np.array([0, 1]) for dim in ends}).within(0)
+    solved = dask.array.map_blocks(_called_with, call, numbers, meta=empty, name=f"solve-{uuid4().hex}")
+    # one unsolved case has the names, types, dimensions and attributes of all results
+    first = chunks_of_grid._replace(ends={dim: np.array([0, 1]) for dim in ends}).within(0)
     first_case = _dataset(first, not_run(first, first.grid.size), command)
     variables = {}
     for name, array in first_case.data_vars.items():
         more = {"new_axis": len(shape)} if "x" in array.dims else {}
-        there = (*lengths, (len(definition.x),)) if more else lengths
+        lengths_with_x = (*lengths, (len(definition.x),)) if more else lengths
         more["meta"] = np.empty((0,) * array.ndim, array.dtype)
-        values = solved.map_blocks(Packed(_values, name), chunks=there, name=f"{name}-{uuid4().hex}", **more)
+        values = solved.map_blocks(Packed(_values, name), chunks=lengths_with_x, name=f"{name}-{uuid4().hex}", **more)
         variables[name] = xr.Variable(array.dims, values, array.attrs)
-    return dataset_of(definition, labelled(definition, {}, command).settings_apart()).assign(variables)
+    return dataset_of(definition, labelled(definition, {}, command).settings_as_attributes()).assign(variables)
 
 
 def _lengths(chunks: Any, definition: Definition) -> tuple[tuple[int, ...], ...]:
@@ -91,7 +92,7 @@ def _lengths(chunks: Any, definition: Definition) -> tuple[tuple[int, ...], ...]
             wrong.append(f"chunks: {name} = {shown(length)}: must be {what}")
     if wrong:
         raise StudyError(wrong)
-    # "auto" makes chunks of about the cases of a block, one number of each
+    # "auto" makes chunks of about a block's number of cases; each case counts as one number
     of_block = {"limit": 8 * definition.block, "dtype": float}
     return normalize_chunks(tuple(chunks.get(name, -1) for name in sizes), tuple(sizes.values()), **of_block)
 
@@ -111,22 +112,22 @@ def _element(value: object) -> np.ndarray:
     return array
 
 
-def _called(call: np.ndarray, number: np.ndarray) -> np.ndarray:
+def _called_with(call: np.ndarray, number: np.ndarray) -> np.ndarray:
     return call.item()(number)
 
 
-def _solved(each: Chunks, number: np.ndarray) -> np.ndarray:
-    """The results of a chunk, name -> values, as the only element of an array of the shape of its number."""
-    here = each.within(number.item())
-    blocks = [compute(parcel(here, index)) for index in blocks_of_grid(here)]
+def _solved(chunks_of_grid: Chunks, number: np.ndarray) -> np.ndarray:
+    """The results of a chunk, name -> values, as the only element of an array with the shape of `number`."""
+    definition = chunks_of_grid.within(number.item())
+    blocks = [compute(parcel(definition, index)) for index in blocks_of_grid(definition)]
     arrays = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
     results = np.empty(number.shape, dtype=object)
-    results[...] = {name: array.values for name, array in _dataset(here, arrays, "").data_vars.items()}
+    results[...] = {name: array.values for name, array in _dataset(definition, arrays, "").data_vars.items()}
     return results
 
 
-def _dataset(here: Definition, arrays: dict[str, np.ndarray], command: str) -> xr.Dataset:
-    return dataset_of(here, parts(here, arrays, command))
+def _dataset(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> xr.Dataset:
+    return dataset_of(definition, parts(definition, arrays, command))
 
 
 def _values(name: str, results: np.ndarray) -> np.ndarray:

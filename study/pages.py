@@ -1,4 +1,4 @@
-"""The pages of docs/, which the package brings along: `roughcoat docs` opens them."""
+"""The pages of docs/, which come with the package: `roughcoat docs` shows them."""
 
 import difflib
 from importlib.resources import files
@@ -7,20 +7,20 @@ from pathlib import PurePosixPath
 from .inputs.definition import StudyError
 from .terminal import shown
 
-_INDEX = "model.md"  # a page of ours, by which our folder is known from one of another package
+_INDEX = "model.md"  # tells our folder of pages from that of another package
 
 
 def _folder():
     """The folder of the pages: in the installed package, or beside it in a clone."""
     package = files("study")
-    here = (package / "docs", package.parent / "docs")
-    return next((folder for folder in here if (folder / _INDEX).is_file()), here[0])
+    places = (package / "docs", package.parent / "docs")
+    return next((folder for folder in places if (folder / _INDEX).is_file()), places[0])
 
 
 def titles() -> dict[str, str]:
-    """The name of each page, which is that of its file without .md, and its title.
+    """Name of each page, its file name without .md -> its title.
 
-    Pages without a title include a file that stands elsewhere in the repository, for the site.
+    Pages without a title are left out: they only include a file from elsewhere in the repository, for the site.
     """
     folder = _folder()
     pages = sorted(page.name for page in folder.iterdir() if page.name.endswith(".md")) if folder.is_dir() else []
@@ -31,16 +31,16 @@ def titles() -> dict[str, str]:
 def page(name: str) -> str:
     """The text of a page, in Markdown.
 
-    name : "model", or as a message has it: "docs/model.md", with or without a heading, "docs/model.md#units"
+    name : "model", or a reference as in messages: "docs/model.md", also with a heading, "docs/model.md#units"
 
-    Raises StudyError: there is no such page. It says which there are.
+    Raises StudyError if there is no such page; the message lists all pages.
     """
     stem = PurePosixPath(name.partition("#")[0]).name.removesuffix(".md")
-    known = titles()
-    if stem in known:
+    pages = titles()
+    if stem in pages:
         return _text(f"{stem}.md")
-    near = difflib.get_close_matches(stem.lower(), known, n=1, cutoff=0.75)
-    hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
+    near = difflib.get_close_matches(stem.lower(), pages, n=1, cutoff=0.75)
+    hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(pages)}"
     raise StudyError([f"docs {shown(name)} is no page; {hint}"])
 
 

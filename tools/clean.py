@@ -14,7 +14,7 @@ CACHES = (".pytest_cache", ".ruff_cache", ".hypothesis")
 
 
 def written() -> list[Path]:
-    """The files of all figures and tables, whether they are there or not."""
+    """The files of all figures and tables, whether they exist or not."""
     names = {
         kind: [name for file in book_files() for one, name in names_in(file) if one == kind]
         for kind in ("figure", "table")

@@ -1,4 +1,4 @@
-"""The tables of docs/literature.md, whose words are written there by hand: `make literature` runs this."""
+"""The tables of docs/literature.md; its text is written by hand: `make literature` runs this."""
 
 import re
 import sys
@@ -9,7 +9,7 @@ from study.figures.registry import entry, open_studies
 
 
 def markdown(name: str, results) -> str:
-    """A table of the register in Markdown."""
+    """A registered table in Markdown."""
     table = entry("table", name)
     cells = [[column.text for column in table.columns], ["---"] * len(table.columns)]
     cells += formatted(table, table.rows(*open_studies(name, table.studies, results)))
@@ -17,7 +17,7 @@ def markdown(name: str, results) -> str:
 
 
 def page(text: str, results="results") -> str:
-    """The text of a page with each table that follows a line "<!-- table NAME -->" made anew, from results."""
+    """The text of a page. Each table after a line "<!-- table NAME -->" is written anew from the results."""
     return re.sub(r"(<!-- table (\w+) -->\n\n)(?:[|].*\n)*", lambda found: found[1] + markdown(found[2], results), text)
 
 

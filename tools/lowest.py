@@ -1,4 +1,4 @@
-"""Print the lowest versions that pyproject.toml allows, as pip takes them: `make lowest` tests with these."""
+"""Print the lowest versions that pyproject.toml allows, in the format of pip: `make lowest` tests with them."""
 
 import tomllib
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Writes the Gauss-Radau nodes of the meshes of the ladder: `python tools/make_radau.py solver/numerics/radau.csv`."""
+"""Write the Gauss-Radau nodes of the meshes of the ladder: `python tools/make_radau.py solver/numerics/radau.csv`."""
 
 import sys
 from pathlib import Path
@@ -11,7 +11,7 @@ HEAD = "# Roots of the Jacobi polynomials (1, 0) of degree n - 1 of each mesh of
 
 
 def lines() -> list[str]:
-    """A comment, and a line of each mesh."""
+    """A comment, and a line for each mesh."""
     return [HEAD, *(",".join(map(repr, roots_jacobi(n - 1, 1.0, 0.0)[0].tolist())) for n in LADDER)]
 
 

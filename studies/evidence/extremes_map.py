@@ -18,8 +18,8 @@ ROWS = (("half_space", "P", "N Ra^2"), ("thin_layer", "P", "N Ra^2"), ("thin_lay
         ("layered", "P", "N Ra^2"), ("layered", "h", "n"))  # fmt: skip
 BARS = ("estimated error / rtol, median of the cell", "iterations, largest of the cell")
 BINS = 24
-_MANY = 10_000  # cases in a map from which on converged ones are drawn as smaller points
-#: FAILED: status of a failed case -> its colour; COLOURS: the same of all statuses.
+_MANY = 10_000  # with more cases in a map, converged ones are drawn as smaller points
+#: FAILED: status of a failed case -> its colour; COLOURS: the same for all statuses.
 _FAILURES = [s for s in Status if s not in (Status.CONVERGED, Status.OUTSIDE_LAW, *NO_SOLUTION)]
 #: Statuses without a solution that occur without adhesion; also where the law of asperities on a layer has ended.
 _WITHOUT = [*(status for status in NO_SOLUTION if status != Status.PULLED_OFF), Status.OUTSIDE_LAW]
@@ -49,9 +49,9 @@ def maps(panels, *studies: xr.Dataset) -> Columns:
             axes.tick_params(top=False, right=False, which="both", direction="out", labelsize=7)
             axes.minorticks_off()
         row[0].set_ylabel(f"{BASES[base]}\n{AXES[y]}")
-        held = cells["cases"] > 0
-        numbers = {name: values[held] for name, values in cells.items()}
-        parts.append({"row": np.full(held.sum(), len(parts))} | numbers)
+        nonempty = cells["cases"] > 0
+        numbers = {name: values[nonempty] for name, values in cells.items()}
+        parts.append({"row": np.full(nonempty.sum(), len(parts))} | numbers)
     for axes, title in zip(panels[0], ("status", "error / rtol, median", "iterations, largest"), strict=True):
         axes.set_title(title, fontsize=9)
     legend(panels, images, np.unique(cases["status"]))
@@ -64,14 +64,14 @@ def pooled(studies: tuple[xr.Dataset, ...]) -> dict[str, np.ndarray]:
     for study in studies:
         wanted = {name: study[name] for name in ("P", "h", "n", "base", "micro", "status", "iterations")}
         wanted |= {"N Ra^2": study["Nbar"] * study["Ra"] ** 2, "error/rtol": study["error"] / study["rtol"]}
-        same = xr.broadcast(*wanted.values(), exclude=("x",))
-        flat.append({name: array.values.ravel() for name, array in zip(wanted, same, strict=True)})
+        arrays = xr.broadcast(*wanted.values(), exclude=("x",))
+        flat.append({name: array.values.ravel() for name, array in zip(wanted, arrays, strict=True)})
     return joined(flat)
 
 
 def binned(cases: dict[str, np.ndarray], x: str, y: str, edges: list[np.ndarray]) -> Columns:
-    """Columns over the cells of the plane: middle; number of cases, of converged and of failed ones; and of the
-    converged ones median and largest error over rtol and largest number of iterations, NaN if there are none."""
+    """Columns over the cells of the plane: middle; numbers of cases, of converged and of failed ones; for the converged
+    ones also the median and largest error over rtol and the largest number of iterations, NaN without such cases."""
     at = [np.searchsorted(e[1:-1], cases[name], "right") for name, e in zip((x, y), edges, strict=True)]
     cell, status = at[0] * BINS + at[1], cases["status"]
     middles = np.meshgrid(*(np.sqrt(e[1:] * e[:-1]) for e in edges), indexing="ij")
@@ -88,10 +88,10 @@ def binned(cases: dict[str, np.ndarray], x: str, y: str, edges: list[np.ndarray]
 
 def points(axes, cases: dict[str, np.ndarray], x: str, y: str) -> None:
     """Draw every case as a point in the colour of its status, failures on top."""
-    least = 1.0 if len(cases["status"]) > _MANY else 2.0
+    smallest = 1.0 if len(cases["status"]) > _MANY else 2.0
     for status, colour in COLOURS.items():
         which = cases["status"] == status
-        size = least if status == Status.CONVERGED else 5.0 if status in FAILED else 2.5
+        size = smallest if status == Status.CONVERGED else 5.0 if status in FAILED else 2.5
         style = {"color": colour, "markersize": size, "markeredgewidth": 0, "rasterized": True}
         axes.plot(cases[x][which], cases[y][which], ".", **style)
 

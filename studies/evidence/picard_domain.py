@@ -1,4 +1,4 @@
-"""Where the paper's successive approximations converge: maps of the cycle in which they end, over C and k."""
+"""Convergence of the paper's successive approximations: maps of the cycle in which they end, over C and k."""
 
 from pathlib import Path
 
@@ -12,10 +12,10 @@ from matplotlib.ticker import LogFormatterMathtext
 from study.figures.registry import TWO_COLUMNS, Columns, figure, joined
 
 MAPS = ((0.5, 16), (0.5, 32), (0.5, 64), (0.4, 32), (0.6667, 32))  # β and number of nodes of each map
-SHARES = (1e-2, 1e-4)  # each p/p(0) at which a line A'(p) = (1 + 2k) C is drawn
+SHARES = (1e-2, 1e-4)  # p/p(0) of the lines A'(p) = (1 + 2k) C
 LARGEST = 0.57021276802733
-"""Largest eigenvalue, over 4/π, of the operator p -> u(r) - u(1) of the half-space on a contact of radius 1, from
-tests/evidence/test_picard_domain.py, which computes it of the matrix."""
+"""Largest eigenvalue, over 4/π, of the operator p -> u(r) - u(1) of the half-space on a contact of radius 1.
+tests/evidence/test_picard_domain.py computes it from the matrix."""
 DECADES = 10.0 ** np.arange(-8, 0)
 LINES = {"color": "black", "linewidth": 0.9}
 DASHES = ((0, (4, 1.5)), (0, (1, 1.2)))
@@ -46,7 +46,7 @@ def domain(panels, approximations: xr.Dataset) -> Columns:
 
 
 def compliance(part: xr.Dataset) -> np.ndarray:
-    """C (R/E2*) over h: 2 A2 h/E1* with A2 = 1/2, no friction under the layer."""
+    """C (R/E2*) for each h: 2 A2 h/E1* with A2 = 1/2, without friction under the layer."""
     return part["h"].values / float(part["n"])
 
 
@@ -58,9 +58,9 @@ def cycle_size(part: xr.Dataset) -> np.ndarray:
 
 
 def draw_map(axes, part: xr.Dataset):
-    """Draw the size of the cycle over C and 1 + 2k, grey above 0.1, and the lines of the linear theory."""
+    """Draw the size of the cycle over C and 1 + 2k, in grey above 0.1, and the lines of the linear theory."""
     C, k = compliance(part), part["k"].values
-    size = np.ma.masked_greater_equal(cycle_size(part), DECADES[-1])  # beyond, the whole pressure swings
+    size = np.ma.masked_greater_equal(cycle_size(part), DECADES[-1])  # above, the whole pressure swings
     axes.set_facecolor("0.75")
     style = {"shading": "nearest", "cmap": "YlGnBu_r", "norm": BoundaryNorm(DECADES, 256), "rasterized": True}
     image = axes.pcolormesh(C, 1 + 2 * k, size.clip(DECADES[0]), **style)
@@ -74,10 +74,10 @@ def draw_map(axes, part: xr.Dataset):
 
 
 def theory(part: xr.Dataset) -> list[np.ndarray]:
-    """Smallest 1 + 2k for which small errors shrink, an array over h for each line.
+    """Smallest 1 + 2k for which small errors shrink: for each line an array over h.
 
-    The first is for the whole contact, by its half-space part alone. The others are for the asperities alone, A'(p)/C
-    where p/p(0) is one of SHARES. p(0) is taken at the largest k, where it is 5e-7 off at most.
+    The first line is that of the whole contact, by its half-space part alone. The others are those of the asperities
+    alone, A'(p)/C at each p/p(0) of SHARES. p(0) is that of the largest k, whose error is at most 5e-7.
     """
     C, p0 = compliance(part), part["p0"].values[-1]
     a, n, B, Ra, beta = (float(part[name]) for name in ("a", "n", "B", "Ra", "beta"))
@@ -88,7 +88,7 @@ def theory(part: xr.Dataset) -> list[np.ndarray]:
 def cycle(axes) -> None:
     """Draw two successive iterates near the edge, long after the load has settled, and the solution between them.
 
-    Results hold no iterates. These are in a file, which tools/references/make_picard_cycle.py has written.
+    Results hold no iterates. The iterates come from a file that tools/references/make_picard_cycle.py has written.
     """
     x, *iterates, solution = np.loadtxt(Path(__file__).with_name("picard_cycle.csv"), delimiter=",", skiprows=1).T
     for p, count, mark in zip(iterates, (1000, 1001), "os", strict=True):

@@ -8,7 +8,7 @@ from solver import fit_power_law
 
 from ..paper import numbers
 
-#: N̄ Ra² of the coatings: those of the paper's Table 1, so that the law needs three fits only.
+#: N̄ Ra² of the coatings, as in the paper's Table 1, so that the law needs only three fits.
 DENSITIES = (0.25, 1.0, 4.0)
 
 
@@ -23,7 +23,7 @@ def paper_cases(base: str, size: int, seed: int) -> dict:
 
 
 def coatings(size: int, seed: int) -> dict:
-    """Soft to hard coatings on the exact layer with the exact law. B and beta are its fits, for the other law."""
+    """Soft to hard coatings on the exact layer with the exact law. B and beta are fits to it, for the power law."""
     random = np.random.default_rng(seed)
     Ra, density = _between(random, 5e-4, 1e-2, size), random.integers(len(DENSITIES), size=size)
     B, beta, _ = np.array([fit_power_law(value) for value in DENSITIES]).T[:, density]

@@ -1,6 +1,6 @@
 """Work and precision: time per case and error of every way to solve the model, on fixed problem sets.
 
-docs/tradeoff.md says how both are measured.
+docs/tradeoff.md describes the measurement of both.
 """
 
 import json
@@ -19,17 +19,17 @@ from ..paper import paper_error
 from ..paper.uniform import solve_uniform, uniform_mesh
 from .problem_sets import SETS
 
-REFERENCE = 1e-11  # rtol of the solutions with which all others are compared
-ENDED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)  # statuses of cases whose iteration closed
-X = np.array([0.0, 1.0])  # points of the profiles: as few as there can be, since they take time
+REFERENCE = 1e-11  # rtol of the reference solutions
+ENDED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)  # statuses of cases whose iteration ended
+X = np.array([0.0, 1.0])  # points of the profiles: as few as possible, since they take time
 PATIENCE = 1.0  # seconds after which a measurement is not repeated
 
-PAPERS = ("paper, layer", "paper, half-space")  # the problem sets that the paper's way can solve
+PAPERS = ("paper, layer", "paper, half-space")  # the problem sets that the paper's method can solve
 TOLERANCES = tuple(10.0**-i for i in range(2, 10))
 NODES = (8.0, 12.0, 16.0, 24.0, 32.0)
-SLOW = 20  # cases of a set on which a slow way is measured
+SLOW = 20  # number of cases of a set with which a slow way is measured
 COPIES = 10  # of each case of the paper in a batch of a quick way
-#: Intervals of the paper's meshes, among them those that just reach 1e-3, 1e-4, 1e-5 and 1e-6 on the paper's layer.
+#: Intervals of the paper's meshes. Some of them just reach 1e-3, 1e-4, 1e-5 and 1e-6 on the paper's layer.
 MESHES = (10.0, 20.0, 45.0, 80.0, 130.0)
 FINE = (390.0, 640.0, 1100.0)
 
@@ -38,10 +38,10 @@ FINE = (390.0, 640.0, 1100.0)
 class Way:
     """One way to solve: `run(cases, setting)` for each of its `settings`.
 
-    varied : what the settings are, in a word
-    sets : names of the problem sets on which it is measured; most : it takes at most this many cases of a set
+    varied : a word for the settings
+    sets : names of the problem sets on which it is measured; most : largest number of cases of a set
     copies : of each of the paper's cases in a batch; several for ways so quick that a hundred cases cannot be timed
-    prepare(setting) : is called before, and not timed, as any number of cases can use what it prepares
+    prepare(setting) : is called before, and not timed, since any number of cases can use its result
     """
 
     run: Callable[[dict, float], Solution]
@@ -53,12 +53,12 @@ class Way:
     prepare: Callable[[float], object] = lambda setting: None
 
     def index(self, size: int) -> np.ndarray:
-        """Which of `size` cases it takes."""
+        """The indices of the cases that it takes, of `size` ones."""
         return np.unique(np.linspace(0, size - 1, min(self.most, size)).round().astype(int))
 
 
 def changed(**parameters) -> Callable[[dict, float], Solution]:
-    """`run` of the solver with some parameters changed, to a value or to a function of the setting."""
+    """`run` with the solver and some parameters changed, to a value or to a function of the setting."""
 
     def run(cases: dict, setting: float) -> Solution:
         new = {name: value(setting) if callable(value) else value for name, value in parameters.items()}
@@ -68,7 +68,7 @@ def changed(**parameters) -> Callable[[dict, float], Solution]:
 
 
 def swapped(name: str, first: str, second: str) -> Callable[[dict, float], Solution]:
-    """`run` of the solver with two values of the parameter `name` exchanged; the setting is rtol."""
+    """`run` with the solver and two values of the parameter `name` exchanged; the setting is rtol."""
 
     def run(cases: dict, setting: float) -> Solution:
         values = np.where(cases[name] == first, second, np.where(cases[name] == second, first, cases[name]))
@@ -78,13 +78,14 @@ def swapped(name: str, first: str, second: str) -> Callable[[dict, float], Solut
 
 
 def _picard(k: float) -> Way:
-    """The solver's scheme "picard", on the nodes of Newton's method; the more nodes, the smaller is rtol."""
+    """The solver's scheme "picard", on the nodes of Newton's method; rtol falls with the number of nodes."""
     options = {"scheme": "picard", "k": k, "nodes": int, "rtol": lambda n: 10 ** (-n / 6), "max_iterations": 400}
     return Way(changed(**options), "nodes", NODES, PAPERS, most=SLOW)
 
 
 def paper_way(k: float, settings=MESHES, sets=PAPERS, most=SLOW) -> Way:
-    """The paper's way with one k, on meshes of `settings` intervals. The tolerance is below the error of the mesh."""
+    """The paper's method with one k, on meshes of `settings` intervals. The tolerance is below the error of the
+    mesh."""
 
     def run(cases: dict, intervals: float):
         return solve_uniform(Problem.of(**cases), int(intervals), k, 0.3 / intervals**2)
@@ -121,7 +122,7 @@ WORDS = {
 
 
 def plan(ways: dict[str, Way] = WAYS, size: int = SIZE) -> str:
-    """What is measured, as text."""
+    """The plan of the measurements, as text."""
     settings = {name: [way.varied, way.settings, way.sets, way.most, way.copies] for name, way in ways.items()}
     iterates = [paper_error.INTERVALS, paper_error.STEPS]
     return json.dumps({"size": size, "seed": SEED, "ways": settings, "iterates": iterates})
@@ -129,7 +130,8 @@ def plan(ways: dict[str, Way] = WAYS, size: int = SIZE) -> str:
 
 @registry.measured("tradeoff", plan, title="Work and precision of every way to solve the model")
 def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS) -> xr.Dataset:
-    """Work and precision over (set, way, step), with `cases` that were measured, and the variables of `paper_error`.
+    """Work and precision over (set, way, step), with the number of measured `cases`, and the variables of
+    `paper_error`.
 
     size : cases of each set; those that the model cannot solve (`status` of the reference) are left out
     """
@@ -137,11 +139,11 @@ def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS) -> 
     arrays = {name: np.full(shape, np.nan) for name in WORDS}
     counts = np.zeros(shape[:2], dtype=np.int32)
     for i, (name, make) in enumerate(SETS.items()):
-        everything = with_reference(make(size, SEED))
+        cases_and_reference = with_reference(make(size, SEED))
         for j, way in enumerate(ways.values()):
             if name not in way.sets:
                 continue
-            cases, reference = taken(*everything, way.index(len(everything[1].a)))
+            cases, reference = selection(*cases_and_reference, way.index(len(cases_and_reference[1].a)))
             counts[i, j] = len(reference.a)
             for step, setting in enumerate(way.settings):
                 copies = way.copies if name in PAPERS else 1
@@ -151,10 +153,10 @@ def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS) -> 
 
 
 def measured(way: Way, setting: float, cases: dict, reference: Solution, repeats: int, copies=1) -> dict[str, float]:
-    """What WORDS lists, for one way and setting, with `copies` of the cases timed together."""
+    """The numbers that WORDS lists, for one way and setting; `copies` of the cases are timed together."""
     way.prepare(setting)
-    whole, reference = taken(cases, reference, np.tile(np.arange(len(reference.a)), copies))
-    seconds, solution = timed(lambda: way.run(whole, setting), repeats)
+    batch, reference = selection(cases, reference, np.tile(np.arange(len(reference.a)), copies))
+    seconds, solution = timed(lambda: way.run(batch, setting), repeats)
     error = errors(solution, reference)
     median, most = np.quantile(error, (0.5, 0.95), method="higher")
     ended = np.isin(solution.status, ENDED).mean()
@@ -165,17 +167,17 @@ def measured(way: Way, setting: float, cases: dict, reference: Solution, repeats
 def with_reference(cases: dict) -> tuple[dict, Solution]:
     """The cases that have a solution, and their solutions at the tolerance REFERENCE."""
     reference = solve(Problem.of(**cases | {"rtol": REFERENCE}), X)
-    return taken(cases, reference, np.flatnonzero(np.isin(reference.status, ENDED)))
+    return selection(cases, reference, np.flatnonzero(np.isin(reference.status, ENDED)))
 
 
-def taken(cases: dict, reference: Solution, index: np.ndarray) -> tuple[dict, Solution]:
-    """The cases at `index` and their reference."""
+def selection(cases: dict, reference: Solution, index: np.ndarray) -> tuple[dict, Solution]:
+    """The cases at `index` and their reference solutions."""
     part = {name: value[index] if np.ndim(value) else value for name, value in cases.items()}
     return part, reference.take(index)
 
 
 def timed(action: Callable[[], Solution], repeats: int) -> tuple[float, Solution]:
-    """Shortest time of up to 1 + repeats runs of an action, and what it gave; long ones are not repeated."""
+    """Shortest time of up to 1 + repeats runs of an action, and its result; long runs are not repeated."""
     times, solution = [], None
     for _ in range(1 + repeats):
         start = time.process_time()

@@ -6,7 +6,7 @@ from matplotlib.lines import Line2D
 
 from study.figures.registry import TWO_COLUMNS, Columns, figure, table
 
-FLOOR = 1e-12  # smaller errors are drawn here: they are those of the reference
+FLOOR = 1e-12  # smaller errors are drawn here: they come from the reference
 TIMES = (5.0, 4e6)  # µs, ends of the abscissa
 DRAWN = {
     "paper k = 5": ("the paper's way, $k$ = 5", "#a63603", "D"),
@@ -16,14 +16,14 @@ DRAWN = {
     "newton, rtol": ("Newton, rtol $10^{-2}$ to $10^{-9}$", "#0b559f", "o"),
     "auto": ("base auto, accuracy 0.5 to $10^{-4}$", "#1b7837", "*"),
 }
-"""Ways that the figure shows, with name, colour and mark: of the paper's k those that reach 1e-2, 1e-4 and 1e-6 first.
-Tables and CSV have all ways."""
+"""Ways in the figure, with name, colour and mark. The three k of the paper's method are those that reach 1e-2, 1e-4 and
+1e-6 first. Tables and CSV have all ways."""
 MODELS = {"the other law": "power law for the exact law", "the other layer": "thin layer for the exact layer"}
 MODEL_LINE = {"color": "0.35", "linewidth": 0.8, "linestyle": (0, (4, 2)), "zorder": 0}
-SETTLED = 0.99  # from this share of ended cases on a mark is filled
-REACHED = 0.95  # a setting reaches a target when this share of the cases ends and 95 % of all are within it
+SETTLED = 0.99  # a mark is filled if at least this share of the cases has ended
+REACHED = 0.95  # a setting reaches a target if this share of the cases ends and 95 % of all cases are within it
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-9)
-ERRORS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # errors at which the paper's way is compared with Newton
+ERRORS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # errors at which the paper's method is compared with Newton's
 
 
 @figure("tradeoff", "tradeoff", long=True, size=(TWO_COLUMNS, 6.4), panels=(2, 2))
@@ -32,13 +32,13 @@ def work_precision(panels, measurements: xr.Dataset) -> Columns:
     (docs/tradeoff.md). Open marks: fewer than 99 % of the cases ended. Dashed: half of the cases differ by more between
     two models."""
     for axes, name in zip(panels.ravel(), measurements["set"].values.tolist(), strict=True):
-        here = measurements.sel(set=name)
+        of_set = measurements.sel(set=name)
         axes.set_title(name, fontsize=9)
         for way, (_, colour, mark) in DRAWN.items():
-            part = here.sel(way=way).dropna("step", subset=["time"])
+            part = of_set.sel(way=way).dropna("step", subset=["time"])
             curve(axes, 1e6 * part["time"].values, part["most"].values, part["ended"].values, colour, mark)
         for way, words in MODELS.items():
-            error = float(here["median"].sel(way=way)[0])
+            error = float(of_set["median"].sel(way=way)[0])
             if np.isfinite(error):
                 axes.axhline(error, **MODEL_LINE)
                 text = f"{words.partition(' for')[0]}: {error:.1%}"
@@ -55,7 +55,7 @@ def work_precision(panels, measurements: xr.Dataset) -> Columns:
 
 
 def curve(axes, time, error, ended, colour: str, mark: str) -> None:
-    """Draw error against time of one way; marks are open where fewer than SETTLED of the cases ended."""
+    """Draw error against time of one way; marks are open if a smaller share than SETTLED of the cases has ended."""
     error = np.maximum(error, FLOOR)
     axes.plot(time, error, "-", color=colour, linewidth=0.9)
     for where, face in ((ended >= SETTLED, colour), (ended < SETTLED, "white")):
@@ -91,10 +91,15 @@ def rows(measurements: xr.Dataset) -> list[tuple]:
         for way in measurements["way"].values.tolist():
             part = measurements.sel(set=name, way=way)
             for step in np.flatnonzero(np.isfinite(part["time"].values)):
-                here = part.isel(step=step)
-                errors = [float(here[key]) for key in ("median", "most", "worst")]
-                setting = f"{str(here['varied'].values)} {float(here['setting']):g}"
-                numbers = int(here["cases"]), 1e6 * float(here["time"]), *errors, float(here["ended"])
+                measurement = part.isel(step=step)
+                errors = [float(measurement[key]) for key in ("median", "most", "worst")]
+                setting = f"{str(measurement['varied'].values)} {float(measurement['setting']):g}"
+                numbers = (
+                    int(measurement["cases"]),
+                    1e6 * float(measurement["time"]),
+                    *errors,
+                    float(measurement["ended"]),
+                )
                 table.append((name, MODELS.get(way, way), setting, *numbers))
     return table
 
@@ -119,7 +124,7 @@ def cheapest(measurements: xr.Dataset) -> list[tuple]:
 
 
 def time_to(part: xr.Dataset, target: float) -> float:
-    """µs per case of the cheapest setting of one way that reaches the target; inf when none does."""
+    """µs per case of the cheapest setting of one way that reaches the target; inf if none does."""
     reached = (part["most"].values <= target) & (part["ended"].values >= REACHED)
     return 1e6 * float(np.min(part["time"].values[reached], initial=np.inf))
 
@@ -146,7 +151,7 @@ def factors(measurements: xr.Dataset) -> list[tuple]:
 
 
 def columns(measurements: xr.Dataset) -> Columns:
-    """What the figure shows, as numbers: set and way by their place."""
+    """The numbers in the figure; set and way are given by their positions."""
     timed = np.isfinite(measurements["time"].values)
     i, j, _ = np.nonzero(timed)
     cells = {name: measurements[name].values[timed] for name in ("setting", "time", "median", "most", "worst", "ended")}

@@ -1,4 +1,5 @@
-"""Maps of the error of the thin-layer model against the exact layer, over h/a and n: where it may be used."""
+"""Maps of the error of the thin-layer model against the exact layer, over h/a and n, which show where it may be
+used."""
 
 import numpy as np
 import xarray as xr
@@ -108,13 +109,14 @@ def error_over_thickness(case: xr.Dataset, quantity: str) -> tuple[xr.DataArray,
 
 
 def one_map(axes, case: xr.Dataset, quantity: str) -> tuple[xr.DataArray, xr.DataArray]:
-    """Bands of the error over h/a (of the exact layer) and n; hatched where the thin-layer equation does not apply."""
+    """Draw bands of the error over h/a (of the exact layer) and n, hatched where the thin-layer equation does not
+    apply."""
     h_a, error = error_over_thickness(case, quantity)
     n = case["n"].broadcast_like(h_a)
-    drawn = np.isfinite(error.values).any(axis=1)
-    if not drawn.all():
-        axes.axhspan(float(case["n"][drawn].max()), 1, **REFUSED)
-    grid = h_a.values[drawn], n.values[drawn], error.values[drawn]
+    applies = np.isfinite(error.values).any(axis=1)
+    if not applies.all():
+        axes.axhspan(float(case["n"][applies].max()), 1, **REFUSED)
+    grid = h_a.values[applies], n.values[applies], error.values[applies]
     axes.contourf(*grid, LEVELS, colors=COLOURS)
     axes.contour(*grid, LEVELS[1:-1], colors="0.25", linewidths=[0.9, 0.5, 0.5, 0.9], linestyles="solid")
     axes.set(xscale="log", yscale="log", xlim=(0.01, 20), ylim=(0.01, 0.95))
@@ -126,7 +128,7 @@ def one_map(axes, case: xr.Dataset, quantity: str) -> tuple[xr.DataArray, xr.Dat
 
 
 def main_case(axes, case: xr.Dataset) -> None:
-    """A star where the paper's main case lies."""
+    """Draw a star at the paper's main case."""
     if "base" in case["a"].dims:
         exact = case["a"].sel(base="layered").sel(n=MAIN_CASE["n"], method="nearest")
         a = float(np.interp(MAIN_CASE["h"], exact["h"], exact))

@@ -1,4 +1,4 @@
-"""The formulas of the literature beside the exact layer: errors, safe ranges, and what decides where they differ."""
+"""The formulas of the literature compared with the exact layer: errors, safe ranges, and decisive numbers."""
 
 import numpy as np
 import xarray as xr
@@ -9,14 +9,14 @@ from study.figures.registry import pick
 from . import formulas
 from .formulas import Formula
 
-LEVELS = (0.01, 0.05)  # errors for which the tables state the ranges of a/h
+LEVELS = (0.01, 0.05)  # errors for which the tables have the ranges of a/h
 SERIES_UP_TO = 0.15
-"""a/h below which the series of F/F_H is fitted: with degree 6 the first two coefficients agree with those known in
-closed form to 1e-4 (tests/literature/test_literature.py)."""
+"""The series of F/F_H is fitted below this a/h: with degree 6 the first two coefficients agree to 1e-4 with their
+closed forms (tests/literature/test_literature.py)."""
 
 
 def contacts_on_layer(rigid: xr.Dataset, bonded: bool, nu: float) -> xr.Dataset:
-    """The contacts of one layer on a rigid base, by rising a/h. Without friction the Poisson ratio has no effect."""
+    """The contacts of one layer on a rigid base, in order of a/h. Without friction the Poisson ratio has no effect."""
     case = pick(rigid, bonding="bonded", nu1=nu) if bonded else pick(rigid, bonding="frictionless")
     return case.sortby("h", ascending=False)
 
@@ -41,7 +41,8 @@ def stiffness(coated: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def stiffness_errors(coated: xr.Dataset) -> dict[str, np.ndarray]:
-    """Name of a formula -> its relative error (n, a/h). The last formula has a free α: each n gets the best one."""
+    """Name of a formula -> its relative error (n, a/h). The last formula has a free α: it gets the best α for each
+    n."""
     x, n, exact = stiffness(coated)
     nu = float(coated["nu1"])
     by_name = {name: formula(x, n[:, None], nu) / exact - 1 for name, (formula, _) in formulas.STIFFNESSES.items()}
@@ -66,19 +67,19 @@ def over_smooth(rough: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray, 
 
 
 def safe_range(x: np.ndarray, error: np.ndarray, level: float, *, last: bool = False) -> tuple[float, float]:
-    """Smallest and largest x of the stretch where |error| <= level that begins at the first x, or ends at the last.
+    """Smallest and largest x of the range with |error| <= level that begins at the first x, or ends at the last x.
 
-    The error is linear in ln x between the points. NaN where there is no such stretch.
+    The error is linear in ln x between the points. NaN if there is no such range.
     """
     if last:
         start, stop = safe_range(1 / x[::-1], error[::-1], level)
         return 1 / stop, 1 / start
     if abs(error[0]) > level:
         return np.nan, np.nan
-    beyond = np.abs(error) > level
-    if not beyond.any():
+    exceeds = np.abs(error) > level
+    if not exceeds.any():
         return x[0], x[-1]
-    i = int(np.argmax(beyond))
+    i = int(np.argmax(exceeds))
     share = (np.copysign(level, error[i]) - error[i - 1]) / (error[i] - error[i - 1])
     return x[0], float(np.exp(np.interp(share, (0, 1), np.log(x[i - 1 : i + 1]))))
 
@@ -113,7 +114,7 @@ def coefficients(rigid: xr.Dataset, bonded: bool, nu: float) -> np.ndarray:
 
 
 def kappa(rigid: xr.Dataset, nu: float, at: float | np.ndarray = 1.0) -> np.ndarray:
-    """E_eff/E1* of bonded layers at some a/h: a cubic spline of logarithms."""
+    """E_eff/E1* of bonded layers at the a/h `at`: a cubic spline of logarithms."""
     from scipy.interpolate import CubicSpline
 
     contact = contacts_on_layer(rigid, True, nu)

@@ -8,9 +8,9 @@ from study.figures.registry import TWO_COLUMNS, Columns, figure, joined, table
 
 from . import compared, formulas, pull_off, shapes, yielding  # noqa: F401 - figures and tables of their own
 
-SHOWN_AT = (0.1, 0.5, 1.0, 2.0, 4.0)  # a/h whose errors the table tells
+SHOWN_AT = (0.1, 0.5, 1.0, 2.0, 4.0)  # a/h for which the table has the errors
 SHOWN_N = (0.01, 0.1, 0.5, 2.0, 10.0, 100.0)
-THIN_TO = (2.0, 20.0)  # largest a/h over which the formulas of the stiffness are judged
+THIN_TO = (2.0, 20.0)  # largest a/h of the two ranges over which the table has the error of the stiffness
 INTERFACES = ((True, 0.5, r"(a) rigid base, bonded, $\nu = 1/2$"), (False, 0.3, "(b) rigid base, frictionless"))
 STYLES = {
     "Hertz": ("0.45", "-"),
@@ -26,7 +26,8 @@ STYLES = {
     "Bec": ("k", "-"),
     "Doerner": ("#5e4fa2", (0, (4, 1.5))),
 }
-"""First word of the name of a formula -> colour, dashes. If two begin alike, what follows the comma is in the key."""
+"""First word of the name of a formula -> colour, dashes. If two begin alike, the key also has the words after the
+comma."""
 
 
 def look(name: str) -> dict:
@@ -44,9 +45,9 @@ def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
     20, over n. Grey: within 1 % and 5 %."""
     parts = []
 
-    def keep(panel: int, x: np.ndarray, error: np.ndarray) -> None:
-        place = {"panel": np.full(len(x), panel), "curve": np.full(len(x), len(parts))}
-        parts.append(place | {"a/h or n": x, "error": error})
+    def add_part(panel: int, x: np.ndarray, error: np.ndarray) -> None:
+        columns = {"panel": np.full(len(x), panel), "curve": np.full(len(x), len(parts))}
+        parts.append(columns | {"a/h or n": x, "error": error})
 
     for panel, (axes, (bonded, nu, title)) in enumerate(zip(panels, INTERFACES, strict=False)):
         for formula in formulas.LOADS:
@@ -54,7 +55,7 @@ def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
                 x, error = compared.load_error(formula, rigid, nu)
                 words = formula.name.replace("general", f"general, nu = {nu:g}").replace("nu =", r"$\nu$ =")
                 axes.plot(x, np.abs(error), label=words, **look(formula.name))
-                keep(panel, x, error)
+                add_part(panel, x, error)
         axes.set(xlabel="$a/h$", xlim=(0.01, 20), title=title)
     axes = panels[2]
     _, n, _ = compared.stiffness(coated)
@@ -62,7 +63,7 @@ def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
         if not name.endswith("0.626"):
             largest = np.abs(error).max(axis=1)
             axes.plot(n, largest, label=name, **look(name))
-            keep(2, n, largest)
+            add_part(2, n, largest)
     axes.set(xlabel="$n = E_1^*/E_2^*$", xlim=(0.01, 100), title=r"(c) coating, bonded, $\nu = 0.3$")
     axes.figure.suptitle("smooth punch, against the exact layer", fontsize=7)
     for axes, words in zip(panels, ("error of the load", "error of the load", "largest error, stiffness"), strict=True):
@@ -71,7 +72,7 @@ def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
 
 
 def is_short(formula: formulas.Formula, bonded: bool) -> bool:
-    """Whether it is the short form of Dimitriadis without friction: it is drawn although it is made for ν = 1/2."""
+    """Whether it is the short form of Dimitriadis without friction: it is drawn although it is meant for ν = 1/2."""
     return not bonded and formula.name.endswith("nu = 1/2")
 
 
@@ -148,10 +149,10 @@ def decided(rigid: xr.Dataset, coated: xr.Dataset) -> list[tuple]:
         rows.append((f"c{k + 1}, bonded, nu = 1/2", "Dimitriadis", first[k], bonded[k]))
         rows.append((f"c{k + 1}, bonded, nu = 1/2", "Garcia", second[k], bonded[k]))
     for nu in (0.0, 0.3, 0.5):
-        said = -2 * formulas.ALPHA_LOOSE * (3 - 2 * nu) / (1 - nu) / np.pi
-        rows.append(("c1, frictionless, any nu", f"Dimitriadis with nu = {nu:g}", said, loose[0]))
-    for script, said in formulas.KAPPA.items():
-        for nu, value in said.items():
+        value_of_formula = -2 * formulas.ALPHA_LOOSE * (3 - 2 * nu) / (1 - nu) / np.pi
+        rows.append(("c1, frictionless, any nu", f"Dimitriadis with nu = {nu:g}", value_of_formula, loose[0]))
+    for script, value_of_formula in formulas.KAPPA.items():
+        for nu, value in value_of_formula.items():
             rows.append((f"kappa at a/h = 1, nu = {nu:g}", script, value, float(compared.kappa(rigid, nu))))
     x, n, exact = compared.stiffness(coated)
     near = int(np.argmin(np.abs(n - 1)))
@@ -176,6 +177,8 @@ def rough_spheres(rough: xr.Dataset) -> list[tuple]:
     values = zip(*compared.over_smooth(rough), rough["Ra"].values, rough["lam0"].values, strict=True)
     for alpha, mu, p0, radius, Ra, covered in values:
         alpha, mu = float(f"{alpha:.4g}"), round(mu)
-        said = formulas.GREENWOOD_TRIPP[mu][alpha]
-        rows.append((alpha, mu, Ra, covered, said[0], p0, said[0] / p0 - 1, said[1], radius, said[1] / radius - 1))
+        ratios = formulas.GREENWOOD_TRIPP[mu][alpha]
+        rows.append(
+            (alpha, mu, Ra, covered, ratios[0], p0, ratios[0] / p0 - 1, ratios[1], radius, ratios[1] / radius - 1)
+        )
     return rows

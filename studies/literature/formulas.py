@@ -1,8 +1,9 @@
-"""Published formulas for a smooth sphere on a layer, as they are written, and where their constants were read.
+"""Published formulas for a smooth sphere on a layer, as they are written, and the sources of their constants.
 
-A formula of the load is F/F_H over χ = sqrt(R D)/h: the load at the depth D, over Hertz's 4/3 E1* sqrt(R) D^(3/2), on a
-rigid base. A formula of the stiffness is E_eff = (dP/dD)/(2a), the modulus that a flat punch of the contact's radius
-feels, over x = a/h: in E1* on a rigid base, in E2* on a half-space with n = E1*/E2*.
+A formula of the load gives F/F_H as a function of χ = sqrt(R D)/h on a rigid base: F is the load at the depth D, and
+F_H Hertz's load 4/3 E1* sqrt(R) D^(3/2). A formula of the stiffness gives E_eff = (dP/dD)/(2a), the modulus that a flat
+punch of the contact's radius feels, as a function of x = a/h: in E1* on a rigid base, in E2* on a half-space with
+n = E1*/E2*.
 """
 
 from collections import namedtuple
@@ -14,7 +15,7 @@ import numpy as np
 
 Formula = namedtuple("Formula", "name of bonded nu read thin", defaults=(False,))
 """One formula. name : authors and year; of : (χ, ν) -> F/F_H; bonded : the interface; nu : Poisson ratios of the layer
-for which it is made; read : where its constants were read; thin : whether it is the limit h << a"""
+for which it holds; read : source of its constants; thin : whether it is the limit h << a"""
 ATOMICJ = "AtomicJ, github.com/pawelHerm"
 PYFMRHEO = "PyFMRheo, github.com/jlopezalo, models/bec.py"
 BIOMOMENTUM = "Biomomentum-functions, github.com/RenatoC322: parabolas fitted to its table"
@@ -23,7 +24,7 @@ DERIVED = "derived here from L at small u"
 
 
 DIMITRIADIS, GARCIA = (1.133, 1.283, 0.769, 0.0975), (1.133, 1.497, 1.469, 0.755)
-"""c1 to c4 of a bonded layer of ν = 1/2."""
+"""c1 to c4 for a bonded layer of ν = 1/2."""
 ALPHA_LOOSE = -0.347  # the first factor of α0 of Dimitriadis et al. for a loose layer
 
 
@@ -46,7 +47,7 @@ def dimitriadis(chi, nu, bonded: bool):
 
 
 def hermanowicz(chi, nu, bonded: bool):
-    """Hermanowicz 2021, piecewise in RD/h² = χ²; bonded: of an incompressible layer."""
+    """Hermanowicz 2021, piecewise in RD/h² = χ²; the bonded layer is incompressible."""
     hertz = 4 / 3 * chi**3
     if bonded:
         thick = hertz * (1 + 1.10534164 * chi + 1.60674941 * chi**2 + 1.60182944 * chi**3)
@@ -62,11 +63,11 @@ HAYES = {
     0.45: ((-0.1537, 0.7974, 1.0113), (0.2483, 0.6539, 0.6258)),
     0.5: ((-0.1462, 0.9008, 1.0067), (0.5737, 0.4156, 0.6875)),
 }
-"""ν -> parabolas in a/h, from its square down: of a²/(R D), and of κ in P = 2 E1* D a κ."""
+"""ν -> coefficients of two parabolas in a/h, from the square down: a²/(R D), and κ in P = 2 E1* D a κ."""
 
 
 def hayes(chi, nu):
-    """Hayes et al. 1972 for a sphere: a from the depth, then the load, both by parabolas fitted to their tables."""
+    """Hayes et al. 1972 for a sphere: a from the depth, then the load, each by a parabola fitted to their tables."""
     (A, B, C), kappa = HAYES[nu]
     square = 1 / chi**2 - A  # (a/h)² square = B a/h + C
     x = (B + np.sqrt(B**2 + 4 * C * square)) / (2 * square)
@@ -80,7 +81,7 @@ def springs(chi, nu, bonded: bool):
 
 
 def squeezed(chi, nu):
-    """Johnson 1985, 5.8 and Jaffar 1989: a bonded incompressible layer is squeezed out, P = (π/2) E1* R² D³/h³."""
+    """Johnson 1985, 5.8 and Jaffar 1989: squeezing of a bonded incompressible layer, P = (π/2) E1* R² D³/h³."""
     return 3 * np.pi / 8 * chi**3
 
 
@@ -107,17 +108,17 @@ KAPPA = {
     "Hayes et al. 1972 in a script of I. Kafian-Attari, 2021": {0.5: 3.609},
 }
 """ν -> κ at a/h = 1, the stiffness of a flat punch on a bonded layer on a rigid base, over 2 E1* a: two quotations of
-the same table, in programs for cartilage. tests/literature/test_literature.py has all of it."""
+the same table, in programs for cartilage. tests/literature/test_literature.py has the whole table."""
 
 
 def gao_weight(x, nu):
-    """φ0 of Gao, Chiu and Lee 1992: the share of the layer in the stiffness to first order in its difference."""
+    """φ0 of Gao, Chiu and Lee 1992: the layer's share of the stiffness, to first order in the difference of moduli."""
     far = (1 - 2 * nu) * np.log1p(x**2) / x - x / (1 + x**2)
     return 2 / np.pi * np.arctan(1 / x) + far / (2 * np.pi * (1 - nu))
 
 
 def hay_crawford(x, n, nu, F=0.0626):
-    """Hay and Crawford 2011: 1/E_eff = (1 - φ0)/(1 + F φ0 n) + φ0/n, of equal Poisson ratios."""
+    """Hay and Crawford 2011: 1/E_eff = (1 - φ0)/(1 + F φ0 n) + φ0/n for equal Poisson ratios."""
     share = gao_weight(x, nu)
     return 1 / ((1 - share) / (1 + F * share * n) + share / n)
 
@@ -129,7 +130,7 @@ def perriot_barthel(x, n, nu):
 
 
 def doerner_nix(x, n, nu, alpha):
-    """Doerner and Nix 1986 with the contact radius, as King 1987 has it: 1/E_eff = 1/n + (1 - 1/n) exp(-α/x)."""
+    """Doerner and Nix 1986 with the contact radius, as in King 1987: 1/E_eff = 1/n + (1 - 1/n) exp(-α/x)."""
     return 1 / (1 / n + (1 - 1 / n) * np.exp(-alpha / x))
 
 
@@ -141,11 +142,11 @@ STIFFNESSES = {
     # layer and half-space as two springs in series
     "Bec et al. 2006": (lambda x, n, nu: 1 / (1 / (n * (1 + np.pi * x / 2)) + 1 / (1 + 2 / (np.pi * x))), NIMS),
 }
-"""Name -> (x, n, ν) -> E_eff/E2* on a bonded layer, and where its constants were read."""
+"""Name -> E_eff/E2* on a bonded layer as a function of (x, n, ν), and the source of its constants."""
 
 _FILE = Path(__file__).with_name("greenwood_tripp.csv")
 GREENWOOD_TRIPP: dict[int, dict[float, tuple[float, float]]] = {}
-"""μ -> α -> p(0) and effective radius over those of Hertz, of the equations of Greenwood and Tripp (1967):
-tools/references/make_greenwood_tripp.py solves them."""
+"""μ -> α -> p(0) and effective radius over those of Hertz, by the equations of Greenwood and Tripp (1967), which
+tools/references/make_greenwood_tripp.py solves."""
 for _mu, _alpha, *_ratios in np.loadtxt(_FILE, delimiter=",", skiprows=1).tolist():
     GREENWOOD_TRIPP.setdefault(int(_mu), {})[_alpha] = tuple(_ratios)

@@ -1,20 +1,21 @@
-"""Pull-off of a ball from a layer on a rigid base, beside the half-space of Johnson, Kendall and Roberts (1971)."""
+"""Pull-off of a ball from a layer on a rigid base, over the half-space of Johnson, Kendall and Roberts (1971)."""
 
 import numpy as np
 import xarray as xr
 
 from study.figures.registry import pick, table
 
-SHOWN_AT = (0.1, 0.3, 1.0, 2.0, 4.0)  # a/h at pull-off, at which the table tells the loads
+SHOWN_AT = (0.1, 0.3, 1.0, 2.0, 4.0)  # a/h at pull-off for which the table has the loads
 THIN = {"frictionless": 2.0, "bonded, ν = 0.3": 2.0, "bonded, ν = 0.45": 2.0, "bonded, ν = 0.5": 3.0}
-"""Case -> -P_off/(π w R) where the layer is thin against the contact: of local springs 2, of what is squeezed out 3."""
+"""Case -> -P_off/(π w R) for layers much thinner than the contact is wide: 2 if the layer acts like local springs, 3 if
+it is squeezed out."""
 
 
 def over_half_space(contacts: xr.Dataset, label: str) -> tuple[np.ndarray, np.ndarray]:
-    """a/h at pull-off, rising, and P_off over that of a half-space, -1.5 π w R."""
+    """a/h at pull-off in ascending order, and P_off over its value on a half-space, -1.5 π w R."""
     case = pick(contacts, label=label).sortby("h", ascending=False)
-    held = -1.5 * np.pi * float(case["w_adhesion"])
-    return case["a_off"].values / case["h"].values, case["P_off"].values / held
+    on_half_space = -1.5 * np.pi * float(case["w_adhesion"])
+    return case["a_off"].values / case["h"].values, case["P_off"].values / on_half_space
 
 
 @table(

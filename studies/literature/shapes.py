@@ -1,7 +1,7 @@
 """Published formulas for cones, flat punches and balls on a bonded layer of ν = 1/2 on a rigid base, in units E1* = 1.
 
-Each gives the load at the depth D: of a half-space (Sneddon 1965, closed), or that times 1 + c1 x + c2 x² + ..., where
-x is D tan(α)/h of a cone, b/h of a flat punch and sqrt(R D)/h of a ball.
+Each gives the load at the depth D: the load on a half-space (Sneddon 1965, closed), alone or times
+1 + c1 x + c2 x² + ..., where x is D tan(α)/h for a cone, b/h for a flat punch and sqrt(R D)/h for a ball.
 """
 
 from collections.abc import Callable
@@ -14,12 +14,12 @@ from study.figures.registry import pick, table
 
 from .formulas import DIMITRIADIS, GARCIA, PYFMRHEO
 
-SHOWN_AT = (0.1, 0.5, 1.0, 2.0, 4.0)  # a/h whose errors the table tells
+SHOWN_AT = (0.1, 0.5, 1.0, 2.0, 4.0)  # a/h for which the table has the errors
 _GAVARA = 1.7795 / np.pi**2  # times tan(α) D/h
 
 
 class Formula(NamedTuple):
-    """name : authors and year; shape : of the punch; of : (D, h, contact) -> P; read : where its constants were read"""
+    """name : authors and year; shape : of the punch; of : (D, h, contact) -> P; read : source of its constants"""
 
     name: str
     shape: str
@@ -28,7 +28,7 @@ class Formula(NamedTuple):
 
 
 def _series(half_space: Callable, x: Callable, *coefficients: float) -> Callable:
-    """The load of the half-space times a polynomial in x."""
+    """The load on the half-space times a polynomial in x, as a function of (D, h, contact)."""
     polynomial = np.polynomial.polynomial.polyval
     return lambda D, h, case: half_space(D, case) * polynomial(x(D, case) / h, (1.0, *coefficients))
 
@@ -82,12 +82,12 @@ FORMULAS = (
 
 
 def load_error(formula: Formula, contacts: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """a/h by rising a/h, and the relative error of a formula's load at the exact depth."""
+    """a/h in ascending order, and the relative error of a formula's load at the exact depth."""
     case = pick(contacts, label=formula.shape).sortby("h", ascending=False)
     case = case.isel(h=case["status"].values == 0)
     h = case["h"].values
-    says = formula.of(float(case["D"]), h, case)
-    return case["a"].values / h, says / case["P"].values - 1
+    load = formula.of(float(case["D"]), h, case)
+    return case["a"].values / h, load / case["P"].values - 1
 
 
 @table(

@@ -1,7 +1,7 @@
-"""Published laws of one sphere that yields, beside that of micro = "elastic_plastic": a figure. No study is needed.
+"""Published laws of one yielding sphere, compared with micro = "elastic_plastic": a figure that needs no study.
 
-Each law gives the mean pressure of the spot and its area at the approach w, over w_c, at which it first yields by that
-law. E is the modulus E* of sphere and flat together, R = 1, Y the yield strength.
+Each law takes the approach w over w_c, the approach at which the sphere first yields by that law. It gives the mean
+pressure of the spot, and its area. E is the modulus E* of sphere and flat together, R = 1, Y the yield strength.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from study.figures.registry import TWO_COLUMNS, Columns, figure, joined
 
 NU, Y = 0.3, 1e-3  # of a steel, Y over E*
 W = np.geomspace(0.3, 600, 400)
-"""w/w_c at which the laws are shown: 0.3 is elastic in all, 110 is full plasticity by Kogut and Etsion."""
+"""w/w_c in the figure: 0.3 is elastic by all laws, 110 is full plasticity by Kogut and Etsion."""
 
 
 def ceb(w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -40,16 +40,16 @@ def jg(w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def ours(w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The law of this program with H = 2.84 Y, for a spot far from others: the mean pressure is p/λ as p → 0."""
-    b = np.geomspace(0.5, 100, 4000) * np.pi / 2 * yield_pressure(NU) * Y  # in units of that at first yield
-    cell = 1e5 * b.max()  # so large that the neighbours are not felt
+    """The law of this program with H = 2.84 Y, for a spot far from others: the mean pressure is p/λ for p → 0."""
+    b = np.geomspace(0.5, 100, 4000) * np.pi / 2 * yield_pressure(NU) * Y  # in units of b at first yield
+    cell = 1e5 * b.max()  # so large that the spot does not feel its neighbours
     p_star, A_star, X, bound = LAW.scales(1.0, 1 / (np.pi * cell**2), 1.0, TABOR * Y, Y, NU)
     t = b / cell
     y = t / np.sqrt((1 - t) * (1 + t))
     curve = LAW.curve(y, X, bound)
-    approach, first = A_star * curve.g, (np.pi / 2 * yield_pressure(NU) * Y) ** 2
-    pressure = np.interp(w, approach / first, p_star * curve.q / LAW.area(y, curve.q, X, bound) / Y)
-    return pressure, np.interp(w, approach / first, b**2 / approach)
+    approach, first_yield = A_star * curve.g, (np.pi / 2 * yield_pressure(NU) * Y) ** 2
+    pressure = np.interp(w, approach / first_yield, p_star * curve.q / LAW.area(y, curve.q, X, bound) / Y)
+    return pressure, np.interp(w, approach / first_yield, b**2 / approach)
 
 
 LAWS = {

@@ -1,4 +1,4 @@
-"""Figures 3 to 8 and 10 of the paper, and a companion of each that shows the same on the exact layer.
+"""Figures 3 to 8 and 10 of the paper, each with a companion that shows the same contacts on the exact layer.
 
 The curves have the paper's names: 1 rough, layered; 2 rough, homogeneous; 1' smooth, layered; 2' smooth, homogeneous.
 A companion draws the curves of the layer on the exact layer, with the paper's thin layer dotted beside them.
@@ -31,22 +31,22 @@ SIZE, HIGH = (ONE_COLUMN, 3.0), (ONE_COLUMN, 3.6)  # the second has four curves
 def with_companion(figure: Callable, companion: Callable, words: str = ""):
     """Register `draw(axes, *datasets, exact)` as a figure and, with exact = True, as its companion.
 
-    figure, companion : decorators of both
-    words : stand in the captions of both after the docstring of `draw`; what holds for the layer is added
+    figure, companion : decorators of the two
+    words : follow the docstring of `draw` in both captions, and precede the sentences about the layer
     """
 
     def register(draw):
         for exact, decorator in enumerate((figure, companion)):
-            drawn = partial(draw, exact=bool(exact))
-            drawn.__doc__ = " ".join(filter(None, (caption_of(draw), words, LAYER_EXACT if exact else LAYER_THIN)))
-            decorator(drawn)
+            draw_one = partial(draw, exact=bool(exact))
+            draw_one.__doc__ = " ".join(filter(None, (caption_of(draw), words, LAYER_EXACT if exact else LAYER_THIN)))
+            decorator(draw_one)
         return draw
 
     return register
 
 
 def cases_of(dataset: xr.Dataset, curve: str, exact: bool) -> dict[str, xr.Dataset]:
-    """{curve: its case}; in a companion the case on the exact layer, and the paper's under "CURVE, thin layer"."""
+    """{curve: its case}; in a companion the case on the exact layer, and the paper's case as "CURVE, thin layer"."""
     if not (exact and curve in EXACT_LAYER):
         return {curve: pick(dataset, label=CURVES[curve])}
     return {curve: pick(dataset, label=EXACT_LAYER[curve]), f"{curve}, thin layer": pick(dataset, label=CURVES[curve])}
@@ -61,10 +61,10 @@ def plot(axes, points: list[tuple], label: str) -> list:
 
 
 def pressures(axes, shown: list[tuple[dict[str, xr.Dataset], str, str]], a0: float, dotted: str = "") -> Columns:
-    """Draw p/E2* over r/a0: curves with their names, labels, limits, legend, and notes on what is not valid.
+    """Draw p/E2* over r/a0: curves with names, labels, limits, legend, and notes on violated assumptions.
 
-    shown : for each curve its cases (the first has the name of the curve), its label, and where its name stands
-    dotted : what the legend calls the dotted lines, if there are some
+    shown : for each curve its cases (the first has the name of the curve), its label, and the side of its name
+    dotted : label of the dotted lines in the legend, "" without such lines
     """
     columns = {}
     for cases, label, side in shown:
@@ -117,7 +117,7 @@ def against_load(axes, sweep: xr.Dataset, main: xr.Dataset, exact: bool, what: t
     """One quantity against the load; P0 marked, loads shaded where an assumption fails.
 
     what : the quantity, its unit and label on the ordinate
-    sides : curve -> on which side of it its name stands
+    sides : curve -> the side of the curve on which its name stands
     """
     quantity, scale, label = what
     P, columns, first = sweep["P"].values, {"P/(E2* R^2)": sweep["P"].values}, {}

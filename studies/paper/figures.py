@@ -1,4 +1,4 @@
-"""The figures and tables of the paper. Those that show results stand in the files that are imported here."""
+"""The figures and tables of the paper. Figures of results are in the modules that are imported here."""
 
 from pathlib import Path
 

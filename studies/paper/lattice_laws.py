@@ -1,6 +1,6 @@
-"""Table 1 and Figures 9 and 10 of the paper beside the same for asperities on a square lattice.
+"""Table 1 and Figures 9 and 10 of the paper, compared with asperities on a square lattice.
 
-The law of the lattice takes each neighbour where it is; the paper's disc cell spreads the neighbours evenly.
+The law of the lattice has each neighbour in its place; the paper's disc cell spreads the neighbours evenly.
 """
 
 import numpy as np
@@ -56,8 +56,8 @@ def densities(panels, lattice: xr.Dataset, paper: xr.Dataset) -> Columns:
     shown, differences = [], {}
     a0 = float(pick(paper, Nbar=250_000, base="thin_layer")["a"])
     for i, side in enumerate(("above", "below", "below")):
-        name, here = str(i + 1), lattice.isel(Nbar=i)
-        true, disc = (here.sel(micro=micro) for micro in ("square_lattice", "disc_cell"))
+        name, of_density = str(i + 1), lattice.isel(Nbar=i)
+        true, disc = (of_density.sel(micro=micro) for micro in ("square_lattice", "disc_cell"))
         fitted = pick(paper, Nbar=float(true["Nbar"]), base="layered")
         cases = {name: true, f"{name}, power law": fitted}
         shown.append((cases, rf"{name}: $\bar N R^2 = {int(true['Nbar'])}$", side))

@@ -19,7 +19,7 @@ PRESSURES = np.linspace(1e-4, 0.025, 250)  # p/E1* of the paper's fit, Section 4
 _DISC = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 0.8}
 _PAPER = {"linestyle": (0, (1, 1.2)), "linewidth": 1.3}
 LOOKS = {"fit": {"linestyle": "-"}, "lattice": {"linestyle": "-"}, "exact": _DISC, "disc": _DISC, "paper": _PAPER}
-"""Law -> its lines; those of the last are drawn on top."""
+"""Law -> style of its lines; the last law is drawn on top."""
 PAPERS_NAME = "with the paper's $B$, $\\beta$"
 PANELS = {"a": [(0.004, N) for N in (250_000, 62_500, 15_625)], "b": [(Ra, 250_000) for Ra in (0.004, 0.002, 0.001)]}
 """Ra and N̄ of the curves in each panel of Figure 9."""
@@ -37,13 +37,13 @@ def fitted(Ra: float, Nbar: float) -> Fit:
 
 
 def printed(Ra: float, Nbar: float) -> np.ndarray:
-    """A/R at PRESSURES with the constants that the paper prints."""
+    """A/R at PRESSURES with the constants printed in the paper."""
     B, beta = next(row[2:] for row in numbers.TABLE1 if row[:2] == (Ra, Nbar))
     return B * PRESSURES**beta
 
 
 def largest_error(A: np.ndarray, true: np.ndarray) -> float:
-    """Largest relative error of A at those PRESSURES for which the paper states errors, both ends included."""
+    """Largest relative error of A at the PRESSURES for which the paper states errors, including both ends."""
     inside = np.isclose(PRESSURES, np.clip(PRESSURES, *numbers.ERROR_INTERVAL), rtol=1e-9)
     return float(np.abs(A / true - 1)[inside].max())
 
@@ -88,8 +88,8 @@ def laws(panels) -> Columns:
 def draw_laws(panels, laws_of: Callable, names: dict[str, str], beside: tuple[str, ...], **place) -> Columns:
     """Draw A[p] of the roughnesses of PANELS by several laws; returns the numbers.
 
-    laws_of : (Ra, N̄) -> law, one of LOOKS -> A/R at PRESSURES; names : law -> what the legend calls it
-    beside : the laws beside whose curves the name of a roughness stands; place : where, see `name_curve`
+    laws_of : (Ra, N̄) -> law, one of LOOKS -> A/R at PRESSURES; names : law -> its label in the legend
+    beside : laws whose curves carry the name of a roughness; place : of the name, see `name_curve`
     """
     columns = {"p/E1*": PRESSURES}
     for axes, (panel, roughnesses) in zip(panels, PANELS.items(), strict=True):

@@ -11,8 +11,8 @@ TABLE1 = (
 ERROR_INTERVAL = (0.0025, 0.025)
 """Pressures in E1* over which the paper states the errors of its fits."""
 ERROR_BOUNDS = {4.0: 0.08, 1.0: 0.05, 0.25: 0.05}
-"""Nbar Ra^2 of a row of Table 1 -> what the error of its fit does not exceed. The paper prints the two bounds, no more;
-that the first row has the wider one follows from the errors of its constants as we find them."""
+"""Nbar Ra^2 of a row of Table 1 -> upper bound of the error of its fit. The paper prints only the two bounds. The wider
+one must belong to the first row, by the errors of its constants that we find."""
 NUMBERS = {
     "P": ("load P at a = a0, rough, layered", 2.72e-5),
     "p0": ("p(0), rough, layered", 0.01),

@@ -1,6 +1,6 @@
-"""The numbers that the paper prints beside ours, and why they may be 0.6 % off (docs/tradeoff.md).
+"""The numbers printed in the paper beside ours, and a reason why they may be 0.6 % off (docs/tradeoff.md).
 
-They are compared with the converged ones, and with single iterates of the paper's successive approximations.
+They are compared with converged numbers, and with single iterates of the paper's successive approximations.
 """
 
 import numpy as np
@@ -25,10 +25,10 @@ SHARED = ("P", "D", "A0", "Ar_An", "p_max")
 
 
 def measured() -> xr.Dataset:
-    """The iterates of the paper's main case at its radius by scheme (8) with k = 0, and what two of them explain.
+    """The iterates of the paper's main case at its radius by scheme (8) with k = 0, and the numbers of two of them.
 
     Over (intervals, iterate): iterate_P, iterate_D, ... of SHARED, in R = E2* = 1. Over `quantity`, keys of
-    `numbers.NUMBERS`: `converged`, and `by_iterates`, see `explained`. `pair`: which iterate, on how many intervals.
+    `numbers.NUMBERS`: `converged`, and `by_iterates`, see `explained`. `pair`: number of intervals, and the iterate.
     """
     problem = Problem.of(a=RADIUS, **MAIN)
     solutions = [[solve_uniform(problem, n, 0.0, 1e-12, m) for m in range(1, STEPS + 1)] for n in INTERVALS]
@@ -41,7 +41,7 @@ def measured() -> xr.Dataset:
 
 
 def nearest_pair(iterates: xr.Dataset) -> dict[str, int]:
-    """Indices of the mesh and of the iterate whose load, and whose successor's depth, are nearest to the paper's."""
+    """Indices of mesh and iterate for which the iterate's load and the next one's depth are nearest to the paper's."""
     load = np.abs(iterates["iterate_P"] / numbers.NUMBERS["P"][1] - 1).isel(iterate=slice(None, -1)).values
     depth = np.abs(iterates["iterate_D"] / numbers.NUMBERS["D"][1] - 1).isel(iterate=slice(1, None)).values
     mesh, step = np.unravel_index(np.argmin(np.maximum(load, depth)), load.shape)
@@ -49,10 +49,10 @@ def nearest_pair(iterates: xr.Dataset) -> dict[str, int]:
 
 
 def explained(iterates: xr.Dataset) -> xr.Dataset:
-    """The paper's numbers of Section 5, converged and by the nearest pair of iterates.
+    """The paper's numbers of Section 5, from converged solutions and from the nearest pair of iterates.
 
-    Of the pair the first iterate gives the load, and the second what is printed for the rough layered contact. The
-    other contacts are converged ones under the load of the second.
+    The first iterate of the pair gives the load. The second gives the other numbers of the rough layered contact. The
+    other contacts are converged solutions under the load of the second iterate.
     """
     pair = nearest_pair(iterates)
     first, second = iterates.isel(pair), iterates.isel(pair | {"iterate": pair["iterate"] + 1})
@@ -65,7 +65,7 @@ def explained(iterates: xr.Dataset) -> xr.Dataset:
 
 
 def contacts(load: float) -> dict[str, float]:
-    """The numbers of Section 5 by converged solutions under one load, keys of `numbers.NUMBERS`."""
+    """The numbers of Section 5 from converged solutions under one load; keys of `numbers.NUMBERS`."""
     changes = {}, {"base": "half_space"}, {"micro": "smooth"}
     layered, bare, smooth = (solve(Problem.of(P=load, **MAIN | change, rtol=1e-9)) for change in changes)
     ours = {name: float(getattr(layered, name)[0]) for name in SHARED} | {"An_ratio": float(bare.a[0] / RADIUS) ** 2}

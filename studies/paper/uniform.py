@@ -1,6 +1,6 @@
-"""The paper's own way: a uniform mesh in r, successive approximations from p = 0, and the radius by halving.
+"""The paper's method: a uniform mesh in r, successive approximations from p = 0, and the radius by halving.
 
-Mesh and stopping rule, which the paper does not give, are chosen in its favour (docs/tradeoff.md). It serves for
+The paper gives neither mesh nor stopping rule; those here favour it (docs/tradeoff.md). The method serves for
 comparison: `solver.solve` needs a tenth of the nodes and of the steps.
 """
 
@@ -15,13 +15,13 @@ from solver.numerics.threads import one_blas_thread
 from solver.scaling import as_cases, dimensionless
 
 LIMIT, LIMIT_RELAXED = 200, 40
-"""Most approximations at one radius: LIMIT, or LIMIT_RELAXED (1 + k) if that is more, since relaxation slows them by
-1 + k. Cases that take more end in a cycle."""
-ROWS = 64  # rows of the operator that are formed at a time. All at once would take 0.5 GB on 1100 intervals
+"""Largest number of approximations at one radius: LIMIT, or LIMIT_RELAXED (1 + k) if that is more, since relaxation
+slows them by 1 + k. Cases that need more end in a cycle."""
+ROWS = 64  # so many rows of the operator are formed at a time. All at once would take 0.5 GB on 1100 intervals
 
 
 UniformMesh = namedtuple("UniformMesh", "x w K")
-"""Nodes x = i/n from the centre, all but x = 1, where p = 0; x, w (n,), K (n, n).
+"""Nodes x = i/n from the centre, except x = 1, where p = 0; x, w (n,), K (n, n).
 
 For a pressure linear between the nodes, in units R = E2* = 1: u(x) - u(1) = 4 a/π K p is the displacement of the
 half-space; 2 π a² w·p is the load, by the trapezoidal rule.
@@ -63,25 +63,25 @@ def elliptic(x: np.ndarray, source: np.ndarray) -> np.ndarray:
 
 
 UniformSolution = namedtuple("UniformSolution", "a P D p0 p_max Ar_An A0 status iterations")
-"""What `solver.Solution` has under these names, (B,) in units R = E2* = 1; NaN where a case diverged."""
+"""The quantities with these names in `solver.Solution`, (B,) in units R = E2* = 1; NaN if a case diverged."""
 
 
 @one_blas_thread()
 def solve_uniform(
     problem: Problem, intervals: int, k: float, tolerance: float, limit: int | None = None
 ) -> UniformSolution:
-    """Solve a batch of rough cases, or smooth ones on a thin layer, as the paper does.
+    """Solve a batch of rough cases, or smooth ones on a thin layer, by the paper's method.
 
     problem : cases on "thin_layer", where its equation applies, or "half_space", given P or a, with R = E2* = 1; its
         scheme, k, rtol and nodes are not used
     intervals : of the uniform mesh on [0, a]
     k : the paper's relaxation, Eqs (8) and (10), >= 0
     tolerance : the approximations stop when |p̂ - p| is below a tenth of it, relative to the largest pressure; the
-        halving when the bracket of ln a is
+        halving stops when the bracket of ln a is
     limit : approximations at one radius; by default LIMIT, or LIMIT_RELAXED (1 + k) if that is more
 
-    `status` is CONVERGED, ITERATION_LIMIT, which keeps the last numbers, DIVERGED, or INVALID_INPUT. Raises ValueError
-    for a base that the paper does not have, smooth cases on the half-space, or an elastic punch.
+    `status` is CONVERGED, ITERATION_LIMIT (with the last numbers), DIVERGED, or INVALID_INPUT. Raises ValueError for a
+    base that is not in the paper, smooth cases on the half-space, or an elastic punch.
 
     >>> from solver import Problem
     >>> layer, asperities = {"h": 0.02, "n": 0.5, "base": "thin_layer"}, {"Nbar": 250000, "Ra": 0.004}
@@ -89,24 +89,24 @@ def solve_uniform(
     >>> print(f"{solve_uniform(case, 40, 10.0, 1e-4).P[0]:.3e}")
     2.704e-05
     """
-    kinds = {*zip(problem.base.tolist(), problem.micro.tolist(), strict=True)}
-    wrong = [kind for kind in kinds if kind[0] not in ("thin_layer", "half_space") or kind == ("half_space", "smooth")]
+    pairs = {*zip(problem.base.tolist(), problem.micro.tolist(), strict=True)}
+    wrong = [kind for kind in pairs if kind[0] not in ("thin_layer", "half_space") or kind == ("half_space", "smooth")]
     if wrong:
         raise ValueError(f"thin_layer, or rough cases on half_space, not {sorted(wrong)}")
     if (problem.m > 0).any():
         raise ValueError("the punch of the paper is rigid: m must be 0")
     invalid = problem.invalid()
-    whole = UniformSolution(*np.full((7, len(problem)), np.nan), *np.zeros((2, len(problem)), dtype=int))
-    for base, micro in kinds:
+    solution = UniformSolution(*np.full((7, len(problem)), np.nan), *np.zeros((2, len(problem)), dtype=int))
+    for base, micro in pairs:
         index = np.flatnonzero((problem.base == base) & (problem.micro == micro) & ~invalid)
         if not len(index):
             continue
         part = Contact(problem.take(index), uniform_mesh(int(intervals)), k, 0.1 * tolerance, limit)
         with np.errstate(all="ignore"):  # a case that diverges becomes NaN and a status
-            for array, values in zip(whole, part.solved(), strict=True):
+            for array, values in zip(solution, part.solved(), strict=True):
                 array[index] = values
-    whole.status[invalid] = Status.INVALID_INPUT
-    return whole
+    solution.status[invalid] = Status.INVALID_INPUT
+    return solution
 
 
 class Contact:
@@ -121,37 +121,39 @@ class Contact:
         self.p, self.count = np.zeros((len(problem), len(mesh.x))), np.zeros(len(problem), dtype=int)
 
     def approximate(self, a: np.ndarray, index: np.ndarray) -> np.ndarray:
-        """Successive approximations of the cases `index` at the radii a, from their last pressure; which settled."""
+        """Approximate the cases `index` at the radii a, from their last pressure. Returns whether each settled."""
         active, settled = np.arange(len(index)), np.zeros(len(index), dtype=bool)
         gap = (a**2 / 2)[:, None] * (1 - self.mesh.x**2)
         for _ in range(self.limit):
-            part, now = index[active], self.p[index[active]]
+            part, pressure = index[active], self.p[index[active]]
             law, C = self.law.take(part), self.C[part, None]
-            left = gap[active] - (4 / np.pi * a[active])[:, None] * (now @ self.mesh.K.T)  # C p + A[p] of Eq. (4)
+            remainder = gap[active] - (4 / np.pi * a[active])[:, None] * (
+                pressure @ self.mesh.K.T
+            )  # C p + A[p] of Eq. (4)
             if C.any():  # (8)
-                y = law.from_pressure(now / law.p_star[:, None])
-                wanted = np.maximum((left - law.A_star[:, None] * law.evaluate(y).g) / C, 0.0)
+                y = law.from_pressure(pressure / law.p_star[:, None])
+                wanted = np.maximum((remainder - law.A_star[:, None] * law.evaluate(y).g) / C, 0.0)
             else:  # (10)
-                y = law.from_displacement(np.maximum(left / law.A_star[:, None], 0.0))
+                y = law.from_displacement(np.maximum(remainder / law.A_star[:, None], 0.0))
                 wanted = law.p_star[:, None] * law.evaluate(y).q
-            self.p[part] = new = (wanted + self.k * now) / (1 + self.k)
+            self.p[part] = new = (wanted + self.k * pressure) / (1 + self.k)
             self.count[part] += 1
-            change = (1 + self.k) * np.abs(new - now).max(axis=1) / new.max(axis=1)
+            change = (1 + self.k) * np.abs(new - pressure).max(axis=1) / new.max(axis=1)
             settled[active] = change < self.tolerance
-            active = active[change >= self.tolerance]  # NaN leaves as well: it has diverged
+            active = active[change >= self.tolerance]  # a diverged case, NaN, leaves as well
             if not len(active):
                 break
         return settled
 
     def load_error(self, eta: np.ndarray, index: np.ndarray) -> np.ndarray:
-        """Logarithm of the load (5) at ln a over the given one."""
+        """Logarithm of the load (5) at eta = ln a over the given load."""
         settled = self.approximate(np.exp(eta), index)
         load = 2 * np.pi * np.exp(2 * eta) * (self.p[index] @ self.mesh.w)
-        self.p[index[~settled]] = 0.0  # a cycle is no start for the next radius
+        self.p[index[~settled]] = 0.0  # the next radius must not start from a cycle
         return np.log(load / self.value[index])
 
     def start(self) -> np.ndarray:
-        """Radii to begin with, from those on the half-space alone, the layer alone, and asperities A ~ p^β alone."""
+        """First radii, combined from those on the half-space, the layer, and asperities A ~ p^β, each alone."""
         law, P = self.law, self.value
         gamma, beta = law.edge()
         e = 1 / beta
@@ -159,12 +161,12 @@ class Contact:
         return ((0.75 * P) ** (4 / 3) + 4 / np.pi * self.C * P + spots**4) ** 0.25
 
     def solved(self) -> UniformSolution:
-        """The outputs at the radius found; D by Eq. (14), whose integral along r is trapezoidal too."""
-        every, law, mesh = np.arange(len(self.value)), self.law, self.mesh
+        """The solution at the final radius; D by Eq. (14), whose integral along r is trapezoidal too."""
+        all_cases, law, mesh = np.arange(len(self.value)), self.law, self.mesh
         a = self.value
         if self.control == "P":
             a = np.exp(halved(self.load_error, np.log(self.start()), self.tolerance))
-        settled, p = self.approximate(a, every), self.p
+        settled, p = self.approximate(a, all_cases), self.p
         P = 2 * np.pi * a**2 * (p @ mesh.w)  # (5)
         if self.control == "P":
             settled &= np.abs(np.log(P / self.value)) < 10 * self.tolerance
@@ -180,9 +182,9 @@ class Contact:
 
 
 def halved(load_error, start: np.ndarray, tolerance: float) -> np.ndarray:
-    """Roots (B,) of increasing functions `load_error(x, index)` by halving. The bracket begins as start ± 0.1, and its
-    ends move outwards, by steps that double, until they enclose the root. A case is done when its bracket is below the
-    tolerance, and given up when its function is NaN."""
+    """Roots (B,) of increasing functions `load_error(x, index)` by halving. The bracket is start ± 0.1 at first, and
+    its ends move outwards, in steps that double, until they enclose the root. A case ends when its bracket is shorter
+    than the tolerance, or when its function is NaN."""
     low, high = start - 0.1, start + 0.1
     for sign, end in ((-1, low), (1, high)):
         step, short = 0.1, np.arange(len(start))

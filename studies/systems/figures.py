@@ -15,7 +15,7 @@ from . import adhesion, scan_law, strength, substrate  # noqa: F401
 COLOURS = {
     1e-3: "#08306b", 1e-2: "#2878b8", 0.1: "#7fb5d8", 1.0: "0.2", 10.0: "#f4a36c", 100.0: "#dd5f21", 1e3: "#8c2d04"
 }  # fmt: skip
-"""Colour by n, from soft (blue) to hard (red)."""
+"""n -> colour, from soft (blue) to hard (red)."""
 PALE = 0.4  # opacity of curves outside validity
 DASHES = (0, (2.5, 1.5))  # of the smooth punch
 RANGE = (0.05, 20.0)  # of a/h
@@ -33,7 +33,7 @@ def master_curves(panels, contacts: xr.Dataset) -> Columns:
     interfaces. E_eff of the smooth punch is dashed.
     """
     peak = derived.peak_pressure(contacts)
-    bare = peak.sel(n=1.0, bonding="bonded", drop=True)  # with equal ν this layer is as if it were not there
+    bare = peak.sel(n=1.0, bonding="bonded", drop=True)  # with n = 1 and equal ν the layer has no effect
     quantities = {
         "E_eff/E1*": derived.effective_modulus(contacts) / contacts["n"],
         "p_peak/p_peak uncoated": peak / bare,

@@ -1,4 +1,4 @@
-"""The micro law of a scan itself beside that of spheres which are measured on it."""
+"""The micro law of a scan itself, compared with the law of spheres that are measured on the scan."""
 
 import numpy as np
 
@@ -32,12 +32,12 @@ def scan_law(panels) -> Columns:
         axes.set(xlabel="x (µm)", ylabel="y (µm)")
         axes.set_title(f"({letter})", fontsize=9, loc="left")
         axes.figure.colorbar(image, ax=axes, label=label, location="bottom", shrink=0.9)
-    for values, other, colour, label in (
+    for values_of_scan, values_of_spheres, colour, label in (
         (of_scan.lam, of_spheres.lam, _BLUE, r"$\lambda$"),
         (of_scan.p_max, of_spheres.p_max, _RED, r"$p_{\max}/E_1^*$"),
     ):
-        curves.loglog(of_scan.p, values, color=colour, linestyle="-", label=f"{label}, scan")
-        curves.loglog(of_scan.p, other, color=colour, linestyle="--", label=f"{label}, spheres")
+        curves.loglog(of_scan.p, values_of_scan, color=colour, linestyle="-", label=f"{label}, scan")
+        curves.loglog(of_scan.p, values_of_spheres, color=colour, linestyle="--", label=f"{label}, spheres")
     curves.set(xlabel="$p/E_1^*$")
     curves.set_title("(c)", fontsize=9, loc="left")
     curves.set_box_aspect(1)
@@ -50,7 +50,7 @@ def scan_law(panels) -> Columns:
 
 
 def spheres(scan: roughness.Scan, p: np.ndarray):
-    """A, λ and p_max of spheres of random heights that are measured on a scan, at pressures over E1*."""
+    """A, λ and p_max of spheres of random heights that are measured on a scan; p : pressures over E1*."""
     asperities = roughness.measure(scan, form="mean")
     numbers = {"Nbar": asperities.Nbar, "Ra": asperities.Ra, "sigma": asperities.sigma, "cut": asperities.cut}
     return LAWS["normal_heights"].at(p, 1.0, **numbers)

@@ -1,4 +1,4 @@
-"""At which pressures and loads coated bodies first yield or crack, from the largest stresses of smooth contacts."""
+"""Pressures and loads at which coated bodies first yield or crack, from the largest stresses of smooth contacts."""
 
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ from solver.yields.asperities import hertz_part, stress_on_axis
 from study import extremes, materials
 from study.figures.registry import TWO_COLUMNS, Columns, figure, joined
 
-#: Colour by n, from soft (blue) to hard (red); 1 is the body without a layer.
+#: n -> colour, from soft (blue) to hard (red); 1 is the body without a layer.
 COLOURS = {0.1: "#08306b", 0.3: "#2878b8", 1.0: "0.2", 3.0: "#f4a36c", 10.0: "#dd5f21", 100.0: "#8c2d04"}
 
 
@@ -55,7 +55,7 @@ def first_yield(panels, contacts: xr.Dataset) -> Columns:
 
 
 class Mode(NamedTuple):
-    """What reaches its strength: words, colour, its largest stress in `study.extremes`, and whose the strength is."""
+    """A way to fail: words, colour, its stress in `study.extremes`, and the body whose strength the stress reaches."""
 
     words: str
     colour: str
@@ -73,13 +73,13 @@ SHOWN = {0.0: "-", 0.4: (0, (4, 1.5))}  # coefficients of friction whose loads a
 THICKNESS = np.geomspace(2.5e-3, 0.2, 161)  # h/R
 CONTOURS = [20, 25, 30, 40, 60, 100, 200, 400]  # of loads over R², N/mm²
 GREY, DOTTED = "0.45", (0, (1, 1.2))
-SHEAR = 1e9  # of the interface in Pa, whose strength no table has
+SHEAR = 1e9  # of the interface, in Pa; no table has its strength
 ASPERITIES = 16.0  # N Ra²: of 2 µm radius, every half micrometre
-PARABOLA = 0.2  # a/R up to which a sphere is its parabola
+PARABOLA = 0.2  # a/R up to which a sphere is close to its parabola
 
 
 def strength(mode: Mode, contacts: xr.Dataset) -> float:
-    """In Pa, from the table of materials; a yield strength that it does not have is the hardness over 2.84."""
+    """The strength in Pa from the table of materials; a yield strength that it lacks is the hardness over 2.84."""
     material = materials.get(contacts[mode.body].item())
     if mode.stress == "s1_layer":
         return material.fracture_strength
@@ -87,8 +87,8 @@ def strength(mode: Mode, contacts: xr.Dataset) -> float:
 
 
 def first(h: np.ndarray, along: np.ndarray, loads: np.ndarray) -> np.ndarray:
-    """The least of the loads that curve (along, loads) has at each h; NaN where it has none. The curve, in logarithms,
-    may run to and fro: what is reached first counts."""
+    """The smallest load of the curve (along, loads) at each h; NaN if it has none there. The curve, drawn in
+    logarithms, may run to and fro: the load that is reached first counts."""
     least = np.full(len(h), np.nan)
     x, y = np.log(along), np.log(loads)
     for i in range(len(x) - 1):
@@ -99,7 +99,8 @@ def first(h: np.ndarray, along: np.ndarray, loads: np.ndarray) -> np.ndarray:
 
 
 def nominal_at_asperity_yield(contacts: xr.Dataset) -> float:
-    """The pressure p in Pa at which elastic asperities, of the softer of punch and layer, first yield."""
+    """The pressure p in Pa at which elastic asperities first yield; they have the hardness of the softer of punch and
+    layer."""
     punch, layer = (materials.get(contacts[name].item()) for name in ("punch", "layer"))
     Y = min(punch.hardness, layer.hardness) / TABOR
     E = 1 / ((1 - punch.nu**2) / punch.E + (1 - layer.nu**2) / layer.E)
@@ -134,15 +135,15 @@ def what_fails_first(panels, contacts: xr.Dataset) -> Columns:
     for number, mode in enumerate(MODES):
         for mu, load in zip(FRICTION, loads[mode], strict=True):
             part = {"mode": np.full(len(THICKNESS), number), "mu": np.full(len(THICKNESS), mu), "h/R": THICKNESS}
-            there = np.isfinite(load)
-            parts.append({name: column[there] for name, column in (part | {"P/R^2 [Pa]": load}).items()})
+            finite = np.isfinite(load)
+            parts.append({name: column[finite] for name, column in (part | {"P/R^2 [Pa]": load}).items()})
     return joined(parts)
 
 
 def reached(contacts: xr.Dataset, stress: xr.DataArray, limit: float, most: float = np.inf) -> np.ndarray:
-    """P/R² at which a stress of the contacts first reaches its limit, over THICKNESS, if a/R is `most` at most.
+    """P/R² at which a stress of the contacts first reaches its limit, for each THICKNESS; NaN if a/R exceeds `most`.
 
-    At one h/a stresses grow like a/R, the thickness like a, and the load like a³.
+    At a fixed h/a stresses grow like a/R, the thickness like a, and the load like a³.
     """
     R, factor = float(contacts["R"]), limit / stress.values
     factor = np.where(factor * (contacts["a"] / R).values <= most, factor, np.nan)
@@ -153,23 +154,23 @@ def draw_loads(axes, contacts: xr.Dataset, largest: dict, loads: dict) -> None:
     """The load of each mode without friction (solid) and in sliding (dashed)."""
     for mu, dashes in SHOWN.items():
         for mode in MODES:
-            every = loads[mode][FRICTION.index(mu)] / 1e6
+            load = loads[mode][FRICTION.index(mu)] / 1e6
             valid = reached(contacts, largest[mu][mode.stress], strength(mode, contacts), PARABOLA) / 1e6
             look = {"color": mode.colour, "linestyle": dashes}
-            axes.plot(THICKNESS, np.where(valid == every, np.nan, every), linewidth=0.6, **look)
+            axes.plot(THICKNESS, np.where(valid == load, np.nan, load), linewidth=0.6, **look)
             axes.plot(THICKNESS, valid, **look)
     shear = reached(contacts, largest[0.0]["tau_interface"], SHEAR)
     axes.plot(THICKNESS, shear / 1e6, color=GREY, linestyle=DOTTED)
     asperities = np.nanmax(reached(contacts, contacts["p0"], nominal_at_asperity_yield(contacts))) / 1e6
-    said = f"asperities would yield from {asperities:.1g} N/mm²"
-    axes.text(0.97, 0.03, said, transform=axes.transAxes, ha="right", va="bottom", fontsize=8, color="0.3")
+    text = f"asperities would yield from {asperities:.1g} N/mm²"
+    axes.text(0.97, 0.03, text, transform=axes.transAxes, ha="right", va="bottom", fontsize=8, color="0.3")
     axes.set(yscale="log", ylabel="$P/R^2$, N/mm²")
     axes.set_ylim(bottom=5)
     axes.set_title("(a) $\\mu$ = 0, dashed: 0.4", loc="left", fontsize=9)
 
 
 def draw_map(axes, loads: dict) -> None:
-    """What comes first, over thickness and friction, and its load."""
+    """The failure that comes first, over thickness and friction, and its load."""
     friction = np.linspace(FRICTION[0], FRICTION[-1], 121)
     fine = np.array([[np.interp(friction, FRICTION, column) for column in np.log(loads[mode]).T] for mode in MODES])
     fine = np.where(np.isfinite(fine), fine, np.inf).swapaxes(1, 2)
@@ -183,7 +184,7 @@ def draw_map(axes, loads: dict) -> None:
     axes.set_title("(b) what comes first; $P/R^2$, N/mm²", loc="left", fontsize=9)
 
 
-#: What reaches its strength first in DLC on chromium on steel: words, colour, the extreme and the layer, 0: the body.
+#: Ways to fail of DLC on chromium on steel: words, colour, the extreme, and the layer; 0: the body.
 _OF_STACK = (
     ("steel yields", "#0072B2", "mises2", 0),
     ("chromium yields", "#009E73", "mises_layer", 2),
@@ -194,7 +195,7 @@ _INTERFACES = (("DLC/chromium", "#CC79A7"), ("chromium/steel", "#56B4E9"))
 
 
 def shares(contacts: xr.Dataset, largest: xr.Dataset) -> np.ndarray:
-    """Stress over strength (4, h1, h2) of each row of `_OF_STACK`."""
+    """Stress over strength for each row of `_OF_STACK`, (4, h1, h2)."""
     carbon, steel = (materials.get(contacts[body].item()) for body in ("layer", "body"))
     limits = (
         steel.yield_strength or steel.hardness / TABOR,
@@ -202,15 +203,15 @@ def shares(contacts: xr.Dataset, largest: xr.Dataset) -> np.ndarray:
         carbon.yield_strength or carbon.hardness / TABOR,
         carbon.fracture_strength,
     )
-    made = []
+    ratios = []
     for (_, _, name, layer), limit in zip(_OF_STACK, limits, strict=True):
         stress = largest[name].sel(layer=layer) if layer else largest[name]
-        made.append(stress.transpose("h", "layers.2.h").values / limit)
-    return np.array(made)
+        ratios.append(stress.transpose("h", "layers.2.h").values / limit)
+    return np.array(ratios)
 
 
 def _between(values: np.ndarray, axes: tuple, fine: list) -> np.ndarray:
-    """Values (n, h1, h2) at finer axes, linearly in the logarithms of the thicknesses."""
+    """Values (n, h1, h2) on the axes `fine`, interpolated linearly in the logarithms of the thicknesses."""
     for axis, (coarse, points) in enumerate(zip(axes, fine, strict=True), 1):
         along = [np.log(coarse), np.log(points)]
         values = np.apply_along_axis(lambda column, along=along: np.interp(along[1], along[0], column), axis, values)
@@ -226,7 +227,7 @@ def which_layer_first(panels, contacts: xr.Dataset) -> Columns:
     GPa, where the layer bends."""
     largest = extremes(contacts)
     h1, h2 = (contacts[name].values * 1e6 for name in ("h", "layers.2.h"))
-    part, each = shares(contacts, largest), {"cmap": None, "alpha": 0.5, "rasterized": True, "shading": "nearest"}
+    part, common = shares(contacts, largest), {"cmap": None, "alpha": 0.5, "rasterized": True, "shading": "nearest"}
     shear, bending = (
         largest[name].transpose("interface", "h", "layers.2.h").values / 1e9
         for name in ("tau_interface", "sr_interface")
@@ -234,10 +235,10 @@ def which_layer_first(panels, contacts: xr.Dataset) -> Columns:
     maps = (part, [colour for _, colour, *_ in _OF_STACK]), (shear, [colour for _, colour in _INTERFACES])
     fine = [np.geomspace(axis[0], axis[-1], 81) for axis in (h1, h2)]
     for axes, (values, colours) in zip(panels, maps, strict=True):
-        look = each | {"cmap": ListedColormap(colours), "vmin": 0, "vmax": len(colours) - 1}
+        look = common | {"cmap": ListedColormap(colours), "vmin": 0, "vmax": len(colours) - 1}
         between = _between(values, (h1, h2), fine)
         axes.set(xscale="log", yscale="log", xlabel="thickness of the DLC, µm", ylabel="thickness of the chromium, µm")
-        axes.set(xlim=(h1[0], h1[-1]), ylim=(h2[0], h2[-1]))  # before the labels, which are placed on the screen
+        axes.set(xlim=(h1[0], h1[-1]), ylim=(h2[0], h2[-1]))  # before the labels, whose places depend on the limits
         axes.pcolormesh(*fine, between.argmax(axis=0).T, **look)
         lines = axes.contour(*fine, between.max(axis=0).T, 5, colors="black", linewidths=0.7)
         axes.clabel(lines, fmt="%.2f", fontsize=7, inline_spacing=2)
@@ -248,9 +249,9 @@ def which_layer_first(panels, contacts: xr.Dataset) -> Columns:
     panels[1].clabel(bent, fmt="%.2g", fontsize=7, inline_spacing=2)
     panels[0].set_title("(a) closest to its strength; stress/strength", loc="left", fontsize=9)
     panels[1].set_title("(b) larger shear; dashed: tension of the DLC, GPa", loc="left", fontsize=9)
-    met = [row[:2] for i, row in enumerate(_OF_STACK) if (part.argmax(axis=0) == i).any()]
-    met += [row for i, row in enumerate(_INTERFACES) if (shear.argmax(axis=0) == i).any()]
-    handles = [Line2D([], [], color=colour, linewidth=5, alpha=0.5, label=words) for words, colour in met]
+    present = [row[:2] for i, row in enumerate(_OF_STACK) if (part.argmax(axis=0) == i).any()]
+    present += [row for i, row in enumerate(_INTERFACES) if (shear.argmax(axis=0) == i).any()]
+    handles = [Line2D([], [], color=colour, linewidth=5, alpha=0.5, label=words) for words, colour in present]
     panels[0].figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=7)
     panels[0].figure.suptitle("ball of steel 52100, DLC ta-C on chromium on steel 52100, bonded, 40 N", fontsize=7)
     grid = {

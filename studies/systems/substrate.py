@@ -1,4 +1,4 @@
-"""From which pitch on asperities feel what lies under a coating."""
+"""The pitch from which on asperities feel the body under a coating."""
 
 import numpy as np
 
@@ -7,7 +7,8 @@ from solver.laws import LAWS
 from study import materials
 from study.figures.registry import TWO_COLUMNS, Columns, figure, joined
 
-#: Coating and body, names of the table of materials, with the words, colour and dashes of the curve: soft ones blue.
+#: Coating and body, names in the table of materials, with words, colour and dashes of the curve; soft coatings are
+#: blue.
 COATINGS = (
     ("alumina", "aluminium 6061", "alumina on aluminium", "#8c2d04", "-"),
     ("DLC ta-C", "silicon", "DLC ta-C on silicon", "#dd5f21", (0, (5, 1.5))),
@@ -19,20 +20,20 @@ COATINGS = (
 )
 PITCH = np.array([0.5, 1.0, *np.geomspace(1.5, 30, 20)])  # over h
 LAM = 0.05  # on a half-space of the coating
-FELT = 0.05  # relative change of p_max from which on a curve has its point
+FELT = 0.05  # relative change of p_max at the point on each curve
 
 
 def ratios(coating: materials.Material, body: materials.Material) -> tuple[np.ndarray, np.ndarray]:
-    """p_max and λ of asperities on a square lattice that feel a bonded coating on its body, over those of the same
-    nominal pressure on a half-space of the coating, at each PITCH."""
+    """p_max and λ, at each PITCH, of asperities on a square lattice that feel a bonded coating on its body, over those
+    on a half-space of the coating under the same nominal pressure."""
     law, ones = LAWS["square_lattice"], np.ones(len(PITCH))
     loads = np.geomspace(1e-4, 1e-2, 2000)
     p = np.interp(LAM, law.at(loads, 1.0, Nbar=1.0, Ra=1.0).lam, loads)
-    bare = law.at(p, 1.0, Nbar=1.0, Ra=1.0)
+    on_half_space = law.at(p, 1.0, Nbar=1.0, Ra=1.0)
     n = coating.reduced_modulus / body.reduced_modulus
     layer = TwoLayers(n * ones, coating.nu * ones, body.nu * ones, ones > 0)
-    felt = law.on_body(layer, 0 * ones, 1 / PITCH, ones, Nbar=ones, Ra=ones).at(p * ones[:, None])
-    return felt.p_max[:, 0] / bare.p_max, felt.lam[:, 0] / bare.lam
+    on_body = law.on_body(layer, 0 * ones, 1 / PITCH, ones, Nbar=ones, Ra=ones).at(p * ones[:, None])
+    return on_body.p_max[:, 0] / on_half_space.p_max, on_body.lam[:, 0] / on_half_space.lam
 
 
 @figure("substrate", size=(TWO_COLUMNS, 3.6), panels=(1, 2))
@@ -72,7 +73,7 @@ def substrate(panels) -> Columns:
 
 
 def felt_from(curve: np.ndarray) -> float | None:
-    """The pitch over h from which on p_max is FELT off; None where it is not."""
+    """The pitch over h from which on p_max differs by FELT; None if it never does."""
     off = np.abs(np.log(curve))
     if off.max() < np.log1p(FELT):
         return None

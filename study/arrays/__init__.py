@@ -1,1 +1,1 @@
-"""Arrays with names of their dimensions: xarray's, which is imported when it is first used, and a light one."""
+"""Arrays with named dimensions: those of xarray, which is imported at its first use, and a light kind."""

@@ -1,4 +1,4 @@
-"""An array with names of its dimensions and attributes: what datasets are made of, before there is one."""
+"""An array with named dimensions and attributes: the part of which datasets are made, before there is a dataset."""
 
 from __future__ import annotations
 
@@ -11,12 +11,11 @@ from . import xarray_later as xr
 
 
 class Labelled(np.lib.mixins.NDArrayOperatorsMixin):
-    """As a Variable of xarray, with what is needed before a dataset is made: arithmetic, by the names of dimensions.
-    For whatever else is asked of it, it becomes one.
+    """A light Variable of xarray, with arithmetic by the names of dimensions. For any other use it becomes a Variable.
 
-    dims : names, one a dimension
-    data : array, of numpy or dask
-    attrs, encoding : as those of a Variable
+    dims : name of each dimension
+    data : array of numpy or dask
+    attrs, encoding : as in a Variable
     """
 
     def __init__(self, dims: str | Sequence[str], data: Any, attrs: dict | None = None, encoding: dict | None = None):
@@ -30,13 +29,15 @@ class Labelled(np.lib.mixins.NDArrayOperatorsMixin):
         return cls(variable.dims, variable.data, variable.attrs, variable.encoding)
 
     def to_xarray(self) -> xr.Variable:
-        """The Variable of xarray. Of plain numbers and texts it is made without xarray's checks: these import dask."""
+        """The Variable of xarray. Plain numbers and texts skip the checks of xarray, which import dask."""
         plain = type(self.data) is np.ndarray and self.data.dtype.kind in "biufU"
         return xr.Variable(self.dims, self.data, self.attrs, self.encoding, fastpath=plain)
 
     def to_axis(self) -> xr.Variable:
-        """The Variable of xarray of a coordinate along its own dimension. xarray makes an index of it, and would import
-        pint to do so; of plain numbers the index is made here."""
+        """The Variable of xarray for a coordinate along its own dimension.
+
+        xarray makes an index of it, and would import pint to do so. For plain numbers the index is made here.
+        """
         if not (type(self.data) is np.ndarray and self.data.dtype == np.float64):
             return self.to_xarray()
         import pandas as pd
@@ -106,22 +107,27 @@ class Labelled(np.lib.mixins.NDArrayOperatorsMixin):
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
         if method != "__call__" or options:
             return NotImplemented
-        if any(hasattr(one, "dims") and not isinstance(one, Labelled) for one in inputs):  # of xarray
-            return ufunc(*(as_xarray(one) if isinstance(one, Labelled) else one for one in inputs))
-        dims = tuple(dict.fromkeys(dim for one in inputs if isinstance(one, Labelled) for dim in one.dims))
-        return Labelled(dims, ufunc(*(one.over(dims) if isinstance(one, Labelled) else one for one in inputs)))
+        if any(hasattr(operand, "dims") and not isinstance(operand, Labelled) for operand in inputs):  # xarray's
+            return ufunc(*(as_xarray(operand) if isinstance(operand, Labelled) else operand for operand in inputs))
+        dims = tuple(dict.fromkeys(dim for operand in inputs if isinstance(operand, Labelled) for dim in operand.dims))
+        return Labelled(
+            dims, ufunc(*(operand.over(dims) if isinstance(operand, Labelled) else operand for operand in inputs))
+        )
 
 
 def along(dims: tuple, variable: Labelled | xr.Variable) -> Any:
     """The numbers of a variable over some of the dimensions `dims`, of length 1 along the others."""
     if variable.dims == dims:
         return variable.data
-    own = variable if variable.ndim < 2 else variable.transpose(*(dim for dim in dims if dim in variable.dims))
-    return own.data[tuple(slice(None) if dim in own.dims else None for dim in dims)]
+    ordered = variable if variable.ndim < 2 else variable.transpose(*(dim for dim in dims if dim in variable.dims))
+    return ordered.data[tuple(slice(None) if dim in ordered.dims else None for dim in dims)]
 
 
 def as_xarray(variable: Labelled | xr.Variable, name: str = "") -> xr.Variable:
-    """A Variable of xarray, if it is not one already; `name` : of a coordinate."""
+    """The Variable of xarray.
+
+    name : of a coordinate
+    """
     if not isinstance(variable, Labelled):
         return variable
     return variable.to_axis() if variable.dims == (name,) else variable.to_xarray()

@@ -1,6 +1,6 @@
-"""xarray, imported when something of it is first used: ``from ..arrays import xarray_later as xr``.
+"""xarray, imported at its first use: ``from ..arrays import xarray_later as xr``.
 
-Importing it takes as long as solving some thousand contacts, and one contact in the terminal needs none of it
+The import takes as long as solving some thousand contacts, and a single contact in the terminal does not need it
 (`make start`).
 """
 
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
 def __getattr__(name: str) -> Any:
     if name.startswith("__"):  # Python asks for __path__ when something is imported from here
         raise AttributeError(name)
-    globals()[name] = member = getattr(import_module("xarray"), name)  # the next time Python finds it without this
+    globals()[name] = member = getattr(import_module("xarray"), name)  # next time Python finds it directly
     return member
 
 
 def is_array(value: Any) -> bool:
-    """Whether it is a DataArray. Before xarray is imported there are none."""
+    """Whether a value is a DataArray. Before xarray is imported there are none."""
     xarray = sys.modules.get("xarray")
     return xarray is not None and isinstance(value, xarray.DataArray)
 
 
 def is_dataset(value: Any) -> bool:
-    """Whether it is a Dataset."""
+    """Whether a value is a Dataset."""
     xarray = sys.modules.get("xarray")
     return xarray is not None and isinstance(value, xarray.Dataset)

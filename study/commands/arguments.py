@@ -1,4 +1,4 @@
-"""The parser of the command line, and what its words stand for: study files, numbers, parts."""
+"""The parser of the command line, and the meaning of its words: study files, numbers, parts."""
 
 import argparse
 import os
@@ -12,11 +12,11 @@ from ..terminal import on_one_line, say
 from ..work.scheduler import address_error
 
 SWITCH = {"true": True, "false": False}
-MOST_DIGITS = 9  # of a whole number: Python refuses to read 4301
+MOST_DIGITS = 9  # of a whole number; Python refuses to read 4301 digits
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose help may be cut off: `roughcoat --help | head` is no error."""
+    """A parser whose help may be cut off: `roughcoat --help | head` is not an error."""
 
     def _print_message(self, message, file=None) -> None:
         say(message.removesuffix("\n"), file or sys.stderr)
@@ -55,10 +55,10 @@ def add_columns(sub: argparse.ArgumentParser) -> None:
 
 def words(text: str) -> list[str]:
     """The words of a list with commas."""
-    found = [word.strip() for word in text.split(",")]
-    if not all(found) or len(set(found)) < len(found):
+    parts = [word.strip() for word in text.split(",")]
+    if not all(parts) or len(set(parts)) < len(parts):
         raise argparse.ArgumentTypeError(f'"{on_one_line(text)}": must be different words with commas between them')
-    return found
+    return parts
 
 
 def add_curves(sub: argparse.ArgumentParser) -> None:
@@ -129,7 +129,7 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
 
 
 def folder(text: str) -> str:
-    """A folder. A leading ~ is expanded, since the shell does not do it in --results=~/there."""
+    """A folder. A leading ~ is expanded, since the shell does not expand it in --results=~/there."""
     path = os.path.expanduser(text)
     if not path or path.startswith("~"):
         raise argparse.ArgumentTypeError(f'"{text}": must be a folder; ./{text} is one that is called so')

@@ -23,7 +23,7 @@ EXTRAS = {
     "cluster": ("distributed", "run --scheduler"),
     "completion": ("argcomplete", "completion of words in a shell"),
 }
-"""Extras that a user may install: the package that each is known by, and what it is for."""
+"""Extra that a user may install -> the package that shows its presence, and its purpose."""
 
 
 def new(options, name: str) -> int:
@@ -68,22 +68,22 @@ def doctor(*_) -> int:
         f"processors     {os.cpu_count()}; a run has a worker for each, and each worker one BLAS thread",
     ]
     for extra, (package, purpose) in EXTRAS.items():
-        there = package_version(package) if find_spec(package) else f"missing: pip install 'roughcoat[{extra}]'"
-        lines.append(f"{extra:14} {there} ({purpose})")
+        state = package_version(package) if find_spec(package) else f"missing: pip install 'roughcoat[{extra}]'"
+        lines.append(f"{extra:14} {state} ({purpose})")
     lines += [f"sample data    {samples.scan()}", f"               {samples.curve()}"]
     lines.append(f"one contact    {'solved: its radius is that of Hertz' if right else 'WRONG: not that of Hertz'}")
     return answer(*lines) or int(not right)
 
 
 def _core() -> str:
-    """Which path computes, and which others there are."""
+    """Words on the path that computes, and on the other variants."""
     from solver.compiled.library import VARIABLE, VARIANTS, available
 
-    there = available()
+    variants = available()
     chosen = os.environ.get(VARIABLE, "")
-    if there and chosen != "numpy":
-        return f"{chosen or there[0]}; this processor has {', '.join(there)} of {', '.join(VARIANTS)}"
-    why = f"{VARIABLE} chooses numpy" if there else "none was built: install a C compiler, then roughcoat again"
+    if variants and chosen != "numpy":
+        return f"{chosen or variants[0]}; this processor has {', '.join(variants)} of {', '.join(VARIANTS)}"
+    why = f"{VARIABLE} chooses numpy" if variants else "none was built: install a C compiler, then roughcoat again"
     return f"none, numpy computes, 3 to 6 times slower ({why})"
 
 
@@ -101,7 +101,7 @@ def explore(options, _) -> int:
 
 
 def _is_page(path: Path) -> bool:
-    """Whether a file is a page of the explorer. Raises OSError where it cannot be read."""
+    """Whether a file is a page of the explorer. Raises OSError if it cannot be read."""
     try:
         with opened(path) as file:
             return MARK in file.read(10 * len(MARK))

@@ -1,4 +1,4 @@
-"""The command `check`. It answers at once, for it imports neither xarray nor netCDF4."""
+"""The command `check`. It answers at once, since it imports neither xarray nor netCDF4."""
 
 import numpy as np
 
@@ -19,7 +19,7 @@ def check(_, file: str) -> int:
 
 
 def assumed_lines(definition: Definition) -> list[str]:
-    """A line about what a study with units does not give, though it counts; otherwise none."""
+    """A line on inputs that matter and that a study with units does not give; otherwise none."""
     names = definition.scene.assumed if definition.scene else ()
     texts = [f"{name} = {PACKAGE.parameter(name if name in VOCABULARY else 'nu1').default}" for name in names]
     texts += ["a rigid punch"] * bool(definition.scene and "E_punch" not in definition.scene.values)
@@ -27,8 +27,8 @@ def assumed_lines(definition: Definition) -> list[str]:
 
 
 def doubtful_lines(definition: Definition) -> list[str]:
-    """A line for loads that fall though asperities yield, and for each input of a study with units that no body has,
-    such as 210 TPa, or whose spread is too wide, and for what it is far outside of."""
+    """Lines on doubts about a study: loads that fall though asperities yield; and with units, inputs that no real body
+    has, such as 210 TPa, spreads that are too wide, and assumptions that contacts are far outside of."""
     if not definition.scene:
         return [f"{definition.name}: beware: {text}" for text in unloading(definition)]
     from ..in_words.sentences import far_outside
@@ -45,7 +45,7 @@ def doubtful_lines(definition: Definition) -> list[str]:
 
 
 def law_lines(definition: Definition) -> list[str]:
-    """A line about the power law of a study, if that is fitted; otherwise none."""
+    """A line on the power law of a study, if it is fitted; otherwise none."""
     if not definition.grid.fitted:
         return []
     ends = [np.unique(definition.grid.values[name][1])[[0, -1]] for name in ("B", "beta")]

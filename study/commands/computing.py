@@ -1,4 +1,4 @@
-"""The commands that compute studies and look at results, and what they say. Each takes one file."""
+"""The commands that compute studies and examine results, and their output. Each takes one file."""
 
 import sys
 from pathlib import Path
@@ -18,8 +18,8 @@ from .checking import doubtful_lines
 
 
 def items(options) -> list:
-    """The files for which the command is called: those that were given; of `list` those in a folder, by default in
-    the working folder and in `studies`."""
+    """The files for which the command is called. `list` takes those in a folder, by default in the working folder and
+    in `studies`."""
     if options.command != "list":
         return options.items
     folder = Path(options.folder) if options.folder else STUDIES if STUDIES.is_dir() else packaged()
@@ -100,11 +100,11 @@ def completed(study: Study, **options) -> int:
         say("\n".join(failure_lines(report, name)), sys.stderr)
         return 1
     answer(report_line(report, name))
-    in_parts = report.path.is_dir()  # these are too large to be read again: `validity` tells
+    in_parts = report.path.is_dir()  # parts are too large to be read again: their `validity` has the flags
     if study.definition.scene and report.complete and report.computed and not in_parts:  # as study.solve warns
-        said = doubtful_lines(study.definition)  # by `run`, before it computed
+        earlier_lines = doubtful_lines(study.definition)  # `run` wrote these before it computed
         for line in (f"{name}: beware: {text}" for text in doubts(study.open())):
-            if line not in said:
+            if line not in earlier_lines:
                 say(line, sys.stderr)
     return 0
 

@@ -18,7 +18,7 @@ from .point import as_numbers, described, number, number_or_text, parameters_of
 from .signals import INTERRUPTED
 
 _RANGE = re.compile(r"\s*\.\.\s*")
-_RESULTS = ("p0", "p_max", "Ar_An", "dP_dD", "P_off")  # which are never inputs
+_RESULTS = ("p0", "p_max", "Ar_An", "dP_dD", "P_off")  # these are never inputs
 
 
 def items(options) -> list[list[str]]:
@@ -28,7 +28,7 @@ def items(options) -> list[list[str]]:
 
 def design(options, texts: list[str]) -> int:
     """Find the input and say it. Exit code 1 if it has no value for some contact."""
-    targets, by, parameters = asked(parameters_of(texts))
+    targets, by, parameters = question_of(parameters_of(texts))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the summary says it
         warnings.simplefilter("always", FarOutside)
@@ -43,10 +43,10 @@ def design(options, texts: list[str]) -> int:
     return code or int(not designed["status"].isel(solution=0).isin([0]).all())
 
 
-def asked(parameters: dict[str, Any]) -> tuple[dict, dict, dict]:
-    """The target, the input that is looked for, "LOW .. HIGH", and the other inputs. Raises StudyError.
+def question_of(parameters: dict[str, Any]) -> tuple[dict, dict, dict]:
+    """The target, the wanted input, "LOW .. HIGH", and the other inputs. Raises StudyError.
 
-    The target is p0, p_max, Ar_An, dP_dD or P_off; without these the first of P, a and D, where it is not the only one.
+    The target is p0, p_max, Ar_An, dP_dD or P_off; without these it is the first of P, a and D, if there are several.
     """
     ranges = {name: value for name, value in parameters.items() if isinstance(value, str) and ".." in value}
     if len(ranges) != 1:
@@ -64,13 +64,13 @@ def asked(parameters: dict[str, Any]) -> tuple[dict, dict, dict]:
 def _as_json(designed: xr.Dataset, name: str) -> str:
     """The answer for a contact, with the numbers of each solution; for several contacts a list."""
     if not designed["design_status"].dims:
-        return json.dumps(_one(designed, name), indent=2, ensure_ascii=False)
+        return json.dumps(_of_contact(designed, name), indent=2, ensure_ascii=False)
     cases = designed.stack({"case": designed["design_status"].dims}, create_index=False)
-    found = [_one(cases.isel(case=i), name) for i in range(cases.sizes["case"])]
-    return json.dumps(found, indent=2, ensure_ascii=False)
+    answers = [_of_contact(cases.isel(case=i), name) for i in range(cases.sizes["case"])]
+    return json.dumps(answers, indent=2, ensure_ascii=False)
 
 
-def _one(designed: xr.Dataset, name: str) -> dict:
+def _of_contact(designed: xr.Dataset, name: str) -> dict:
     solutions = []
     for i in range(designed.sizes["solution"]):
         contact = designed.isel(solution=i)

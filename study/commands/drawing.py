@@ -25,9 +25,9 @@ from .spreadsheet import results_of, write_rows
 
 log = logging.getLogger(__name__)
 KINDS = {"plot": "figure", "table": "table"}
-"""Command -> kind of what it writes."""
+"""Command -> kind of its output."""
 MANY = 8
-"""From so many figures on a second process draws some of them: it takes as long to start as two to draw."""
+"""Number of figures from which on a second process draws some of them. It takes as long to start as two figures."""
 
 
 def items(options) -> list[str]:
@@ -74,15 +74,15 @@ def _curves(options, name: str) -> int:
         written = catalogue.save(Path(options.folder) / stem, figure, columns, title)
     except (StudyError, OSError, MemoryError):
         raise
-    except Exception as error:  # of a file of another program, in which there may be anything
+    except Exception as error:  # a file of another program may contain anything
         log.info("%s", name, exc_info=True)
-        raise StudyError([f"{name}: cannot be drawn: {_said(error)}"], code=1) from error
+        raise StudyError([f"{name}: cannot be drawn: {_in_words(error)}"], code=1) from error
     answer(*written)
     return 0
 
 
-def _said(error: Exception) -> str:
-    """The message of an exception, and where to look."""
+def _in_words(error: Exception) -> str:
+    """The message of an exception, and how to find its place."""
     return f"{type(error).__name__}: {on_one_line(str(error), 300)}; -v before the command shows where"
 
 
@@ -111,31 +111,31 @@ def _write(options, name: str) -> int:
         code = _prepared(options, kind, name)
         if code or not (bare or catalogue.outdated(kind, name, options.results, options.folder)):
             return code
-    second = _second(options, kind, bare)
+    second_process = _second_process(options, kind, bare)
     try:
-        made = second.result_of(name) if second else None
-        if made is None:
+        result = second_process.result_of(name) if second_process else None
+        if result is None:
             answer(*make(name, options.results, options.folder))
         else:
-            answer(*(catalogue.noted(kind, name, options.folder, *made) if options.run and not bare else made[1]))
+            answer(*(catalogue.noted(kind, name, options.folder, *result) if options.run and not bare else result[1]))
     except (StudyError, OSError, MemoryError):
         raise
-    except Exception as error:  # of the function of the figure or table; the others are made
+    except Exception as error:  # from the function of the figure or table; the others are still made
         log.info("%s", name, exc_info=True)
-        raise StudyError([f"{name}: its function fails: {_said(error)}"], code=1) from error
+        raise StudyError([f"{name}: its function fails: {_in_words(error)}"], code=1) from error
     return 0
 
 
 def _prepared(options, kind: str, name: str) -> int:
-    """Compute what is missing of the studies that a figure or table needs. Returns the exit code."""
+    """Compute the missing cases of the studies that a figure or table needs. Returns the exit code."""
     studies = catalogue.needed(kind, name)
     return max((_ready(options, study, study_beside(kind, name)) for study in studies), default=0)
 
 
-def _second(options, kind: str, bare: bool) -> SecondProcess | None:
-    """The second process of a command that draws many figures; None of a few, for it takes a while to start.
+def _second_process(options, kind: str, bare: bool) -> SecondProcess | None:
+    """The second process of a command that draws many figures; None for a few, since it takes a while to start.
 
-    It gets those that can be drawn: if studies are run, they are run before the first figure is drawn.
+    It gets the figures that can be drawn. Studies are run before the first figure is drawn.
     """
     if kind == "figure" and len(options.names) >= MANY and not hasattr(options, "second"):
         names = [name for name in dict.fromkeys(options.names) if _waits(options, kind, name, bare)]
@@ -146,30 +146,30 @@ def _second(options, kind: str, bare: bool) -> SecondProcess | None:
 
 
 def _waits(options, kind: str, name: str, bare: bool) -> bool:
-    """Whether a figure is to be drawn, and can be, as far as that is seen before."""
+    """Whether a figure is to be drawn, and can be, as far as that is known beforehand."""
     if name == catalogue.CAPTIONS:
         return False
     try:
         if options.run and _prepared(options, kind, name):
             return False
         return bare or not options.run or catalogue.outdated(kind, name, options.results, options.folder)
-    except StudyError:  # it is said when its turn comes
+    except StudyError:  # the error is reported when the figure's turn comes
         return False
 
 
-def _ready(options, study: str, beside: Path | None) -> int:
-    """Compute what is missing of a study, if this command has not done so yet.
+def _ready(options, study: str, folder: Path | None) -> int:
+    """Compute the missing cases of a study, if this command has not done so yet.
 
-    beside : the folder where its file is looked for first
+    folder : where its file is searched for first
 
-    Results that the same study file made are replaced; others are refused as by `run`, once.
+    Results of the same study file are replaced; others are refused as by `run`, once.
     """
     codes = vars(options).setdefault("codes", {})  # study -> exit code, of this command
     try:
         if study not in codes and is_measured(study):
             codes[study] = tradeoff(options, study)
         elif study not in codes:
-            codes[study] = completed(load(study_file(study, beside), options.results), renew=True)
+            codes[study] = completed(load(study_file(study, folder), options.results), renew=True)
     except StudyError as error:
         say(str(error), sys.stderr)
         codes[study] = error.code

@@ -41,7 +41,7 @@ def fit(options, texts: list[str]) -> int:
     if "=" in path and not Path(path).exists():
         raise StudyError([f"{path}: the file of the curve comes first, then what is known: fit curve.csv {path} ..."])
     reading = _reading([word for word in words if _name(word) in _READING])
-    free, settings, parameters = asked([word for word in words if _name(word) not in _READING])
+    free, settings, parameters = question_of([word for word in words if _name(word) not in _READING])
     picture = options.plot
     if picture and not picture.lower().endswith((".png", ".pdf", ".svg")):
         raise StudyError([f"--plot {picture}: must end with one of .png, .pdf, .svg"])
@@ -65,7 +65,7 @@ def _name(word: str) -> str:
 
 
 def _reading(words: list[str]) -> dict[str, Any]:
-    """The options of `study.curves`. StudyError for one that is given twice."""
+    """The options of `study.curves`. Raises StudyError for an option that is given twice."""
     names = [_name(word) for word in words]
     if errors := [f"{name} is given twice" for name in _READING if names.count(name) > 1]:
         raise StudyError(errors)
@@ -75,8 +75,11 @@ def _reading(words: list[str]) -> dict[str, Any]:
     return reading
 
 
-def asked(words: list[str]) -> tuple[Any, dict, dict]:
-    """Free inputs, options of the fit, other inputs. An input "LOW .. HIGH" is free within these bounds. StudyError."""
+def question_of(words: list[str]) -> tuple[Any, dict, dict]:
+    """Free inputs, options of the fit, other inputs. An input "LOW .. HIGH" is free within these bounds.
+
+    Raises StudyError with a message for each wrong word.
+    """
     texts = {word.partition("=")[0].strip(): word.partition("=")[2].strip() for word in words}
     settings: dict[str, Any] = {name: text for name, text in texts.items() if name in _OPTIONS}
     errors = [message for name in dict.fromkeys(texts) if (message := _no_option(name))]
@@ -109,7 +112,7 @@ def asked(words: list[str]) -> tuple[Any, dict, dict]:
 
 
 def _no_option(name: str) -> str:
-    """The complaint about a name that is like an option but none; "" for others."""
+    """The error for a name that is similar to an option; "" for other names."""
     if name in _PYTHON:
         return f"{name} is an option of study.fit in Python alone (docs/fit.md): leave it out"
     near = "" if name in (*_OPTIONS, *ROWS) or absent(name) else suggest(name, (*_OPTIONS, *_READING))
@@ -117,7 +120,7 @@ def _no_option(name: str) -> str:
 
 
 def as_json(fitted: xr.Dataset) -> str:
-    """The numbers of each curve; of one curve alone without a list."""
+    """The numbers of each curve in a list, or of a single curve without a list."""
     curves = [_of_curve(fitted.isel(curve=i)) for i in range(fitted.sizes["curve"])]
     return json.dumps(curves[0] if len(curves) == 1 else curves, indent=2, ensure_ascii=False)
 

@@ -16,7 +16,7 @@ from ..terminal import answer, program, shown
 from . import signals
 from .arguments import SWITCH, assignment
 
-_DIGITS = 7  # of a number in the words for `point`: more than any scan is exact to
+_DIGITS = 7  # of a number in the words for `point`, more than the precision of any scan
 
 
 def items(options) -> list:
@@ -89,7 +89,7 @@ def _asperities(path: str, words: list[str]) -> int:
 
 
 def _as_written(value: float | str) -> str:
-    """A value as people write it to `point`: a number of seven digits, in the largest unit with 0.1 of it or more."""
+    """A value as people write it for `point`: a number of seven digits, at least 0.1 in the largest such unit."""
     if isinstance(value, float):
         return f"{value:.{_DIGITS}g}"
     number, _, unit = value.partition(" ")
@@ -100,7 +100,7 @@ def _as_written(value: float | str) -> str:
 
 
 def _arguments(texts: list[str], kinds: "Kinds") -> dict[str, Any]:
-    """The arguments of these `kinds` from texts NAME=VALUE. StudyError has a message for each that is none."""
+    """The arguments of these `kinds` from texts NAME=VALUE. Raises StudyError with a message for each wrong text."""
     arguments, errors = {}, []
     for text in texts:
         try:
@@ -157,7 +157,7 @@ def _switch(name: str, text: str) -> bool:
 
 
 def _crop(_, text: str) -> list[float | str]:
-    """Ends of the part to keep: numbers, or lengths with units. What is wrong with them is said by `read`."""
+    """Ends of the part to keep: numbers, or lengths with units. `read` reports errors in them."""
     return [_number_or_text(part.strip()) for part in text.split(",")]
 
 
@@ -188,16 +188,16 @@ READING: Kinds = {
     "huge": _switch,
     "despike": _deviations,
 }
-"""The arguments of `read`, and what makes their values of texts."""
+"""Argument of `read` -> function of its name and a text that returns its value."""
 MEASURING: Kinds = {"method": _text, "form": lambda _, text: _number_or_text(text), "rows": _text, "cutoff": _cutoffs}
-"""Those of `measure`."""
+"""The same for `measure`."""
 PRESSING: Kinds = {
     "periodic": _text,
     "refine": _whole,
     "form": MEASURING["form"],
     "cutoff": lambda name, text: quantity(name, text, "m").value,
 }
-"""Those of `law`, with --law."""
+"""The same for `law`, with --law."""
 BODY: Kinds = dict.fromkeys(
     ("h", "n", "E1", "nu1", "layer", "E2", "nu2", "body", "bonding", "m", "E_punch", "nu_punch", "punch"),
     lambda _, text: _number_or_text(text),

@@ -30,11 +30,11 @@ from ..solving import solve, solve_one
 from ..terminal import answer, say
 from .arguments import SWITCH, assignment
 
-_DERIVED = ("p_ring", "r_ring", "p_peak", "D_body")  # of QUANTITIES, that JSON has besides
+_DERIVED = ("p_ring", "r_ring", "p_peak", "D_body")  # members of QUANTITIES that are also in the JSON
 _PICTURES = (".png", ".pdf", ".svg")  # endings of `--stresses`
-#: The divider of a list: a comma and a blank, or a comma behind a unit.
+#: The divider of a list: a comma and a blank, or a comma after a unit.
 _LIST = re.compile(r",\s|(?<=[^\W\d_]),(?=[-+.\d])")
-#: Numbers with a decimal point or an exponent each, whose commas can be no decimal ones.
+#: Numbers that all have a decimal point or an exponent, so that their commas cannot be decimal marks.
 _NUMBERS = re.compile(r"[-+]?(?:\d*\.\d+|\d+(?:\.\d*)?e[-+]?\d+)(?:,[-+]?(?:\d*\.\d+|\d+(?:\.\d*)?e[-+]?\d+))+", re.I)
 #: Arguments of the stresses of a contact -> what is said of them.
 _OF_STRESSES = {
@@ -58,11 +58,11 @@ def point(options, texts: list[str]) -> int:
     if picture and several:
         raise StudyError([f"--stresses {picture}: the picture is of one contact, and there is a list of values"])
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # the summary says it; but that may take long
+        warnings.simplefilter("ignore")  # the summary has the sentences, though it may take long
         warnings.simplefilter("always", FarOutside)
         warnings.showwarning = lambda text, *_: say(f"beware: {text}", sys.stderr)
         try:
-            # with the profile p, which may be largest in a ring
+            # with the profile p, whose largest value may be in a ring
             contact = (
                 solve(**parameters) if several else solve_one(f"--stresses {picture}" * bool(picture), **parameters)
             )
@@ -86,7 +86,7 @@ def point(options, texts: list[str]) -> int:
 
 
 def _is_table(options) -> bool:
-    """Whether a table of numbers is asked for. Raises StudyError beside an option that it has no place for."""
+    """Whether the answer is a table of numbers. Raises StudyError beside an option that does not go with a table."""
     options_of_tables = [name for name in ("columns", "units", "beside") if getattr(options, name)]
     if options_of_tables and (options.json or options.stresses):
         other = "--json" if options.json else "--stresses"
@@ -102,7 +102,7 @@ def _bare(parameters: dict[str, Any]) -> xr.Dataset:
 
 
 def _draw_stresses(contact: xr.Dataset, path: Path) -> int:
-    """Draw layer and body of the contact, and say so beside the answer. Returns the exit code."""
+    """Draw layer and body of the contact, and name the file on stderr. Returns the exit code."""
     from ..figures.formats import write
     from ..figures.stresses.picture import plot_stresses
 
@@ -113,7 +113,7 @@ def _draw_stresses(contact: xr.Dataset, path: Path) -> int:
 
 
 def _as_json(contacts: xr.Dataset) -> str:
-    """The numbers of a contact; of several a list, in the order of the words."""
+    """The numbers of a contact, or a list of those of several contacts, in the order of the words."""
     if not contacts["status"].dims:
         numbers: dict | list = as_numbers(contacts)
     else:
@@ -129,7 +129,7 @@ def _cases(contacts: xr.Dataset) -> list[xr.Dataset]:
 
 
 def parameters_of(texts: list[str]) -> dict[str, Any]:
-    """Arguments of `study.solve` from texts NAME=VALUE. Raises StudyError with a message for each that is none."""
+    """Arguments of `study.solve` from texts NAME=VALUE. Raises StudyError with a message for each wrong text."""
     parameters, errors = {}, []
     for text in texts:
         try:
@@ -152,7 +152,7 @@ def parameters_of(texts: list[str]) -> dict[str, Any]:
 
 
 def listed(value: float | str | bool) -> float | str | bool | list[str | float]:
-    """The values of a list: "1 N, 2 N" and "1N,2N" have two. A comma between digits may be a decimal one, "1,5 N"."""
+    """The values of a list: "1 N, 2 N" and "1N,2N" have two. A comma between digits may be a decimal mark, "1,5 N"."""
     if not isinstance(value, str):
         return value
     parts = value.split(",") if _NUMBERS.fullmatch(value) else _LIST.split(value)
@@ -160,7 +160,7 @@ def listed(value: float | str | bool) -> float | str | bool | list[str | float]:
 
 
 def number_or_text(text: str) -> float | str:
-    """The number that a text is, else the text."""
+    """The number in a text, or the text if it is not a number."""
     try:
         return float(text)
     except ValueError:
@@ -168,7 +168,7 @@ def number_or_text(text: str) -> float | str:
 
 
 def as_numbers(contact: xr.Dataset) -> dict:
-    """Inputs and results of one case for JSON: value, unit, and spread where the inputs have some; flags by name."""
+    """Inputs and results of one case for JSON: value, unit, and spread where inputs have spreads; flags by name."""
     contact = contact.assign({name: QUANTITIES[name](contact) for name in _DERIVED} | _spreads_of_derived(contact))
     inputs = all_inputs(contact.variables, lexicon_in(contact))
     shown = {
@@ -189,9 +189,9 @@ def as_numbers(contact: xr.Dataset) -> dict:
 
 
 def _spreads_of_derived(contact: xr.Dataset) -> dict[str, xr.DataArray]:
-    """NAME_spread of derived quantities, if results have spreads: NaN where it does not follow from these.
+    """NAME_spread of derived quantities, if results have spreads; NaN where it does not follow from these.
 
-    A largest pressure does not change with its place to first order. That of the centre stays there.
+    To first order a largest pressure does not change with its place. A largest pressure in the centre stays there.
     """
     if "p_spread" not in contact:
         return {}
@@ -205,8 +205,10 @@ def _spreads_of_derived(contact: xr.Dataset) -> dict[str, xr.DataArray]:
 
 
 def _ring(dataset: xr.Dataset) -> float:
-    """The radius of the ring of one contact, where the parabola through the three points at the largest pressure has
-    its top: it moves with the inputs, which the point of `r_ring` does not."""
+    """The radius of the ring of one contact: the top of the parabola through the three points at the largest pressure.
+
+    It moves continuously with the inputs; the point of `r_ring` does not.
+    """
     p, x = dataset["p"].values, dataset["x"].values
     place = min(max(int(np.argmax(p)), 1), len(p) - 2)
     bend, slope, _ = np.polyfit(x[place - 1 : place + 2] - x[place], p[place - 1 : place + 2], 2)
@@ -226,6 +228,6 @@ def described(contact: xr.Dataset, name: str) -> dict | str:
 
 
 def number(array: xr.DataArray) -> float | str | None:
-    """A number; JSON has no others: "inf" or "-inf" of what is infinite, None of what is not known."""
+    """A finite number, "inf" or "-inf" for an infinite one, None for NaN, since JSON has only finite numbers."""
     value = float(array)
     return None if math.isnan(value) else value if math.isfinite(value) else str(value)

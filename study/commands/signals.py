@@ -1,11 +1,12 @@
 """The end of a command when a signal comes, at whatever moment.
 
-While it starts, it ends at once. While it works, KeyboardInterrupt ends it in good order, and a second signal at once.
-When it is done, it ends at once with the exit code of its work. A signal that the parent process ignores is ignored.
+While the command starts, it ends at once. While it works, KeyboardInterrupt ends it in good order, and a second signal
+at once. When it is done, it ends at once with the exit code of its work. A signal that the parent process ignores is
+ignored.
 
 Python raises KeyboardInterrupt between two of its own instructions. A long call of numpy, or of the compiled core, has
-none, and a library may lose what is raised. So a thread hears of the signal too, and ends the process if the main
-thread goes on. All files are written whole, so what is lost is the work since the last one.
+no such instructions, and a library may swallow the exception. So a thread receives the signal too, and ends the process
+if the main thread goes on. All files are written completely, so only the work since the last file is lost.
 """
 
 import atexit
@@ -20,27 +21,27 @@ from ..terminal import empty_buffers, interrupt, say
 
 INTERRUPTED = 130  # exit code
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
-#: Seconds that a command has to end in good order, which takes some hundredths, and the processor time of its main
-#: thread from which on it is known to compute. One that gets no processor, on a busy machine, has longer.
+#: Seconds that a command has to end in good order, which takes some hundredths; the processor time of its main thread
+#: from which on it is known to compute; and the longer time for a command that gets no processor, on a busy machine.
 ORDERLY, COMPUTING, BUSY = 0.6, 0.2, 2.0
 
 
 state = SimpleNamespace(working=False, code=None, kept="", elsewhere=False)
-"""working : the command has begun; code : the exit code, once it is known; kept : what an interrupt leaves, in words;
-elsewhere : another program has the terminal, such as a pager, which hears of the signals itself."""
+"""working : whether the command has begun; code : the exit code, once it is known; kept : the work that survives an
+interrupt, in words; elsewhere : whether another program has the terminal, such as a pager, which gets the signals."""
 
 
 def listen() -> None:
     """Handle signals, and make `state.code` the exit code of this process."""
-    atexit.register(_exit_with_code)  # the first that is registered is called last
+    atexit.register(_exit_with_code)  # the function that is registered first is called last
     sys.unraisablehook = _unraisable
     for number in SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _first_signal)
     told, tell = os.pipe()
     os.set_blocking(tell, False)
-    signal.set_wakeup_fd(tell, warn_on_full_buffer=False)  # written to at once, whatever the main thread does
-    if hasattr(os, "register_at_fork"):  # a signal of a forked child is not one of this process
+    signal.set_wakeup_fd(tell, warn_on_full_buffer=False)  # Python writes to it at once, whatever the main thread does
+    if hasattr(os, "register_at_fork"):  # signals of a forked child do not concern this process
         os.register_at_fork(after_in_child=lambda: signal.set_wakeup_fd(-1))
     threading.Thread(target=_watch, args=(told,), daemon=True).start()
 
@@ -77,7 +78,7 @@ def _first_signal(*_) -> None:
 
 
 def _end_at_once(*_) -> None:
-    """End the process; only the blocks in work are lost."""
+    """End the process; only the blocks that are being computed are lost."""
     os._exit(INTERRUPTED if state.code is None else state.code)
 
 
@@ -89,6 +90,6 @@ def _unraisable(unraisable) -> None:
 
 
 def _exit_with_code() -> None:
-    """End the process here: later Python gives signals their default action, which has another exit code."""
+    """End the process here: afterwards Python gives signals their default action, which has another exit code."""
     empty_buffers()
     os._exit(1 if state.code is None else state.code)

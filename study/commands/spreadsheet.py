@@ -1,4 +1,4 @@
-"""The results of a study as rows, for a spreadsheet: what `table` writes where its name is that of a study."""
+"""The results of a study as rows for a spreadsheet, which `table` writes if its name is that of a study."""
 
 import io
 import os
@@ -22,13 +22,13 @@ from ..terminal import answer
 from .computing import completed
 
 MOST_ROWS = 1_048_575
-"""Rows of a sheet of .xlsx, below its headings."""
+"""Largest number of rows in a sheet of .xlsx, below its headings."""
 
 
 def results_of(options, name: str) -> Dataset | int:
-    """The results of a study, which `--run` computes first, or those in a file; an exit code if they do not get ready.
+    """The results of a study, which `--run` computes first, or those in a file; an exit code if the run fails.
 
-    Raises StudyError if there are none.
+    Raises StudyError if there are no results.
     """
     if Path(name).suffix == ".nc":
         return _of_file(name)
@@ -76,23 +76,26 @@ def write_rows(options, name: str) -> int:
 
 
 def _bare(dataset: Dataset, names: list[str]) -> Dataset:
-    """The contacts on the body without layers, with the profiles among the names. StudyError: there is no layer."""
+    """The contacts on the body without layers, with the profiles among the names.
+
+    Raises StudyError: there is no layer.
+    """
     profiles = [name for name in names if name in dataset and "x" in dataset[name].dims]
     points = {"x": dataset["x"].values} if profiles else {}
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of each contact `validity` says it
+        warnings.simplefilter("ignore")  # `validity` of each contact says it
         return solve(**inputs_without_layer(dataset), profiles=profiles or False, **points)
 
 
 def _guarded(table: Any) -> Any:
-    """The frame with no text that a spreadsheet computes."""
+    """The frame without texts that a spreadsheet would compute."""
     texts = {name: column.map(guarded) for name, column in table.items() if column.dtype.kind == "O"}
     return table.assign(**texts).rename(columns=guarded)
 
 
 def _workbook(tables: dict) -> bytes:
     """A sheet for each table."""
-    from openpyxl import Workbook  # an extra, found above
+    from openpyxl import Workbook  # an extra, whose presence the caller has checked
     from openpyxl.cell import WriteOnlyCell
     from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
 

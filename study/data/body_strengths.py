@@ -20,52 +20,53 @@ from .si import OF_USERS
 
 
 def strengths(contacts: Contacts, materials: Mapping[str, Material], spread: bool = False) -> dict:
-    """Yield strength of the layer, body, punch and asperities, (B,) each in the unit of E2; NaN where it is not known.
+    """Yield strengths of the layer, body, punch and asperities, (B,) each in the unit of E2; NaN where unknown.
 
-    Asperities have that of the softer of the two surfaces. A hardness is 2.84 yield strengths.
+    The asperities have the strength of the softer of the two surfaces. A hardness is 2.84 yield strengths.
 
-    materials : those of the call by name; the table of materials need not have them
+    materials : the materials of the call by name, which the table of materials may lack
     spread : give standard deviations instead, 0 for an input without one
     """
-    known = known_strengths(contacts, materials)
-    return {who: np.where(np.isnan(value), np.nan, (value, sd)[spread]) for who, (value, sd, _) in known.items()}
+    columns_of = known_strengths(contacts, materials)
+    return {body: np.where(np.isnan(value), np.nan, (value, sd)[spread]) for body, (value, sd, _) in columns_of.items()}
 
 
 def known_strengths(contacts: Contacts, materials: Mapping[str, Material]) -> dict[str, list]:
-    """The same as a list of the strength, its standard deviation and whether it is from hardness, (B,) each."""
-    named = {body: _of_materials(contacts, body, materials) for body in STRENGTHS}
-    no = np.zeros(len(contacts.problem), dtype=bool)
-    inputs = {name: [contacts.problem.parameters[name], _spread(contacts, name), no] for name in _INPUTS}
-    yields = {body: first(inputs[name], named[body]) for body, name in STRENGTHS.items()}
+    """For each body, and the asperities: the strength, its standard deviation, whether it comes from hardness, (B,)."""
+    of_materials = {body: _of_materials(contacts, body, materials) for body in STRENGTHS}
+    none_from_hardness = np.zeros(len(contacts.problem), dtype=bool)
+    inputs = {
+        name: [contacts.problem.parameters[name], _spread(contacts, name), none_from_hardness] for name in _INPUTS
+    }
+    of_bodies = {body: first(inputs[name], of_materials[body]) for body, name in STRENGTHS.items()}
     bare, elastic = is_bare(contacts.problem.base), contacts.problem.m > 0
-    hard = [inputs["hardness"][0] / TABOR, inputs["hardness"][1] / TABOR, ~no]
-    of_spots = softer(named["layer"], named["body"], named["punch"], bare, elastic)
-    return yields | {"asperities": first(first(inputs["yield_strength"], hard), of_spots)}
+    from_hardness = [inputs["hardness"][0] / TABOR, inputs["hardness"][1] / TABOR, ~none_from_hardness]
+    of_spots = softer(of_materials["layer"], of_materials["body"], of_materials["punch"], bare, elastic)
+    return of_bodies | {"asperities": first(first(inputs["yield_strength"], from_hardness), of_spots)}
 
 
 def layer_strengths(contacts: Contacts, materials: Mapping[str, Material]) -> list[list]:
-    """Strength, standard deviation and whether it is from hardness, as above, of each layer of stacks, from the
-    surface down."""
-    made, no = [], np.zeros(len(contacts.problem), dtype=bool)
+    """The same three columns for each layer of a stack, from the surface down."""
+    strengths_of_layers, none_from_hardness = [], np.zeros(len(contacts.problem), dtype=bool)
     for number in range(1, numbers_of(contacts.problem.parameters) + 1):
         name = full_name(number, "Y")
-        given = contacts.problem.parameters.get(name, np.full(len(no), np.nan))
+        input_values = contacts.problem.parameters.get(name, np.full(len(none_from_hardness), np.nan))
         material = _of_materials(contacts, name_in_stack(number, "material"), materials)
-        made.append(first([given, _spread(contacts, name), no], material))
-    return made
+        strengths_of_layers.append(first([input_values, _spread(contacts, name), none_from_hardness], material))
+    return strengths_of_layers
 
 
 _INPUTS = (*STRENGTHS.values(), "hardness", "yield_strength")
 
 
 def _spread(contacts: Contacts, name: str) -> np.ndarray:
-    """In the unit of E2, (B,)."""
+    """The standard deviation of an input, (B,) in the unit of E2; 0 where it has none."""
     stress, _ = contacts.units
     return np.nan_to_num(contacts.coordinate(f"{name}_spread", 0.0)) / stress
 
 
 def _of_materials(contacts: Contacts, body: str, materials: Mapping[str, Material]) -> list:
-    """Strength, standard deviation and whether it is from hardness, (B,) each, the first two in the unit of E2."""
+    """Strength, standard deviation, whether it comes from hardness: (B,) each, the first two in the unit of E2."""
     cases, dataset = len(contacts.problem), contacts.dataset
     if body not in dataset.coords or contacts.scene is None:
         return [np.full(cases, np.nan), np.zeros(cases), np.zeros(cases, bool)]

@@ -58,11 +58,11 @@ class Contacts(NamedTuple):
         return cls(dataset, problem, numbers, scene, dims, shape)
 
     def column(self, value: Any) -> np.ndarray:
-        """A number, a text or a DataArray over dimensions of the contacts for all cases, (B,)."""
+        """The values of all cases, (B,), from a number, a text or a DataArray over dimensions of the contacts."""
         return of_all_cases(value, self.dims, self.shape)
 
     def coordinate(self, name: str, default: float) -> np.ndarray:
-        """The numbers of a coordinate of the dataset, (B,); the default where it has none of this name."""
+        """The numbers of a coordinate of the dataset, (B,); the default if the dataset lacks it."""
         there = name in self.dataset.coords
         return self.column(without_coordinates(self.dataset[name]) if there else default).astype(float)
 
@@ -73,8 +73,11 @@ class Contacts(NamedTuple):
         return self.column(stress).astype(float), self.column(length).astype(float)
 
     def without_stresses(self, *, largest: bool = True) -> str:
-        """Why some contacts have no stresses, or no `largest` ones, as at an edge where they are infinite; "" where all
-        have them."""
+        """The reason why some contacts have no stresses, or no largest stress since it is infinite at an edge; "" if
+        all have them.
+
+        largest : whether the largest stress is needed
+        """
         others = (getattr(self.problem, name) for name in DECIDE)
         return without_stresses(self.problem.rough(), *others, largest=largest)
 
@@ -85,12 +88,12 @@ class Contacts(NamedTuple):
 
 
 def of_all_cases(value: Any, dims: tuple, shape: tuple[int, ...]) -> np.ndarray:
-    """A number, a text or a DataArray for all cases, (B,)."""
+    """The values of all cases, (B,), from a number, a text or a DataArray."""
     return np.broadcast_to(over(value, dims), shape).ravel()
 
 
 def refuse_no_results(dataset: Any, who: str) -> None:
-    """Raise StudyError for what is no dataset of results. who : the name of the public function, for messages"""
+    """Raise StudyError unless it is a dataset of results. who : the name of the public function, for messages"""
     if not is_contact(dataset) or "status" not in dataset:
         raise StudyError([f"{who} takes a dataset of study.solve or of a results file, with its status"])
 
@@ -126,7 +129,7 @@ def without_coordinates(array: xr.DataArray) -> Any:
 
 
 def _scene(inputs: dict[str, Any], scale: Any, lexicon: Lexicon) -> Scene:
-    """The scene of inputs in SI units. What follows from others is computed again.
+    """The scene of inputs in SI units. Inputs that follow from others are computed again.
 
     scale : the input that is the unit of length
     """

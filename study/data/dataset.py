@@ -1,4 +1,4 @@
-"""Results as datasets: flat arrays -> labelled Dataset with CF-1.11 attributes; numbers of flags as names."""
+"""Results as datasets: flat arrays -> labelled Dataset with CF-1.11 attributes; flags as words."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from .provenance import provenance
 
 
 def failed_cases(status: np.ndarray) -> np.ndarray:
-    """The places in `status` (n,) of the cases that have failed."""
+    """The positions in `status` (n,) of the cases that have failed."""
     return np.flatnonzero(~one_of(status, (0, *NO_SOLUTION)))
 
 
@@ -59,13 +59,14 @@ def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:
 
 
 STRENGTHS = {"layer": "Y1", "body": "Y2", "punch": "Y_punch"}
-"""Body -> the input that is its yield strength."""
+"""Body -> the input with its yield strength."""
 
 
 class DatasetParts(NamedTuple):
-    """What a dataset is made of. The dataset itself is made last and once, since that takes as long as a contact.
+    """The parts of a dataset. The dataset itself is built last and once: that takes as long as solving a contact.
 
-    by_input : result -> its derivatives by the inputs of the definition, (*grid.shape, k) and (*grid.shape, k, m)
+    by_input : result -> its derivatives by the inputs of the definition, (*grid.shape, k), or (*grid.shape, k, m) for
+        a profile
     """
 
     variables: dict[str, Labelled]
@@ -76,8 +77,8 @@ class DatasetParts(NamedTuple):
     def dataset(self) -> xr.Dataset:
         """The dataset of these parts, with the numerical settings as the last coordinates.
 
-        `study.solve` has these as attributes. `xr.concat` stops comparing coordinates at the first that the second
-        dataset lacks.
+        In datasets of `study.solve` these settings are attributes. `xr.concat` compares coordinates in order, and stops
+        at the first that the second dataset lacks.
         """
         variables, coords = (
             {name: as_xarray(variable, name) for name, variable in table.items()}
@@ -87,10 +88,10 @@ class DatasetParts(NamedTuple):
         coords = {name: variable for name, variable in coords.items() if name not in NUMERICS} | last
         return without_fill_values(xr.Dataset(variables, coords, self.attributes))
 
-    def settings_apart(self) -> DatasetParts:
-        """The parts with numerical settings that all cases share as attributes, not as coordinates.
+    def settings_as_attributes(self) -> DatasetParts:
+        """The parts in which the numerical settings that all cases share are attributes instead of coordinates.
 
-        Dropping variables of a dataset would copy all others.
+        It is done here since dropping variables from a dataset would copy all others.
         """
         shared = [name for name in NUMERICS if name in self.coords and not self.coords[name].ndim]
         coords = {name: variable for name, variable in self.coords.items() if name not in shared}
@@ -100,10 +101,10 @@ class DatasetParts(NamedTuple):
 
 class OneCase:
     """A contact without dimensions except `x`, read like a dataset: `contact["a"]`, `"h" in contact`, `contact.attrs`.
-    None is made until `as_dataset` is asked for it: xarray takes as long to import as thousand contacts to solve.
+    Only `as_dataset` builds the dataset: xarray takes as long to import as a thousand contacts to solve.
 
-    variables, coords : name -> Labelled, of all and of the coordinates
-    attrs : of the dataset
+    variables, coords : name -> Labelled; `variables` includes the coordinates
+    attrs : the attributes of the dataset
     """
 
     def __init__(self, parts: DatasetParts):
@@ -127,17 +128,17 @@ class OneCase:
 
 
 def as_dataset(contact: xr.Dataset | OneCase) -> xr.Dataset:
-    """The dataset of a contact, whichever of both it is."""
+    """The contact as a dataset."""
     return contact.dataset if isinstance(contact, OneCase) else contact
 
 
 def is_contact(value: Any) -> bool:
-    """Whether it is a dataset, or one contact."""
+    """Whether the value is a dataset or a OneCase."""
     return isinstance(value, OneCase) or xr.is_dataset(value)
 
 
 def validity_of_rows(arrays: dict[str, np.ndarray], known: Known, times: float = 1.0) -> Labelled:
-    """`validity_of` of cases in a row: name -> (n,), of their parameters and of what they were solved to."""
+    """`validity_of` for a row of cases: name -> (n,), their parameters and their results."""
     variables = {name: Labelled("case", array) for name, array in arrays.items()}
     variables["micro"].encoding = {KNOWN: known}
     variables["model_used"].attrs = model_attributes()
@@ -146,8 +147,8 @@ def validity_of_rows(arrays: dict[str, np.ndarray], known: Known, times: float =
 
 def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> DatasetParts:
     """The parts of the dataset of a grid, from flat arrays (B, ...): dimensions in the order of the study, then `x`."""
-    made = labelled(definition, arrays, command)
-    variables = made.variables
+    dataset_parts = labelled(definition, arrays, command)
+    variables = dataset_parts.variables
     variables["status"].attrs |= status_attributes()
     variables["model_used"].attrs |= model_attributes()
     if definition.says_what_is_felt:
@@ -155,18 +156,18 @@ def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -
         variables["asperities_used"] = Labelled(tuple(definition.grid.sizes), used(definition.grid), flags)
     radii = definition.scene.radii() if definition.scene else {}
     strengths = _strengths(definition) if definition.scene else {}
-    variables["validity"] = validity_of(strengths | variables | made.coords | radii)
-    return made
+    variables["validity"] = validity_of(strengths | variables | dataset_parts.coords | radii)
+    return dataset_parts
 
 
 def _strengths(definition: Definition) -> dict[str, Labelled]:
-    """Yield strengths of the materials that are named, over the unit of moduli, and whether they are from hardness."""
+    """Yield strengths of the named materials over the unit of moduli, and whether they come from hardness."""
     scene, variables = definition.scene, {}
     layers = {body: body.replace(".material", ".Y") for body in scene.strengths if body.startswith("layers.")}
     for body, name in (STRENGTHS | layers).items():
         if body in scene.strengths:
-            dim, known = scene.strengths[body]
-            values, _, hard = zip(*known, strict=True)
+            dim, strengths = scene.strengths[body]
+            values, _, hard = zip(*strengths, strict=True)
             dims, place = (dim, slice(None)) if dim else ((), 0)
             variables[f"{name}{OF_MATERIAL}"] = Labelled(dims, np.array(values)[place]) / bare_variable(scene.unit)
             variables[f"{name}{FROM_HARDNESS}"] = Labelled(dims, np.array(hard)[place])
@@ -174,7 +175,7 @@ def _strengths(definition: Definition) -> dict[str, Labelled]:
 
 
 def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> DatasetParts:
-    """As `parts`, of some of the arrays or none, without `validity` and the names of flags."""
+    """Like `parts` but without `validity` and the words of flags. Arrays may be missing, even all."""
     grid = definition.grid
     rigid = bool((along(grid, "n") == 0).any())  # if one layer is on a rigid base, all are
     values = grid.values | grid.labels
@@ -195,13 +196,13 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     by_input = {name.removesuffix(BY_INPUT): unflatten(grid, arrays[name]) for name in arrays if BY_INPUT in name}
     laws = law_versions(grid)
     about = provenance(definition, command) | ({"micro_laws": "\n".join(laws)} if laws else {})
-    if "shape" in grid.values:  # what 1 is of a length
+    if "shape" in grid.values:  # the length that is 1
         about["scale"] = (definition.scene.scale or "R") if definition.scene else "1"
     return DatasetParts(variables, coordinates, about, by_input)
 
 
 def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset itself, which from now on is written without _FillValue of coordinates: CF forbids it."""
+    """The dataset itself. From now on its coordinates are written without _FillValue, which CF forbids for them."""
     for name in dataset.coords:
         dataset.variables[name].encoding["_FillValue"] = None
     return dataset
@@ -234,7 +235,7 @@ def asperities_attributes() -> dict:
     return {"flag_values": np.arange(len(USED), dtype=np.int8), "flag_meanings": " ".join(USED)}
 
 
-#: Flags that a dataset may have, and what makes their attributes.
+#: Flag that a dataset may have -> function that makes its attributes.
 _FLAGS = {
     "status": status_attributes,
     "model_used": model_attributes,
@@ -246,7 +247,7 @@ _FLAGS = {
 def decode(flags: xr.DataArray) -> xr.DataArray:
     """The names of `status`, `model_used`, `validity` or `asperities_used`.
 
-    Several assumptions that a case violates are separated by blanks; the text is empty if it violates none. A number
+    If a case violates several assumptions, blanks separate them; if it violates none, the text is empty. A number
     without a name stays a number. `where`, `reindex` and `concat` of xarray leave NaN where there is no case: there
     status and validity are "not_run", and the model is "none".
 
@@ -260,8 +261,8 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
 
     Raises
     ------
-    ValueError : it is no array, or one that has none of these names, and no attribute `flag_meanings`; its numbers are
-        of no case, such as the mean of several
+    ValueError : it is no array; or it has neither one of these names nor the attribute `flag_meanings`; or its numbers
+        belong to no case, like a mean over several
 
     Examples
     --------
@@ -272,14 +273,14 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
     """
     if not hasattr(flags, "attrs") or not hasattr(flags, "dims") or hasattr(flags, "data_vars"):
         flagged = getattr(flags, "data_vars", {})
-        there = [name for name in flagged if name in _FLAGS or "flag_meanings" in flagged[name].attrs]
-        which = f"take one of its arrays {', '.join(map(str, there))}" if there else "take an array, contacts.status"
+        names = [name for name in flagged if name in _FLAGS or "flag_meanings" in flagged[name].attrs]
+        which = f"take one of its arrays {', '.join(map(str, names))}" if names else "take an array, contacts.status"
         raise ValueError(f"a {type(flags).__name__} is none of {', '.join(_FLAGS)}: {which}")
     return xr.DataArray(flag_words(flags), flags.coords, flags.dims, flags.name)
 
 
 def flag_words(flags: xr.DataArray | Labelled) -> np.ndarray:
-    """The names of flags, as of :func:`decode`, of their shape."""
+    """The words of flags, as :func:`decode` gives them, as an array of the same shape."""
     attributes = flags.attrs
     if "flag_meanings" not in attributes:  # arithmetic of xarray loses attributes
         name = getattr(flags, "name", f"a {type(flags).__name__}")
@@ -295,6 +296,6 @@ def flag_words(flags: xr.DataArray | Labelled) -> np.ndarray:
         names = dict(zip(np.atleast_1d(attributes["flag_values"]).tolist(), words, strict=True))
     texts = [names.get(value, str(value)) for value in values.ravel().tolist()]
     meanings = np.array(texts, dtype=str).reshape(flags.shape)
-    if "flag_masks" in attributes and flags.dtype.kind == "f":  # else NaN would be read as the mask 0: a good case
+    if "flag_masks" in attributes and flags.dtype.kind == "f":  # NaN must not be read as the mask 0: a good case
         meanings = np.where(np.isfinite(flags.values), meanings, status_words()[NOT_RUN])
     return meanings

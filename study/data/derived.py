@@ -1,6 +1,6 @@
 """Quantities that follow from a dataset: validity of the model's assumptions, areas, mean pressure, number of spots.
 
-Every function takes an opened dataset. The attributes of what it returns come from the vocabulary.
+Every function takes an opened dataset. The attributes of its result come from the vocabulary.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ from ..rules.slope_and_adhesion import SLOPE, ZONE  # noqa: F401 - names of stud
 from .units import physical_attributes, reduced_modulus
 
 ROUNDING = 1e-12
-"""Pressures of a profile whose relative difference is smaller are equal: it is rounding."""
+"""Pressures of a profile count as equal if their relative difference is smaller, and so may be rounding."""
 LEAST_POINTS, LOAD_MISSED = 5, 5e-3
-"""Fewest points of a profile for `D_body`, and the largest relative error of its load: that of D_body is smaller."""
+"""`D_body` needs so many points of a profile, and at most this relative error of the load. D_body has a smaller one."""
 QUANTITIES: dict[str, Callable[[xr.Dataset], xr.DataArray]] = {}
 """Name -> function of a dataset: the formulas with the decorator `quantity`, which can be drawn like results."""
 SECTIONS_OF_QUANTITIES = """
@@ -63,7 +63,7 @@ ValueError : the dataset is in multiples of SI units, or lacks what the quantity
 
 
 def quantity(name: str) -> Callable:
-    """Decorator of a formula: its result has the name and attributes of the vocabulary, and QUANTITIES holds it.
+    """Decorator of a formula: its result gets the name and attributes of the vocabulary, and QUANTITIES holds it.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def quantity(name: str) -> Callable:
             rows = lexicon_in(dataset).rows
             for key, variable in dataset.variables.items():
                 unit = variable.attrs.get("units", "1")
-                if key in rows and unit not in ("1", rows[key].unit):  # of study.readable
+                if key in rows and unit not in ("1", rows[key].unit):  # as in datasets of study.readable
                     raise ValueError(f"{key} is in {unit}: {name} follows from results in SI units, or without units")
             return named(formula(dataset), name, rule.has_units(dataset))
 
@@ -154,10 +154,10 @@ def ring_radius(dataset: xr.Dataset) -> xr.DataArray:
 
 @quantity("p_peak")
 def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
-    """Largest real pressure over the points of the profile, Eq. (13) at each, in E2*; `p_max` is that of the centre.
+    """Largest real pressure over the points of the profile, Eq. (13) at each, in E2*; `p_max` is that at the centre.
 
     The two differ where p peaks in a ring (`p_ring`). Needs the profile p; NaN for a law that is not registered in the
-    version of the results. Of results with units it needs R and E2 in SI units: the laws take their parameters in R and
+    version of the results. Results with units must have R and E2 in SI units: the laws take their parameters in R and
     E2*.
     """
     pressures = _profile(dataset, "p_peak")
@@ -181,7 +181,7 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
 
 
 def _feel_layer(dataset: xr.Dataset, known: Known) -> xr.DataArray:
-    """Where the asperities feel what lies below the surface: as the results say, else as their inputs do."""
+    """Where the asperities feel the coated body below the surface: as the results say, or else their inputs."""
     if "asperities_used" in dataset:
         return dataset["asperities_used"] == USED.index("layer")
     names = {"base": "layered", "micro": "", "asperities_on": "auto", "Nbar": np.nan, "h": np.nan}
@@ -190,7 +190,7 @@ def _feel_layer(dataset: xr.Dataset, known: Known) -> xr.DataArray:
 
 
 def _peaks_on_bodies(dataset: xr.Dataset, p: xr.DataArray, unit, R) -> xr.DataArray:
-    """p_max in E2* of asperities that feel the body, at nominal pressures p in E2*."""
+    """p_max in E2* of asperities that feel the coated body, at nominal pressures p in E2*."""
     left_out, lexicon = {*CONTROLS, *NUMERICS, "asperities_on"}, lexicon_in(dataset)
     names = lexicon.parameters_of(map(str, dataset.variables))
     names = [name for name in names if name in dataset and name not in left_out]
@@ -203,26 +203,27 @@ def _peaks_on_bodies(dataset: xr.Dataset, p: xr.DataArray, unit, R) -> xr.DataAr
 
 
 def _at_bodies(lexicon: Lexicon, names: list[str], p: np.ndarray, *values: np.ndarray) -> np.ndarray:
-    """p_max at p (..., m), of parameters by name (...)."""
+    """p_max at the pressures p (..., m) of contacts whose parameters, (...) each, have these names."""
     flat = {name: np.broadcast_to(v, p.shape[:-1]).ravel() for name, v in zip(names, values, strict=True)}
     problem = lexicon.problem(flat, a=1.0, asperities_on="layer")
     pressures = p.reshape(-1, p.shape[-1])
     peaks = np.full(pressures.shape, np.nan)
     index = np.flatnonzero(problem.can_feel())
     for rows in of_one_law(problem.take(index)):
-        some = index[rows]
-        peaks[some] = law_of(problem.take(some)).at(pressures[some]).p_max
+        places = index[rows]
+        peaks[places] = law_of(problem.take(places)).at(pressures[places]).p_max
     return peaks.reshape(p.shape)
 
 
 @quantity("D_body")
 def depth_of_the_body(dataset: xr.Dataset) -> xr.DataArray:
-    """Depth by which the coated body alone is pressed in, in R: D less what the punch yields.
+    """Depth by which the coated body alone is pressed in, in R: D less the deformation of the punch.
 
     D is the approach of distant points of both bodies. The punch, a half-space of E3* = E1*/m, gives way in the centre
-    by (2/E3*) ∫ p dr, and by the part m/(1 + m) of the asperities' A[p(0)]. The coated body gives way by the rest. A
-    rigid punch does not give way. The integral is that of a cubic spline through the profile p, in arcsin(r/a). NaN
-    where that spline misses the load by more than LOAD_MISSED. Needs what `peak_pressure` needs, and p at 5 points.
+    by (2/E3*) ∫ p dr, and by the share m/(1 + m) of the asperities' A[p(0)]. The coated body gives way by the rest. A
+    rigid punch does not give way. The integrand is a cubic spline through the profile p, in arcsin(r/a). The depth is
+    NaN where that spline misses the load by more than LOAD_MISSED. It needs all that `peak_pressure` needs, and p at 5
+    points.
     """
     m = dataset.get("m", xr.DataArray(0.0))
     if (m == 0).all():
@@ -239,11 +240,12 @@ def depth_of_the_body(dataset: xr.Dataset) -> xr.DataArray:
 
 
 def _weights(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Weights at the points x = r/a of the integrals of p dx and of p x dx, from 0 to 1.
+    """Weights of the points x = r/a in the integrals of p dx and of p x dx, from 0 to 1.
 
-    They are those of a cubic spline in arcsin(x), in which p is smooth up to the edge. Its slope is 0 in the centre.
+    They integrate a cubic spline in arcsin(x), since p is smooth in arcsin(x) up to the edge. The slope of the spline
+    is 0 in the centre.
     """
-    from scipy.interpolate import CubicSpline  # here: it takes a while
+    from scipy.interpolate import CubicSpline  # imported here, since it takes a while
 
     angle = np.arcsin(x)
     spline = CubicSpline(angle, np.eye(len(x)), bc_type=((1, np.zeros(len(x))), "not-a-knot"))
@@ -260,7 +262,7 @@ def _profile(dataset: xr.Dataset, name: str) -> xr.DataArray:
 
 
 def _surface_modulus(dataset: xr.Dataset):
-    """The reduced modulus of what the punch touches, in the unit of moduli."""
+    """The reduced modulus of the body that the punch touches, layer or half-space, in the unit of moduli."""
     return xr.where(is_bare(dataset["base"]), 1.0, layer_modulus(dataset.get("n", np.nan)))
 
 
@@ -282,7 +284,7 @@ def _scales(dataset: xr.Dataset, name: str) -> tuple:
 
 
 def _largest(law):
-    """A function of nominal pressures, the modulus of the asperities and the arguments of the law: the law's p_max."""
+    """The law's p_max as a function of nominal pressures, the modulus of the asperities and the law's arguments."""
     return lambda p, E, *arguments: law.at(p, E, **dict(zip(law.arguments, arguments, strict=True))).p_max
 
 

@@ -10,8 +10,8 @@ from .dataset import decode
 def frames(dataset: xr.Dataset) -> dict[str, Any]:
     """DataFrames of pandas: "contacts", a row for each; "profiles", a row for each point x = r/a, where there are some.
 
-    The headings have units, "P (N)" or "P (E2* R^2)". The columns are the dimensions, then all else in the order of the
-    dataset, a spread behind its value. status, model_used and validity are words.
+    The headings have units, "P (N)" or "P (E2* R^2)". The dimensions are the first columns. The other variables follow
+    in the order of the dataset, each spread right after its value. status, model_used and validity are words.
     """
     words = {name: decode(array) for name, array in dataset.data_vars.items() if "flag_meanings" in array.attrs}
     dataset = dataset.assign(words).reset_coords(drop=False)
@@ -25,13 +25,13 @@ def frames(dataset: xr.Dataset) -> dict[str, Any]:
 
 def _frame(table: xr.Dataset, dims: list) -> Any:
     headings = {name: _heading(str(name), array) for name, array in table.variables.items()}
-    order = [*dims, *_spreads_behind([name for name in map(str, table.data_vars) if name not in dims])]
+    order = [*dims, *_spreads_after_values([name for name in map(str, table.data_vars) if name not in dims])]
     if not dims:
         table = table.expand_dims("contact")
     return table.to_dataframe().reset_index()[order].rename(columns=headings)
 
 
-def _spreads_behind(names: list[str]) -> list[str]:
+def _spreads_after_values(names: list[str]) -> list[str]:
     spreads = {name: f"{name}_spread" for name in names if f"{name}_spread" in names}
     values = [name for name in names if name not in spreads.values()]
     return [column for name in values for column in (name, spreads.get(name)) if column]

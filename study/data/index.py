@@ -14,8 +14,8 @@ from ..specimen.quantities import has_unit
 class _AsPandasIndex(type):
     """The class of UnitIndex, which counts as equal to PandasIndex.
 
-    xarray aligns two arrays only if their indexes have equal classes. Results must be aligned where they are reindexed,
-    or subtracted from values that were measured at some of their loads.
+    xarray aligns two arrays only if their indexes have equal classes. It must align results when they are reindexed, or
+    when values that were measured at some of their loads are subtracted from them.
     """
 
     def __eq__(cls, other: Any) -> bool:
@@ -29,7 +29,7 @@ class UnitIndex(PandasIndex, metaclass=_AsPandasIndex):
     """An index of SI numbers in which `sel(h="3 um")`, and slices and lists of such texts, find 3e-6."""
 
     def sel(self, labels: dict, method=None, tolerance=None):
-        """As that of other indexes of xarray. Raises ValueError for a text without a unit, or of something else."""
+        """`sel` of other indexes of xarray. Raises ValueError for a text without a unit or with one of another kind."""
         (name, label), rows = next(iter(labels.items())), default().all_rows
 
         def number(value: Any) -> Any:
@@ -46,7 +46,7 @@ class UnitIndex(PandasIndex, metaclass=_AsPandasIndex):
         return super().sel({name: label}, method=method, tolerance=number(tolerance))
 
     def reindex_like(self, other, method=None, tolerance=None) -> dict:
-        """As that of other indexes of xarray. Raises ValueError for texts: they would be the new coordinate."""
+        """`reindex_like` of other indexes of xarray. Raises ValueError for texts, which would become the coordinate."""
         texts = [label for label in other.index if isinstance(label, str)] if other.index.dtype.kind in "OTU" else ()
         if texts:
             raise ValueError(f'{other.dim}: give numbers in the SI unit here; texts such as "{texts[0]}" are for sel')

@@ -21,11 +21,11 @@ REFERENCE = "Goryacheva & Yakovenko, Lubricants 2024, 12(3), 68, doi:10.3390/lub
 
 
 OF_THE_RUN = ("history", "command", "created", "source", "git_commit", "versions", "cpu", "blas")
-"""Attributes about the run that computed the numbers: who, when and where."""
+"""Attributes about the run that computed the numbers: command, time, code and machine."""
 
 
 def provenance(definition: Definition, command: str) -> dict:
-    """Global attributes: what was computed, by which code, on what machine."""
+    """Global attributes: the study, the code and the machine."""
     created = datetime.now(UTC).isoformat(timespec="seconds")
     return {
         "Conventions": "CF-1.11",
@@ -67,9 +67,9 @@ def command_line() -> str:
 
 
 def git_commit() -> str:
-    """Commit of the checkout that holds this package, "-dirty" if tracked files were changed; "unknown" without one."""
+    """Commit of the checkout that holds this package, with "-dirty" if tracked files have changed; else "unknown"."""
     root = Path(__file__).resolve().parents[2]
-    if not (root / ".git").exists():  # the package is installed: a repository further up is of another project
+    if not (root / ".git").exists():  # the package is installed: a repository further up belongs to another project
         return "unknown"
     command = ["git", "-C", str(root), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
     try:

@@ -20,18 +20,18 @@ from .units import PHYSICAL_SCALE, physical_attributes, with_unit
 
 ASSUMED = "not given: the default"
 OF_USERS = "strengths"
-"""Attribute of the names of materials: as JSON name -> [yield strength in Pa, spread, whether it is from hardness], of
-materials of the user's own."""
+"""Attribute of the names of materials, for those that the user defines: in JSON, name -> [yield strength in Pa, spread,
+whether it comes from hardness]."""
 SAME_PIECE = "same_piece: bodies of one material are one piece of it"
 
 
 def dataset_of(definition: Definition, parts: DatasetParts) -> xr.Dataset:
-    """The dataset of a study: in SI units if the study has units, else dimensionless."""
+    """The dataset of a study: in SI units if the study has units, otherwise dimensionless."""
     return dataset_in_units(definition, in_units(definition, parts))
 
 
 def dataset_in_units(definition: Definition, parts: DatasetParts) -> xr.Dataset:
-    """The dataset of parts that `in_units` has made."""
+    """The dataset of parts from `in_units`."""
     if not definition.scene or not definition.grid.sizes:  # there is nothing to search along
         return parts.dataset()
     from .index import searchable
@@ -40,13 +40,13 @@ def dataset_in_units(definition: Definition, parts: DatasetParts) -> xr.Dataset:
 
 
 def axes_of(definition: Definition) -> dict[str, np.ndarray]:
-    """Dimension of the cases in the results of a study -> the values of its coordinate, as the results have them."""
+    """Dimension of the results of a study, except `x` -> the values of its coordinate in the results."""
     coords = in_units(definition, labelled(definition, {}, "")).coords
     return {dim: np.asarray(coords[dim].data) for dim in definition.in_results(definition.grid.sizes)}
 
 
 def in_units(definition: Definition, parts: DatasetParts) -> DatasetParts:
-    """The parts, dimensionless before, in the units of the study."""
+    """Dimensionless parts in the units of the study."""
     return results(definition, parts) if definition.scene else parts
 
 
@@ -90,14 +90,18 @@ def results(definition: Definition, parts: DatasetParts) -> DatasetParts:
     return DatasetParts(_renamed(scene, results), _renamed(scene, coords), attributes)
 
 
-def _of_users(texts: list[str], known: Sequence[Strength]) -> dict[str, str]:
-    """The attribute OF_USERS; {} where each name has the strength that the table of materials has."""
-    others = {text: one for text, one in zip(texts, known, strict=False) if repr(one) != repr(known_strength(text))}
-    return {OF_USERS: json.dumps(others)} if others else {}
+def _of_users(texts: list[str], strengths: Sequence[Strength]) -> dict[str, str]:
+    """The attribute OF_USERS; {} where every strength is that of the table of materials."""
+    of_users = {
+        text: strength
+        for text, strength in zip(texts, strengths, strict=False)
+        if repr(strength) != repr(known_strength(text))
+    }
+    return {OF_USERS: json.dumps(of_users)} if of_users else {}
 
 
 def _renamed(scene: Scene, variables: dict[str, Labelled]) -> dict[str, Labelled]:
-    """The variables over the dimensions that the results have."""
+    """The variables with the dimensions named as in the results."""
     if not scene.dims:
         return variables
     dims = {name: [scene.dims.get(dim, dim) for dim in variable.dims] for name, variable in variables.items()}
@@ -115,10 +119,10 @@ def _units(unit: str) -> dict[str, str]:
 
 
 def _in_si(row: Entry, variable: Labelled, unit: Any, R: Any) -> Labelled:
-    """A dimensionless variable in the SI unit of its row, its dimensions first."""
+    """A dimensionless variable in the SI unit of its row. Dimensions of the units come after its own."""
     powers, dims = row.powers, variable.dims
     if xr.is_array(unit) or xr.is_array(R):
-        array = with_unit(*(variable.to_xarray(), powers), *(bare_variable(one).to_xarray() for one in (unit, R)))
+        array = with_unit(*(variable.to_xarray(), powers), *(bare_variable(scale).to_xarray() for scale in (unit, R)))
         array = array.transpose(*dims, ...)
         dims, data = array.dims, array.data
     else:  # the usual case: arithmetic of labelled arrays would take as long as a contact

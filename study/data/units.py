@@ -76,7 +76,7 @@ def _factor(entry: Entry, R: float, E2_star: float) -> float:
 def _si(name: str, value: Any, unit: str) -> Any:
     """The value, or list of values, as numbers in the SI `unit`. Texts such as "5 mm" and pint are converted.
 
-    Raises ValueError for a text without a unit, or of something else, and for a spread, which the result would lose.
+    Raises ValueError for a text without a unit or with one of another kind, and for a spread, which would be lost.
     """
     is_numbers = type(value) is np.ndarray and value.dtype.kind in "iuf"
     value = value if is_numbers else plain(value)
@@ -104,13 +104,16 @@ def _scales(R: Any, E2_star: Any) -> dict[str, float]:
 
 
 def physical_attributes(entry: Entry, attributes: dict) -> dict:
-    """The attributes of a dimensionless variable when its numbers are in SI units; `entry` : its row."""
-    kept = {key: text for key, text in attributes.items() if key != "scale"}
-    return kept | {"long_name": entry.long_name, "units": entry.unit}
+    """The attributes of a variable, from those it has without units, when its numbers are in SI units.
+
+    entry : its row of the vocabulary
+    """
+    others = {key: text for key, text in attributes.items() if key != "scale"}
+    return others | {"long_name": entry.long_name, "units": entry.unit}
 
 
 def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:
-    """The dataset in SI units, each named by the attribute `units`; `study.readable` gives µm, mN, MPa.
+    """The dataset in SI units, which the attributes `units` name; `study.readable` gives µm, mN, MPa.
 
     Parameters
     ----------
@@ -124,7 +127,7 @@ def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:
 
     Raises
     ------
-    ValueError : the dataset is physical already; R is no length, or E2_star no pressure
+    ValueError : the dataset is physical already; R is not a length, or E2_star not a pressure
 
     Examples
     --------
@@ -153,7 +156,7 @@ def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:
 def readable(dataset: xr.Dataset) -> xr.Dataset:
     """A dataset in SI units with each variable in the multiple that suits its largest number, for plots and tables.
 
-    Coordinates too: a thickness of 2e-6 m is selected by sel(h=2.0), in the µm of its attribute `units`. A spread has
+    Coordinates change too: sel(h=2.0) selects a thickness of 2e-6 m, in the µm of its attribute `units`. A spread has
     the multiple of its quantity.
 
     Parameters
@@ -166,7 +169,7 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
 
     Raises
     ------
-    ValueError : a dataset without physical units, or of `study.fit`
+    ValueError : the dataset has no physical units, or comes from `study.fit`
 
     Examples
     --------
@@ -201,8 +204,8 @@ def from_physical(*, R: Any, E2_star: Any, **parameters: Any) -> dict:
     ----------
     R : radius of the punch: m, or a text such as "5 mm", or a quantity of pint
     E2_star : reduced modulus E2* of the half-space, E1* on a rigid base: Pa, or "230 GPa"
-    parameters : P in N; a, D, h, Ra in m; Nbar in 1/m²; or texts with a unit, or quantities of pint. Everything else
-        is a pure number or text and passes unchanged
+    parameters : P in N; a, D, h, Ra in m; Nbar in 1/m²; or texts with a unit, or quantities of pint. The others are
+        pure numbers or texts and pass unchanged
 
     Returns
     -------
@@ -210,7 +213,7 @@ def from_physical(*, R: Any, E2_star: Any, **parameters: Any) -> dict:
 
     Raises
     ------
-    ValueError : no parameter has this name; a unit of something else
+    ValueError : no parameter has this name, or a unit is of another kind
 
     Examples
     --------
@@ -226,7 +229,7 @@ def from_physical(*, R: Any, E2_star: Any, **parameters: Any) -> dict:
         else:
             number = _si(name, value, lexicon.rows[name].unit)
             if np.asarray(number).dtype.kind not in "iuf":
-                quantity(name, value, lexicon.rows[name].unit)  # raises: it is no number, nor several
+                quantity(name, value, lexicon.rows[name].unit)  # raises: it is neither a number nor several
             array: Any = number if xr.is_array(number) or np.isscalar(number) else np.asarray(number)
             converted[name] = array / _factor(lexicon.rows[name], **scales)
     return converted

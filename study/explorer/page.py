@@ -1,4 +1,4 @@
-"""The page of the explorer: its parts, and what it takes from the program, in one HTML file."""
+"""The page of the explorer: one HTML file with its parts and the data of the program."""
 
 import base64
 import json
@@ -15,19 +15,19 @@ from ..inputs.lexicon import PACKAGE
 from ..rules import assumptions, doubts
 from ..specimen import materials
 
-#: The beginning of the page, by which a file is known to be one.
+#: The beginning of the page, by which it is recognised.
 MARK = b"<!-- a page of roughcoat explore -->"
 #: Nodes of the two meshes that the page solves on; their difference is its error (tests/explorer/test_core.py).
 NODES = (16, 22)
 _SCRIPTS = ("core.js", "stress.js", "numbers.js", "contact.js", "strength.js", "drawing.js", "map.js", "page.js")
-#: Limits of assumptions and doubts, which the page looks at as the program does.
+#: Module -> limits of assumptions and doubts, which the page applies as the program does.
 _LIMITS = {
     assumptions: ("STEEP", "COMPRESSED", "STRETCHED", "FEW_SPOTS", "MERGING", "STEEP_SPOT"),
     doubts: ("YIELD", "STIFF"),
     pressures: ("RING",),
     margins: ("RUBBER",),
 }
-#: λ(0) -> by how much disc_cell overestimates what the asperities yield, against a square lattice
+#: λ(0) -> relative error by which disc_cell overestimates the compression of the asperities against a square lattice
 #: (docs/model.md, Microscale; tests/laws/lattice/test_lattice.py).
 _MERGING = ((0.0, 0.0), (0.04, 0.02), (0.17, 0.05), (0.4, 0.10), (1.0, 0.27))
 

@@ -6,14 +6,14 @@ from matplotlib.patheffects import withStroke
 
 from ..rules.rule import RULES, broken
 
-MOST = 0.75  # of the axis: more is not shaded, the curves and the legend would stand on grey
+MOST = 0.75  # largest share of the axis that is shaded: with more, curves and legend would stand on grey
 
 
 def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", align: str = "center") -> None:
     """Write the name of a curve at the abscissa `at`, `align`ed there (left, center, right).
 
-    It stands "above" or "below" all the lines that belong to the curve, in the colour of the first, to which a short
-    stroke joins it where others are between.
+    The name stands "above" or "below" all the lines of the curve, in the colour of the first. A short stroke joins it
+    to the first line if other lines are between.
     """
     heights = [np.interp(at, *line.get_data()) for line in lines]
     gap, anchor, height = (1, "bottom", max(heights)) if side == "above" else (-1, "top", min(heights))
@@ -43,9 +43,9 @@ def load_axis(axes, largest: float, P0: float) -> None:
 
 
 def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> None:
-    """Grey bands over the loads (E2* R²) where a curve breaks an assumption; the legend says which and whose.
+    """Grey bands over the loads (E2* R²) at which curves break an assumption; the legend names assumption and curves.
 
-    What is broken along more than MOST of the axis is noted above it instead, with the loads.
+    An assumption that is broken along more than MOST of the axis is noted above it instead, with the loads.
 
     validity : curve name -> flags over P, with the attributes flag_masks and flag_meanings
     """
@@ -66,12 +66,15 @@ def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> 
 
 
 def note_violations(axes, validity: dict[str, xr.DataArray]) -> None:
-    """Write above the axes which curves break which assumptions. validity : curve name -> flags of one case."""
+    """Write above the axes which curves break which assumptions.
+
+    validity : curve name -> flags of one case
+    """
     note(axes, [(meaning, of_curves, "") for meaning, of_curves in violations(validity).items()])
 
 
 def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndarray]]:
-    """Assumption -> curve -> where it is broken, of the curves that break it; in the order of the masks.
+    """Assumption -> curve -> where the curve breaks it, for the curves that do; in the order of the masks.
 
     A results file of an earlier version has fewer masks.
     """
@@ -84,15 +87,17 @@ def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndar
 
 
 def note(axes, noted: list[tuple]) -> None:
-    """Write above the axes a line for each assumption. noted : assumption, the curves that break it, and words that say
-    where, if not everywhere."""
+    """Write above the axes a line for each assumption.
+
+    noted : assumption, the curves that break it, and the loads in words, unless it is broken everywhere
+    """
     lines = [f"{', '.join(curves)}: {RULES[meaning].text}{loads}"
              for meaning, curves, loads in noted]  # fmt: skip
     axes.set_title("\n".join(lines), fontsize=7, loc="left", color="0.2")
 
 
 def bands(P: np.ndarray, where: np.ndarray) -> list[tuple[float, float]]:
-    """Intervals of P where `where` holds. A point stands for P up to half-way to its neighbours, the first from 0."""
+    """Intervals of P in which `where` holds. A point stands for P half-way to its neighbours, the first from 0 on."""
     edges = np.concatenate([[0.0], (P[1:] + P[:-1]) / 2, P[-1:]])
     steps = np.flatnonzero(np.diff(np.concatenate([[0], where.astype(int), [0]])))
     return [(edges[i], edges[j]) for i, j in zip(steps[::2], steps[1::2], strict=True)]

@@ -1,7 +1,7 @@
-"""`figures.py` beside studies: which figures and tables stand in it, read without running it, and what it registers.
+"""`figures.py` beside studies: the names of its figures and tables, read without running it, and their registration.
 
-Names are read from the text: those of decorators `@figure("NAME", ...)` and the like, in `figures.py` and in the files
-beside it that it imports (`from . import curves`). The file is run when one of its figures or tables is asked for.
+Names are read from the text: from decorators `@figure("NAME", ...)` and the like, in `figures.py` and in the files
+beside it that it imports (`from . import curves`). The file is run when one of its figures or tables is needed.
 """
 
 import ast
@@ -26,7 +26,7 @@ log = logging.getLogger(__name__)
 FILE = "figures.py"
 KINDS = {"figure": "figure", "drawing": "figure", "table": "table", "measured": "measured"}
 """Decorator of `study.figures.registry` -> kind of what it registers."""
-LARGEST = 1_000_000  # bytes of a file beside `figures.py` that counts as its data; of ours the largest has 6,000
+LARGEST = 1_000_000  # largest number of bytes in a file beside `figures.py` that counts as its data; ours have 6,000
 
 
 def user_files() -> list[Path]:
@@ -44,7 +44,8 @@ def book_files() -> list[Path]:
 class Text(NamedTuple):
     """The figures and tables of one file.
 
-    modules : those beside it that it imports; entries : (kind, name) -> whether it is `long`
+    modules : the modules beside it that it imports
+    entries : (kind, name) -> whether it is `long`
     """
 
     modules: tuple[str, ...]
@@ -52,9 +53,9 @@ class Text(NamedTuple):
 
 
 def names_in(file: Path) -> dict[tuple[str, str], bool]:
-    """(kind, name) of what stands in a `figures.py` -> whether it is `long`. Nothing of it is run.
+    """(kind, name) of each entry of a `figures.py` -> whether it is `long`. The file is not run.
 
-    Raises StudyError for a file that is no Python.
+    Raises StudyError for a file that is not Python.
     """
     entries, wanted, seen = {}, [file], set()
     while wanted:
@@ -70,23 +71,31 @@ def names_in(file: Path) -> dict[tuple[str, str], bool]:
 
 @lru_cache(maxsize=256)  # every command asks several times for each figure; a file is read in a millisecond
 def read(path: Path, _: tuple) -> Text:
-    """The text of a file; the second argument changes when the file does. Raises StudyError if it is no Python."""
+    """The text of a file; the second argument changes when the file does. Raises StudyError if it is not Python."""
     try:
         nodes = list(ast.walk(ast.parse(content(path, LARGEST_TEXT))))
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:  # some of a null byte, or of deep brackets
+    except (
+        SyntaxError,
+        ValueError,
+        RecursionError,
+        MemoryError,
+    ) as error:  # some come from null bytes or deep brackets
         line = f"line {error.lineno}: " if isinstance(error, SyntaxError) and error.lineno else ""
         raise StudyError([f"{path.as_posix()}: is no Python: {line}{getattr(error, 'msg', error)}"]) from None
     except OSError as error:
         raise StudyError([f"{path.as_posix()}: cannot be read: {error.strerror}"]) from None
     imports = [node for node in nodes if isinstance(node, ast.ImportFrom)]
-    beside = [node for node in imports if node.level == 1]
-    modules = [name for node in beside for name in ([node.module] if node.module else [a.name for a in node.names])]
+    of_folder = [node for node in imports if node.level == 1]
+    modules = [name for node in of_folder for name in ([node.module] if node.module else [a.name for a in node.names])]
     called = {alias.asname or alias.name: alias.name for node in imports for alias in node.names if alias.name in KINDS}
     return Text(tuple(modules), dict(_calls(nodes, called)))
 
 
 def _calls(nodes: list[ast.AST], called: dict[str, str]) -> Iterator[tuple[tuple[str, str], bool]]:
-    """(kind, name) and `long` of each call of a decorator. called : its name in the file -> its name in KINDS"""
+    """(kind, name) and `long` of each call of a decorator.
+
+    called : name of a decorator in the file -> its name in KINDS
+    """
     for node in nodes:
         if isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
             decorator = called.get(getattr(node.func, "id", None), getattr(node.func, "attr", None))
@@ -97,15 +106,19 @@ def _calls(nodes: list[ast.AST], called: dict[str, str]) -> Iterator[tuple[tuple
 
 
 def names(kind: str, *, long: bool = True) -> list[str]:
-    """The names of all figures, or tables, beside studies, the user's before the book's; without long ones if wanted.
+    """The names of all figures, or tables, beside studies, the user's before the book's.
 
-    In place of a file that cannot be read its path is given: `place_of` says what is wrong with it.
+    long : whether figures that take long are among them
+
+    A file that cannot be read is listed by its path; `place_of` reports the error.
     """
     listed = []
     for file in (*user_files(), *book_files()):
         try:
             entries = names_in(file).items()
-            listed += sorted(name for (its, name), is_long in entries if its == kind and (long or not is_long))
+            listed += sorted(
+                name for (kind_of_entry, name), is_long in entries if kind_of_entry == kind and (long or not is_long)
+            )
         except StudyError:
             listed.append(file.as_posix())
     return list(dict.fromkeys(listed))
@@ -114,7 +127,7 @@ def names(kind: str, *, long: bool = True) -> list[str]:
 def place_of(kind: str, name: str) -> tuple[Path, str] | None:
     """The `figures.py` of a figure or table and its name there; None if there is none. FOLDER/NAME names the folder.
 
-    The user's go before those of the book. Raises StudyError for two of the user, or of the book, that have one name.
+    The user's files go before the book's. Raises StudyError if the user, or the book, has two of this name.
     """
     folder, _, last = name.rpartition("/")
     if folder:
@@ -136,12 +149,14 @@ def _readable(file: Path) -> dict:
         return {}
 
 
-def unknown(kind: str, name: str, others: list[str]) -> StudyError:
-    """The error of a figure or table that is nowhere. others : names known besides
+def unknown(kind: str, name: str, registered: list[str]) -> StudyError:
+    """The error for a figure or table that does not exist.
 
-    A file that cannot be read is told too: the name may stand there.
+    registered : further known names
+
+    The error also names files that cannot be read, since the name may be in one of them.
     """
-    lines = [f'"{name}" is not known{suggest(name, [*others, *names(kind)])}']
+    lines = [f'"{name}" is not known{suggest(name, [*registered, *names(kind)])}']
     for file in (*user_files(), *book_files()):
         try:
             names_in(file)
@@ -151,9 +166,9 @@ def unknown(kind: str, name: str, others: list[str]) -> StudyError:
 
 
 def package_of(file: Path) -> str:
-    """The package as which a `figures.py` is imported, with the files beside it, so that it can import these.
+    """The package in which a `figures.py` and the files beside it are imported, so that it can import these.
 
-    Chapters of one folder of studies are in one package: `from ..paper import numbers`.
+    Chapters of one folder of studies belong to one package: `from ..paper import numbers`.
     """
     folder, root = file.resolve().parent, _root(file)
     in_book = root == packaged().resolve()
@@ -165,7 +180,7 @@ def package_of(file: Path) -> str:
 
 
 def _root(file: Path) -> Path:
-    """The folder of studies that has a `figures.py`, resolved: the book, or that of which its folder is a chapter."""
+    """The folder of studies to which a `figures.py` belongs, resolved: the book, or the folder that has its chapter."""
     folder, book = file.resolve().parent, packaged().resolve()
     return book if folder.is_relative_to(book) else root_of(folder)
 
@@ -174,7 +189,7 @@ def run(file: Path) -> str:
     """Run a `figures.py`, once, and return its package. Raises StudyError if it fails."""
     package = package_of(file)
     try:
-        invalidate_caches()  # the file may be a second old
+        invalidate_caches()  # the file may have been written a second ago
         import_module(f"{package}.{Path(FILE).stem}")
     except (StudyError, MemoryError):
         raise
@@ -187,11 +202,11 @@ def run(file: Path) -> str:
 
 
 def files_of(file: Path) -> list[Path]:
-    """Files from which the figures of a `figures.py` may follow: itself, the files of studies that it imports, those
+    """Files on which the figures of a `figures.py` may depend: itself, the files of studies that it imports, the files
     that these import, and the data beside all of them.
 
-    They are read from the texts. Which modules a program has imported before does not matter, nor in which process a
-    figure is drawn.
+    Imports are read from the texts. So it does not matter which modules a program has imported before, nor which
+    process draws a figure.
     """
     code, waiting, root = set[Path](), [file.resolve()], _root(file)
     while waiting:
@@ -200,17 +215,17 @@ def files_of(file: Path) -> list[Path]:
             code.add(path)
             state = path.stat()
             waiting += _imported(path, (state.st_ino, state.st_size, state.st_mtime_ns))
-    beside = {path for folder in {file.parent for file in code} for path in folder.iterdir()}
-    data = {path for path in beside if path.suffix != ".py" and path.is_file() and path.stat().st_size <= LARGEST}
+    neighbours = {path for folder in {file.parent for file in code} for path in folder.iterdir()}
+    data = {path for path in neighbours if path.suffix != ".py" and path.is_file() and path.stat().st_size <= LARGEST}
     return sorted(code | {path for path in data if not path.name.startswith(".")})
 
 
 @lru_cache(maxsize=256)
 def _imported(path: Path, _: tuple) -> list[Path]:
-    """The files that a file imports by relative imports, wherever these stand in it; see `read` for the rest."""
+    """The files that a file imports by relative imports, wherever these stand in it. For `_` see `read`."""
     try:
         nodes = [node for node in ast.walk(ast.parse(path.read_bytes())) if isinstance(node, ast.ImportFrom)]
-    except (SyntaxError, ValueError, RecursionError):  # whoever runs it is told
+    except (SyntaxError, ValueError, RecursionError):  # running the file reports the error
         return []
     paths = []
     for node in (node for node in nodes if node.level):

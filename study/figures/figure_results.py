@@ -1,4 +1,4 @@
-"""Results that figures show: measured ones, which no study file makes, and what can be drawn of a dataset."""
+"""Results for figures: measurements, which no study file computes, and the part of a dataset that can be drawn."""
 
 import hashlib
 from math import prod
@@ -17,30 +17,31 @@ from ..files.results_file import open_results, write
 from ..inputs.definition import StudyError
 from .registry import Measured, entry
 
-MOST_POINTS = 20_000_000  # numbers of a quantity, whose curves matplotlib draws in some seconds: more is a mistake
+MOST_POINTS = 20_000_000  # matplotlib draws curves of so many numbers in some seconds; more must be a mistake
 #: Kinds of types of numpy whose values are neither real numbers nor texts.
 _NOT_DRAWN = {"M": "dates", "m": "spans of time", "c": "complex numbers", "S": "bytes", "V": "compound values"}
-_IN_LABELS = ("units", "long_name", "scale")  # attributes
+_IN_LABELS = ("units", "long_name", "scale")  # attributes that labels use
 
 
 def drawable(dataset: xr.Dataset, names: tuple[str, ...]) -> xr.Dataset:
-    """The dataset without values that are neither numbers nor texts, and without labels that are no texts.
+    """The dataset without variables that are neither numbers nor texts, and without attributes for labels that are not
+    texts.
 
-    Raises StudyError when one of the `names` is of this kind.
+    Raises StudyError when one of the `names` cannot be drawn.
     """
     reasons = {name: _reason(str(name), variable) for name, variable in dataset.variables.items()}
     if wrong := [f"{name} {reasons[name]}" for name in dict.fromkeys(names) if reasons.get(name)]:
         raise StudyError(wrong)
-    kept = dataset.drop_vars([name for name, reason in reasons.items() if reason]).copy()
-    for variable in kept.variables.values():
+    drawn = dataset.drop_vars([name for name, reason in reasons.items() if reason]).copy()
+    for variable in drawn.variables.values():
         variable.attrs = {
             key: value for key, value in variable.attrs.items() if key not in _IN_LABELS or isinstance(value, str)
         }
-    return kept
+    return drawn
 
 
 def check_size(dataset: xr.Dataset, x: str, y: str) -> None:
-    """Raise StudyError when the curves of y against x have very many points, before these are read."""
+    """Raise StudyError when the curves of y against x have too many points, before these are read."""
     sizes = {dim: size for name in (x, y) for dim, size in dataset[name].sizes.items()}
     if prod(sizes.values()) > MOST_POINTS:
         axes = ", ".join(f"{dim} ({size})" for dim, size in sizes.items())
@@ -48,7 +49,7 @@ def check_size(dataset: xr.Dataset, x: str, y: str) -> None:
 
 
 def _reason(name: str, variable: xr.Variable) -> str:
-    """Why a variable is not drawn, "" if it can be."""
+    """The reason why a variable cannot be drawn; "" if it can."""
     kind = variable.dtype.kind
     if len(set(variable.dims)) < variable.ndim:
         return "has a dimension twice: it is not drawn"
@@ -61,17 +62,17 @@ def _reason(name: str, variable: xr.Variable) -> str:
 
 
 def why_none(y: str, values: xr.DataArray) -> str:
-    """Why no case has a number to draw."""
+    """Words on why no case has a number to draw."""
     return f"{y} is infinite" if np.isinf(values).any() else "status says what became of each"
 
 
 def results(name: str, folder, force: bool = False, command: str = "") -> xr.Dataset:
-    """The measurements in FOLDER/NAME.nc. If they are missing, damaged or of another plan, they are made anew.
+    """The measurements in FOLDER/NAME.nc. If they are missing, damaged or of another plan, they are made again.
 
-    force : make them anew in any case
+    force : make them again in any case
 
-    A damaged file is kept aside. Raises Unusable for a file that roughcoat has not written, StudyError for the cases of
-    a study, and for a name that nothing measures.
+    A damaged file is put aside. Raises Unusable for a file that roughcoat has not written, StudyError for a file with
+    the cases of a study, and for a name that no function measures.
     """
     measured, path = entry("measured", name), Path(folder) / f"{name}.nc"
     condition = examine(path)
@@ -86,7 +87,7 @@ def results(name: str, folder, force: bool = False, command: str = "") -> xr.Dat
 
 
 def described(dataset: xr.Dataset, name: str, measured: Measured, command: str) -> xr.Dataset:
-    """Measurements with the provenance that all results have; the plan stands for the study file."""
+    """Measurements with the provenance of all results; the plan takes the place of the study file."""
     plan = measured.plan()
     about = SimpleNamespace(title=measured.title, name=name, text=plan, digest=digest(plan))
     return dataset.assign_attrs(provenance(about, command))

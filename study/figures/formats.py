@@ -11,15 +11,17 @@ from ..inputs.definition import StudyError
 from ..terminal import shown
 from .registry import Column, DataTable
 
-STALE = 3600  # seconds after which nobody is writing a temporary file any more: a figure takes some
-"""A younger one may be that of another program that draws the same figure."""
-#: How a text begins that spreadsheets compute when they open a CSV, some after blanks; the last four are wide letters.
+STALE = 3600
+"""Seconds after which a temporary file has no writer any more: a figure takes some seconds. A younger file may belong
+to another program that draws the same figure."""
+#: Beginning of a text that spreadsheets compute when they open a CSV, some after blanks; the last four are wide
+#: letters.
 _FORMULA = re.compile("\\s*[=+\\-@\uff1d\uff0b\uff0d\uff20]|[\\t\\r\\n]")
-_NONE = "-"  # what tables write where there is no number: alone it is a text everywhere
+_NONE = "-"  # stands in tables for a missing number: alone it is a text everywhere
 
 
 def as_text(table: DataTable, rows: list[tuple]) -> str:
-    """Columns aligned: text to the left, numbers to the right."""
+    """Aligned columns: text to the left, numbers to the right."""
     cells = [[column.text for column in table.columns], *formatted(table, rows)]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     marks = ["<" if column.form == "s" else ">" for column in table.columns]
@@ -28,7 +30,7 @@ def as_text(table: DataTable, rows: list[tuple]) -> str:
 
 
 def as_latex(table: DataTable, rows: list[tuple]) -> str:
-    """A table environment; needs the package booktabs."""
+    """A table environment of LaTeX, which needs the package booktabs."""
     form = "".join("l" if column.form == "s" else "r" for column in table.columns)
     begin = [r"\begin{table}", r"\centering", rf"\caption{{{latex(table.caption)}}}", rf"\begin{{tabular}}{{{form}}}"]
     head = " & ".join(column.latex or latex(column.text) for column in table.columns) + r" \\"
@@ -59,13 +61,14 @@ def _cell(column: Column, cell: object) -> str:
 
 
 def latex(cell: str) -> str:
-    """A formatted cell or a caption for LaTeX: powers of ten written out, signs escaped, in a text with $ % alone."""
+    """A formatted cell or a caption for LaTeX: powers of ten are written out, special characters escaped; in a text
+    with $ only % is escaped."""
     text = re.sub(r"(?<!\\)%" if "$" in cell else r"(?<!\\)[%&#_^]", r"\\\g<0>", cell).replace(r"\^", r"\^{}")
     return re.sub(r"([\d.+-]+)e([+-]\d+)$", lambda match: rf"${match[1]}\times 10^{{{int(match[2])}}}$", text)
 
 
 def csv_text(headings, rows) -> str:
-    """CSV with one line of headings. A text that a spreadsheet would compute is `guarded`."""
+    """CSV with one line of headings. Texts that a spreadsheet would compute are `guarded`."""
     stream = io.StringIO()
     lines = ([guarded(cell) for cell in row] for row in (headings, *rows))
     csv.writer(stream, lineterminator="\n").writerows(lines)
@@ -73,15 +76,15 @@ def csv_text(headings, rows) -> str:
 
 
 def guarded(cell: Any) -> Any:
-    """A text that a spreadsheet takes for a formula, such as "=1+1", behind an apostrophe; numbers as they are."""
+    """A text that a spreadsheet would take for a formula, such as "=1+1", after an apostrophe; numbers as they are."""
     if not isinstance(cell, str) or cell == _NONE:
         return cell
-    text = re.sub("\r\n?", "\n", cell)  # csv quotes no \r, at which a row would end
+    text = re.sub("\r\n?", "\n", cell)  # csv does not quote \r, which would end the row
     return f"'{text}" if _FORMULA.match(cell) else text
 
 
 def write(path: Path, content: str | bytes) -> Path:
-    """Write a file whole or not at all, and its folder; returns the path."""
+    """Write a file completely or not at all, and make its folder; returns the path."""
     path.parent.mkdir(parents=True, exist_ok=True)
     remove_temporary(path, STALE)
     with replacing(path) as temporary:

@@ -1,4 +1,4 @@
-"""Labels of quantities on axes, in legends and in the line that states the parameters of a figure."""
+"""Labels of quantities on axes, in legends, and in the line with the parameters of a figure."""
 
 import re
 from collections.abc import Iterable
@@ -12,13 +12,16 @@ from ..inputs.vocabulary import over_scale
 from ..specimen import quantities
 from ..specimen.quantities import READABLE, readable
 
-TIMES = r"\,"  # what is written between two factors, in mathtext
+TIMES = r"\,"  # between two factors, in mathtext
 GREEK = {"α": r"\alpha ", "β": r"\beta ", "λ": r"\lambda ", "ν": r"\nu ", "π": r"\pi ", "σ": r"\sigma ", "²": "^2"}
-UNITS = {"B": r"R_a/E_1^{*\beta}"}  # units of parameters whose scale is not made of E2* and R
+UNITS = {"B": r"R_a/E_1^{*\beta}"}  # units of parameters whose scale is not a product of powers of E2* and R
 
 
 def symbol(name: str, lexicon: Lexicon | None = None) -> str:
-    """The symbol of a name: "$p_{\\max}$", or the name in words. `lexicon` : as of `plain_symbol`."""
+    """The symbol of a name: "$p_{\\max}$", or the name in words.
+
+    lexicon : as in `plain_symbol`
+    """
     plain = plain_symbol(name, lexicon)
     return f"${mathtext(plain)}$" if plain else name.replace("_", " ")
 
@@ -26,7 +29,7 @@ def symbol(name: str, lexicon: Lexicon | None = None) -> str:
 def plain_symbol(name: str, lexicon: Lexicon | None = None) -> str:
     """The symbol of a name in the vocabulary or of an input of a physical scene, as plain text; "" if it has none.
 
-    lexicon : of the results that have the name; left out, what the program has registered
+    lexicon : of the results that have the name; by default that of the program
     """
     rows = (lexicon or default()).all_rows
     return rows[name].symbol if name in rows else ""
@@ -46,7 +49,7 @@ def mathtext(plain: str) -> str:
 
 
 def multiple(array: xr.DataArray) -> tuple[str, float]:
-    """The unit in which physical numbers are read most easily, and its size in theirs; ("", 1) for pure numbers."""
+    """The unit in which physical numbers are easiest to read, and its size in their unit; ("", 1) for pure numbers."""
     unit = array.attrs.get("units", "1")
     if unit not in READABLE or unit == "1":
         return "" if unit == "1" else unit, 1.0
@@ -54,7 +57,7 @@ def multiple(array: xr.DataArray) -> tuple[str, float]:
 
 
 def axis_label(name: str, array: xr.DataArray) -> str:
-    """The label of an axis: "$h/R$", "$P/(E_2^* R^2)$", "$\\bar N R^2$"; of physical numbers "$P$, mN"."""
+    """The label of an axis: "$h/R$", "$P/(E_2^* R^2)$", "$\\bar N R^2$"; for physical numbers "$P$, mN"."""
     unit, _ = multiple(array)
     lexicon = lexicon_in(array.coords)
     if unit:
@@ -67,7 +70,7 @@ def axis_label(name: str, array: xr.DataArray) -> str:
 
 
 def with_units(columns: dict, dataset: xr.Dataset) -> dict:
-    """Columns of numbers of a dataset whose names say the unit of physical numbers: "P", or "P [N]"."""
+    """Columns of numbers of a dataset, with the unit of physical numbers in their names: "P", or "P [N]"."""
     units = {name: dataset[name].attrs.get("units", "1") for name in columns if name in dataset}
     return {name if units.get(name, "1") == "1" else f"{name} [{units[name]}]": v for name, v in columns.items()}
 
@@ -81,7 +84,7 @@ def value_text(name: str, array: xr.DataArray, value) -> str:
         text = readable(float(value), unit)  # "5e+05 1/mm²"
         text = re.sub(r"(\d)e([+-]\d+)", lambda match: rf"{match[1]}$\times10^{{{int(match[2])}}}$", text)
         return f"{symbol(name, lexicon_in(array.coords))} = {text}"
-    if unit != "1":  # of study.readable
+    if unit != "1":  # from study.readable
         return f"{symbol(name, lexicon_in(array.coords))} = {written(float(value))} {unit}"
     return f"{axis_label(name, array)} = {written(float(value))}"
 
@@ -106,7 +109,7 @@ def name_of(dataset: xr.Dataset, dim: str, i: int) -> str:
 
 
 def legend_texts(dataset: xr.Dataset, hue: str) -> tuple[str, list[str]]:
-    """Title of the legend, and what each curve is called in it."""
+    """Title of the legend, and the name of each curve in it."""
     name = "label" if hue == "case" and "label" in dataset else hue
     if name not in dataset.coords or dataset[name].dtype.kind not in "fi" or name == "case":
         return "", [name_of(dataset, hue, i) for i in range(dataset.sizes[hue])]
@@ -117,8 +120,8 @@ def legend_texts(dataset: xr.Dataset, hue: str) -> tuple[str, list[str]]:
 def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
     """The texts above a figure: `value_text` of each input that has one value in all the datasets.
 
-    Inputs that no case uses are left out, and so are axes, which the figure shows, and names of models and materials,
-    but the shape of the punch. A rigid base, which has no modulus, is stated in words.
+    Inputs that no case uses are left out. So are axes, which the figure shows, and names of models and materials,
+    except the shape of the punch. A rigid base, which has no modulus, is stated in words.
     """
     datasets = list(datasets)
     contacts = [dataset for dataset in datasets if "base" in dataset.coords]
@@ -137,7 +140,7 @@ def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
 
 
 def wrapped(texts: list[str], most: float) -> str:
-    """Texts joined by commas, in lines of about `most` characters, without those that mathtext does not print."""
+    """Texts joined by commas, in lines of about `most` characters; those that mathtext does not print do not count."""
     lines, length = [[]], 0
     for text in texts:
         shown = len(re.sub(r"\\(bar|mathrm|times|nu|beta)|[\\${}_^]", "", text)) + 2
@@ -150,7 +153,7 @@ def wrapped(texts: list[str], most: float) -> str:
 
 
 def _values(datasets: list[xr.Dataset], name: str) -> set:
-    """All values of a variable but NaN; numbers that are the same to 1e-9 are one."""
+    """All values of a variable except NaN; numbers that agree to 1e-9 are one value."""
     arrays = [dataset[name].values.ravel() for dataset in datasets if name in dataset.coords]
     flat = [value for array in arrays for value in np.unique(array).tolist()]
     return {value if isinstance(value, str) else float(f"{value:.9g}") for value in flat if value == value}

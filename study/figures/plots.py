@@ -1,4 +1,4 @@
-"""`plot`: any quantity of any results against another, a curve for each value of a third, panels for the rest."""
+"""`plot`: a quantity of any results against another, a curve for each value of a third, panels for the other axes."""
 
 from collections.abc import Callable
 from itertools import product
@@ -26,9 +26,9 @@ from .plotted.tornado import ORDINATE, tornado
 from .registry import Columns, joined
 from .style import StyledFigure, as_points, shades, spaced_by_factors, style, tick_decades
 
-MOST_PANELS, MOST_NAMES = 12, 12  # of a figure, of its legend
-FINE, FEW = 200, 9  # points of the curve of a profile, at least; of those that it passes through
-BAND = {"alpha": 0.25, "linewidth": 0}  # of ± one standard deviation
+MOST_PANELS, MOST_NAMES = 12, 12  # largest number of panels in a figure, and of names in its legend
+FINE, FEW = 200, 9  # least number of points in the curve of a profile, and of those through which it passes
+BAND = {"alpha": 0.25, "linewidth": 0}  # look of ± one standard deviation
 NOT_VALID = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9}
 
 
@@ -45,21 +45,21 @@ def plot(
 ) -> Figure:
     """A figure of `y` against `x`, a curve for each value of `hue`, a panel for each combination of the other axes.
 
-    A notebook shows it where it is the last value of a cell; `savefig` writes it. It is none of pyplot, and looks the
-    same whatever the settings of matplotlib are. Stretches where `validity` is not 0 are dotted, and called "not
-    valid"; failed cases are gaps. Where the dataset has the spread of `y`, a band shows ± one standard deviation.
+    A notebook shows the figure as the last value of a cell; `savefig` writes it. It does not belong to pyplot, and
+    looks the same whatever the settings of matplotlib are. Stretches where `validity` is not 0 are dotted, and called
+    "not valid"; failed cases are gaps. Where the dataset has the spread of `y`, a band shows ± one standard deviation.
 
     Parameters
     ----------
-    dataset : of `study.solve`, results of a study, or of `study.fit`: curves, fits and residuals, without x and y
-    x, y : names of variables of the dataset, or of study.derived.QUANTITIES, which follow from it; y = "input": how
-        much each input changes x, a, P, D, p0, p_max, Ar_An or dP_dD of one contact, as bars
+    dataset : from `study.solve`, results of a study, or from `study.fit`: curves, fits and residuals, without x and y
+    x, y : names of variables of the dataset, or of study.derived.QUANTITIES, which follow from it; with y = "input"
+        bars show how much each input changes x, one of a, P, D, p0, p_max, Ar_An and dP_dD of a single contact
     hue : name of a dimension, or "label" of the cases
-    colour : name of a variable or quantity, which is then a map over the dimensions x and y; where `validity` is not 0,
-        the map is hatched, and failed cases are white
-    scale : "linear" or "log" of y, or of the colour of a map; "" chooses
+    colour : name of a variable or quantity for a map over the dimensions x and y; where `validity` is not 0, the map is
+        hatched, and failed cases are white
+    scale : "linear" or "log" for y, or for the colour of a map; "" chooses
     limits : lowest and highest y, or colour of a map, in the units of the dataset or as texts with a unit
-    where : values to be drawn alone, such as bonding="bonded"
+    where : the values to draw, such as bonding="bonded"
 
     Returns
     -------
@@ -67,7 +67,7 @@ def plot(
 
     Raises
     ------
-    StudyError : no dataset, or a stacked one, a name is not there, a value neither, or more than 12 panels
+    StudyError : not a dataset, a stacked dataset, an unknown name or value, or more than 12 panels
     """
     with style():
         return shaped(dataset, (x, y, hue), where, StyledFigure, colour=colour, scale=scale, limits=limits)[0]
@@ -76,7 +76,7 @@ def plot(
 def shaped(
     dataset: xr.Dataset, names: tuple, where: dict, new: Callable[..., Figure], *, colour: str, scale: str, limits: Any
 ) -> tuple:
-    """What `drawn` gives, with the scale and limits of the ordinate; or a map, if `colour` is not ""."""
+    """The figure and numbers of `drawn`, with the scale and limits of the ordinate; or a map, if `colour` is not ""."""
     x, y, hue = names
     if scale not in ("", "linear", "log"):
         raise StudyError([f"plot: scale = {scale}: must be linear or log"])
@@ -101,7 +101,7 @@ def shaped(
 
 
 def _ends(array: xr.DataArray, limits: Any) -> list[float] | None:
-    """Limits in the unit of an array. Raises StudyError: these are not two, the lower first."""
+    """Limits in the unit of an array. Raises StudyError unless they are two, the lower first."""
     if limits is None:
         return None
     ends = []
@@ -116,7 +116,10 @@ def _ends(array: xr.DataArray, limits: Any) -> list[float] | None:
 
 
 def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Callable[..., Figure]) -> tuple:
-    """The figure of `plot`, and the numbers that it shows (Columns). `new` makes an empty figure."""
+    """The figure of `plot`, and its numbers (Columns).
+
+    new : makes an empty figure
+    """
     if not isinstance(dataset, xr.Dataset):
         raise StudyError([f"a figure is of a dataset of contacts, not of a {type(dataset).__name__}"])
     x, y, hue = map(short, (x, y, hue))
@@ -136,7 +139,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     check_size(contacts, x, y)
     hue = "case" if hue == "label" and contacts[hue].dims == ("case",) else hue
     check_roles(contacts, x, y, hue)
-    contacts = contacts.sortby(x) if x in contacts.dims else contacts  # else a curve may run to and fro
+    contacts = contacts.sortby(x) if x in contacts.dims else contacts  # otherwise a curve may run to and fro
     contacts = contacts.squeeze([dim for dim, size in contacts.sizes.items() if size == 1 and dim not in (x, hue)])
     pair = xr.broadcast(contacts[x], contacts[y])
     if not np.logical_and(*(np.isfinite(array.values) for array in pair)).any():
@@ -153,7 +156,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
         sizes = ", ".join(f"{dim} ({contacts.sizes[dim]})" for dim in rest)
         raise StudyError([f"{count} panels, of {sizes}: at most {MOST_PANELS}; choose by NAME=VALUE, or --where"])
     whole = {name: array.variable for name, array in zip((x, y), pair, strict=True) if name not in contacts.dims}
-    contacts = contacts.assign(whole)  # variables: xarray 2026.2 does not align coordinates that are there
+    contacts = contacts.assign(whole)  # as variables, since xarray 2026.2 does not align existing coordinates
     columns = 2 if count == 4 else min(count, 3)
     rows = -(-count // columns)
     names = min(contacts.sizes[hue], MOST_NAMES) if hue else 0  # a long legend needs room below the title
@@ -172,7 +175,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
 
 
 def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
-    """The dataset with the derived quantities among the names added. Raises StudyError for an unknown name."""
+    """The dataset with the derived quantities among the names. Raises StudyError for an unknown name."""
     errors = []
     for name in names:
         if name in QUANTITIES and name not in dataset:
@@ -188,7 +191,8 @@ def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
 
 
 def check_roles(contacts: xr.Dataset, x: str, y: str, hue: str) -> None:
-    """Raise StudyError for texts as coordinates of a curve, an axis as its ordinate, or as abscissa and hue."""
+    """Raise StudyError for texts as coordinates of a curve, an axis as its ordinate, or one axis as abscissa and
+    hue."""
     errors = [f"{name} has texts: they are not drawn, but may be the hue" for name in {x, y} if is_text(contacts[name])]
     # where x depends on the axis y, such as the depth on the load, its curve may be drawn
     if y in contacts.dims and (x in contacts.dims or y not in contacts[x].dims):
@@ -200,11 +204,11 @@ def check_roles(contacts: xr.Dataset, x: str, y: str, hue: str) -> None:
 
 
 def is_text(array: xr.DataArray) -> bool:
-    return array.dtype.kind in "UOT"  # T: an index of texts that pandas has made
+    return array.dtype.kind in "UOT"  # T: an index of texts from pandas
 
 
 def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
-    """The dataset at the wanted values of its axes. Raises StudyError for a value that is not there."""
+    """The dataset at the wanted values of its axes. Raises StudyError for a value that it does not have."""
     for name, value in where.items():
         if name not in dataset.coords or dataset[name].ndim != 1:
             axes = [str(name) for name, axis in dataset.coords.items() if axis.ndim == 1]
@@ -222,7 +226,7 @@ def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
             listed = ", ".join(f"{each:g}" if values.dtype.kind == "f" else str(each) for each in few[:20])
             more = " ..." * (len(values) > 20) + f" {unit}" * (unit != "1")
             raise StudyError([f"{name} = {value} is not there; there are {listed}{more}"])
-        index = np.flatnonzero(fits)  # several of [[cases]] may have the value, and keep their numbers
+        index = np.flatnonzero(fits)  # several [[cases]] may have the value, and keep their numbers
         if dim not in dataset.coords:
             dataset = dataset.assign_coords({dim: np.arange(len(fits))})
         dataset = dataset.isel({dim: index if name != dim or len(index) > 1 else index[0]})
@@ -230,7 +234,7 @@ def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
 
 
 def number(name: str, value: Any, unit: str) -> float:
-    """A value as a number in the unit of the dataset: 2e-6, or "2 um" of physical results. Raises StudyError."""
+    """A value as a number in the unit of the dataset: 2e-6, or "2 um" for physical results. Raises StudyError."""
     if isinstance(value, Real):
         return value
     try:
@@ -240,7 +244,8 @@ def number(name: str, value: Any, unit: str) -> float:
 
 
 def running(contacts: xr.Dataset, x: str, dims: list[str]) -> str:
-    """The dimension along which a curve runs: `x` itself, or one on which it depends, a control before others."""
+    """The dimension along which a curve runs: `x` itself, or a dimension on which x depends, a control before
+    others."""
     if x in dims:
         return x
     varies = [dim for dim in (*CONTROLS, *dims) if dim in dims and dim in contacts[x].dims]
@@ -250,9 +255,10 @@ def running(contacts: xr.Dataset, x: str, dims: list[str]) -> str:
 
 
 def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Columns]:
-    """The curves of one panel, solid where the case is valid, dotted where not, in a band of ±; their numbers."""
+    """Draw the curves of one panel: solid where the case is valid, dotted elsewhere, in a band of ±. Returns the
+    numbers."""
     x, y, hue, along = names
-    banded = x if y in whole.dims else y  # has a band of ±
+    banded = x if y in whole.dims else y  # the quantity with a band of ±
     parts, colours = [], shades(case.sizes[hue] if hue else 1)
     sizes = [multiple(whole[name])[1] for name in (x, y)]
     for i, colour in enumerate(colours):
@@ -264,7 +270,7 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
         spread = {name: np.broadcast_to(curve[name].values, len(up)) for name in (f"{banded}_spread",) if name in curve}
         points = across / sizes[0], up / sizes[1], np.where(valid, up, np.nan) / sizes[1]
         halves = [half / sizes[banded != x] for half in spread.values()]
-        if along == "x" and "status" in curve:  # x of another program is no radius over a
+        if along == "x" and "status" in curve:  # in a dataset of another program x is not a radius over a
             radii, profiles = between(curve["x"].values, [*points, *halves])
             points, halves = (radii / sizes[0] if x == "x" else profiles[0], *profiles[1:3]), profiles[3:]
         for half in halves:
@@ -290,11 +296,12 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
 
 
 def between(x: np.ndarray, profiles: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """More radii x = r/a, (m,), and there the profiles, (len(profiles), m), so that their curves have no corners.
+    """More radii x = r/a, (m,), and the profiles at these, (len(profiles), m), so that their curves have no corners.
 
-    Monotone cubics pass through all points: over arcsin x where a profile ends like sqrt(1 - x^2), of which straight
-    lines between 33 points leave out 6 % of p(0); over x where it ends flatter, as that of a rough punch does. A
-    profile that is infinite at the edge ends at its last number. Fewer than FEW points stay as they are.
+    Monotone cubics pass through all points. They are functions of arcsin x where a profile ends like sqrt(1 - x^2):
+    straight lines between 33 points would miss it by 6 % of p(0). They are functions of x where a profile ends flatter,
+    as under a rough punch. A profile that is infinite at the edge ends at its last number. Fewer than FEW points stay
+    as they are.
     """
     points = np.array(profiles, float)
     if len(x) < FEW or not (np.all(np.diff(x) > 0) and x[0] >= 0 and x[-1] <= 1):
@@ -302,9 +309,9 @@ def between(x: np.ndarray, profiles: list[np.ndarray]) -> tuple[np.ndarray, np.n
     fine = np.unique(np.concatenate([x, np.sin(np.linspace(np.arcsin(x[0]), np.arcsin(x[-1]), FINE))]))
     curves = np.full((len(points), len(fine)), np.nan)
     for curve, values in zip(curves, points, strict=True):
-        there = np.isfinite(values)
-        at, values = x[there], values[there]
-        if len(at) < 4 or not np.all(np.diff(np.flatnonzero(there)) == 1):  # gaps, or next to nothing
+        is_finite = np.isfinite(values)
+        at, values = x[is_finite], values[is_finite]
+        if len(at) < 4 or not np.all(np.diff(np.flatnonzero(is_finite)) == 1):  # gaps, or very few points
             curve[np.isin(fine, at)] = values
             continue
         falls, nears = np.abs(values[-3:-1] - values[-1]), at[-1] - at[-3:-1]
@@ -327,7 +334,7 @@ def decorate(figure: Figure, panels, contacts: xr.Dataset, names: tuple) -> None
         axes.set_ylabel(axis_label(y, contacts[y]) if grid.is_first_col() else "")
         axes.set_xlabel(axis_label(x, contacts[x]))
         axes.label_outer()
-        if grid.num1 + grid.get_gridspec().ncols >= len(panels):  # there is no panel below it
+        if grid.num1 + grid.get_gridspec().ncols >= len(panels):  # no panel is below this one
             axes.set_xlabel(axis_label(x, contacts[x]))
             axes.tick_params(labelbottom=True)
     figure.suptitle(wrapped(stated([contacts]), 21 * figure.get_figwidth()), fontsize=7)

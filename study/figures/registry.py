@@ -1,6 +1,6 @@
 """The register of figures and tables. Each is a decorated function of the datasets of the studies that it names.
 
-They stand in a file `figures.py` beside studies, see `study.figures.figure_files`, or in a script of one's own.
+They are in a file `figures.py` beside studies, see `study.figures.figure_files`, or in a user's script.
 """
 
 import os
@@ -20,10 +20,10 @@ from ..terminal import program
 from . import figure_files
 
 ONE_COLUMN, TWO_COLUMNS = 3.35, 6.9  # inches, widths of a journal page
-#: Bytes in memory of results that are kept while a program draws. Some twenty studies have figures.
+#: Largest number of bytes of a dataset that stays in memory while a program draws. Some twenty studies have figures.
 SMALL = 20_000_000
-_kept: dict[Path, tuple[tuple, xr.Dataset]] = {}
-COMMANDS = ("tradeoff",)  # measurements that have a command
+_datasets: dict[Path, tuple[tuple, xr.Dataset]] = {}
+COMMANDS = ("tradeoff",)  # measurements with a command of their own
 Decorator = Callable[[Callable], Callable]
 Pair = tuple[float, float]
 Cells = tuple[int, int]
@@ -55,7 +55,7 @@ class Drawing(NamedTuple):
 
 
 class Column(NamedTuple):
-    """One column of a table: heading, format of its numbers ("s": text), heading in LaTeX if it has its own."""
+    """One column of a table: heading, format of its numbers ("s": text), heading in LaTeX if that differs."""
 
     text: str
     form: str
@@ -79,10 +79,10 @@ class Measured(NamedTuple):
     title: str
 
 
-#: Package of files beside studies -> kind -> name -> what is registered there. "": by scripts and other modules.
+#: Package of files beside studies -> kind -> name -> entry. The package "" stands for scripts and other modules.
 REGISTERS = defaultdict[str, dict[str, dict]](lambda: {kind: {} for kind in figure_files.KINDS.values()})
 FIGURES, TABLES = REGISTERS[""]["figure"], REGISTERS[""]["table"]
-"""The figures, and tables, of the program that runs, which go before those beside studies."""
+"""Figures and tables of the running program, which go before those beside studies."""
 
 
 def figure(
@@ -94,9 +94,10 @@ def figure(
     ----------
     name : of the figure
     studies : names of the studies whose datasets `draw` takes, in this order
-    size, panels : width and height in inches; rows and columns, of which several make `axes` an array
+    size : width and height in inches
+    panels : rows and columns of panels; with several panels `axes` is an array
     caption : by default the first paragraph of the docstring. The parameters that the studies share are added to it
-    long : whether a study takes minutes to compute; `plot all` goes without the figure
+    long : whether a study takes minutes to compute; `plot all` leaves out the figure
 
     Returns
     -------
@@ -136,9 +137,9 @@ def table(name: str, *studies: str, columns: str, caption: str = "", long: bool 
     ----------
     name : of the table
     studies : names of the studies whose datasets `rows` takes, in this order
-    columns : "heading | format of its numbers | heading in LaTeX" of each, on lines or separated by "; "; without a
-        format the cells are text, without a heading in LaTeX it is the plain one
-    caption, long : as of `figure`
+    columns : "heading | format of its numbers | heading in LaTeX" for each, on lines or separated by "; "; without a
+        format the cells are text, without a heading in LaTeX the plain heading serves
+    caption, long : as in `figure`
 
     Returns
     -------
@@ -154,9 +155,9 @@ def table(name: str, *studies: str, columns: str, caption: str = "", long: bool 
 
 
 def measured(name: str, plan: Callable[[], str], title: str):
-    """Register `measure()`, whose dataset is kept as results of the study NAME, which has no study file.
+    """Register `measure()`, whose dataset is stored as results of the study NAME, which has no study file.
 
-    plan : what is measured, as text; results of another plan are measured anew
+    plan : text that describes the measurement; results of another plan are measured again
     title : of the dataset
     """
 
@@ -168,9 +169,9 @@ def measured(name: str, plan: Callable[[], str], title: str):
 
 
 def add(kind: str, name: str, function: Callable, registered: NamedTuple) -> None:
-    """Put what is registered with a function into the register of its package.
+    """Put the entry of a function into the register of its package.
 
-    Raises ValueError if another function there has the name. In a notebook a function may be defined anew.
+    Raises ValueError if another function there has the name. In a notebook a function may be defined again.
     """
     function = getattr(function, "func", function)  # of a partial
     package = (function.__module__ or "").rpartition(".")[0]
@@ -194,14 +195,17 @@ def column(line: str) -> Column:
 
 
 def names(kind: str, *, long: bool = True) -> list[str]:
-    """The names of all figures ("figure"), or tables ("table"), that there are; without long ones if wanted."""
+    """The names of all figures ("figure") or tables ("table").
+
+    long : whether figures that take long are among them
+    """
     return list(dict.fromkeys([*REGISTERS[""][kind], *figure_files.names(kind, long=long)]))
 
 
 def entry(kind: str, name: str) -> Any:
-    """The entry of a name, registered by the program itself or by code beside studies, which runs now.
+    """The entry of a name, registered by the program itself or by code beside studies, which is run for it.
 
-    Raises StudyError, which suggests another name, if there is none.
+    Raises StudyError, which suggests another name, if there is no such entry.
     """
     if name in REGISTERS[""][kind]:
         return REGISTERS[""][kind][name]
@@ -216,13 +220,13 @@ def entry(kind: str, name: str) -> Any:
 
 
 def code_of(kind: str, name: str) -> list[Path]:
-    """Files beside studies that a figure or table may depend on, by their texts; none if a script has it."""
+    """Files beside studies on which a figure or table may depend, by their texts; none if a script registers it."""
     place = None if name in REGISTERS[""][kind] else figure_files.place_of(kind, name)
     return figure_files.files_of(place[0]) if place else []
 
 
 def study_beside(kind: str, name: str) -> Path | None:
-    """The folder of a figure or table of the user, where the studies that it needs are looked for first."""
+    """The folder of a user's figure or table, where the studies that it needs are searched for first."""
     place = None if name in REGISTERS[""][kind] else figure_files.place_of(kind, name)
     return place[0].parent if place and place[0] not in figure_files.book_files() else None
 
@@ -242,22 +246,22 @@ def open_studies(name: str, studies: tuple[str, ...], results) -> list[xr.Datase
 
 
 def opened(path: Path) -> xr.Dataset:
-    """The results in a file. Those that are small are kept for the next figure that needs them, until the file is
-    another one."""
+    """The results in a file. Small results stay in memory for the next figure that needs them, until the file
+    changes."""
     path = Path(os.path.abspath(path))
     place = path.stat()
     stamp = place.st_mtime_ns, place.st_size, place.st_ino
-    if path not in _kept or _kept[path][0] != stamp:
-        _kept.pop(path, None)
+    if path not in _datasets or _datasets[path][0] != stamp:
+        _datasets.pop(path, None)
         dataset = open_results(path)
         if dataset.nbytes > SMALL:
             return dataset
-        _kept[path] = stamp, dataset
-    return _kept[path][1].copy()
+        _datasets[path] = stamp, dataset
+    return _datasets[path][1].copy()
 
 
 def _way_out(study: str) -> str:
-    """How to get the results of a study that has none."""
+    """Words on how to get the results of a study that has none."""
     if is_measured(study):
         return f"make it with: {program()} {study}" if study in COMMANDS else "--run measures it"
     return f"make it with: {program()} run {study}"
@@ -269,9 +273,9 @@ def is_measured(study: str) -> bool:
 
 
 def pick(dataset: xr.Dataset, **wanted) -> xr.Dataset:
-    """The one case whose coordinates along `case` have the wanted values (numbers within 1e-9).
+    """The case whose coordinates along `case` have the wanted values (numbers within 1e-9).
 
-    Raises StudyError when no case, or several, fit.
+    Raises StudyError when no case fits, or several do.
     """
     fits = np.ones(dataset.sizes["case"], dtype=bool)
     for name, value in wanted.items():

@@ -21,10 +21,10 @@ FONT = "STIXGeneral"  # of all figures; it comes with matplotlib
 
 @contextmanager
 def style() -> Iterator[None]:
-    """Draw, and write, in the style of all figures. What it does not set has the defaults of matplotlib, whatever the
-    settings of the user are."""
-    # A user keeps matplotlib's list of fonts from one installation to the next, so those that come with it may be
-    # missing there, and every figure looks different.
+    """Draw and write in the style of all figures. Other settings have the defaults of matplotlib, whatever the settings
+    of the user are."""
+    # The user's list of fonts survives a new installation of matplotlib, so fonts that come with matplotlib may be
+    # missing in it, and every figure would look different.
     if FONT not in font_manager.fontManager.get_font_names():
         for file in Path(matplotlib.get_data_path(), "fonts/ttf").glob("STIX*.ttf"):
             font_manager.fontManager.addfont(file)
@@ -33,9 +33,9 @@ def style() -> Iterator[None]:
 
 
 class StyledFigure(Figure):
-    """A figure that takes the style of all figures each time it is drawn: matplotlib makes ticks only then.
+    """A figure that applies the style of all figures each time it is drawn, since matplotlib makes ticks only then.
 
-    pyplot does not know it. A notebook shows it where it is the last value of a cell, or given to `display`.
+    pyplot does not know it. A notebook shows it as the last value of a cell, or by `display`.
     """
 
     def draw(self, renderer) -> None:
@@ -47,37 +47,40 @@ class StyledFigure(Figure):
             super().savefig(*arguments, **options)
 
     def _repr_png_(self) -> bytes:
-        """A notebook asks for this unless something, such as importing pyplot, has told it how to show figures."""
+        """The picture for a notebook, unless something, such as importing pyplot, has told it how to show figures."""
         stream = BytesIO()
         self.savefig(stream, format="png", dpi=self.dpi)
         return stream.getvalue()
 
 
 def shades(count: int) -> list:
-    """Colours from dark to light, told apart in grey as well; black for a single curve."""
+    """Colours from dark to light, which differ in grey as well; black for a single curve."""
     return [colormaps["viridis"](0.9 * i / (count - 1)) for i in range(count)] if count > 1 else ["black"]
 
 
 def as_points(lines: list[Line2D], fill: str) -> None:
-    """Points in place of curves: of single cases, one has nothing to do with the next. fill : "full" or "none" """
+    """Draw points in place of curves, for single cases that have nothing to do with each other.
+
+    fill : "full" or "none"
+    """
     for line in lines:
         line.set(linestyle="none", marker="o", markersize=3, fillstyle=fill)
 
 
 def spaced_by_factors(values: np.ndarray) -> bool:
     """Whether values grow by factors rather than by steps: their median is nearer to the geometric mean."""
-    known = values[np.isfinite(values)] if values.dtype.kind in "fi" else np.zeros(1)
-    if not len(known) or known.min() <= 0 or known.max() < 10 * known.min():
+    finite = values[np.isfinite(values)] if values.dtype.kind in "fi" else np.zeros(1)
+    if not len(finite) or finite.min() <= 0 or finite.max() < 10 * finite.min():
         return False
-    middle = np.log(np.median(known))
-    return abs(middle - np.log(known).mean()) < abs(middle - np.log(known.mean()))
+    middle = np.log(np.median(finite))
+    return abs(middle - np.log(finite).mean()) < abs(middle - np.log(finite.mean()))
 
 
 def tick_decades(axis: Axis) -> None:
-    """Ticks of a logarithmic axis at each decade, up to six; also at 3 times each if there are fewer than two.
+    """Put ticks at each decade of a logarithmic axis, up to six, and also at 3 times each on fewer than two decades.
 
-    Of few decades matplotlib has one number, or writes those at 2, 3, 4 and 6 over each other; of four in a narrow
-    panel it leaves out two, and all ticks between them.
+    On few decades matplotlib writes a single number, or those at 2, 3, 4 and 6 over each other. On four decades in a
+    narrow panel it leaves out two, and all ticks between them.
     """
     if axis.get_scale() != "log":
         return

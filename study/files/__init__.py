@@ -1,1 +1,1 @@
-"""Files on disk: whole or not there, checked, locked, and the one module that touches netCDF."""
+"""Files on disk: complete or absent, checked, locked; and the only module that uses netCDF."""

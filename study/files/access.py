@@ -1,9 +1,9 @@
 """The lock that lets one thread at a time use netCDF.
 
 With two threads in netCDF or HDF5, even on different files, the interpreter crashes, or a good file seems damaged. The
-module `netcdf` does everything under the lock that xarray takes for datasets that it opens. So any thread of a program
-may run studies, ask for their state, open results and read lazily opened ones. Worker processes and the threads that
-solve do not use netCDF: they return arrays.
+module `netcdf` does everything under the lock that xarray takes for the datasets that it opens. So any thread of a
+program may run studies, ask for their state, open results and read lazily opened results. Worker processes, and threads
+that solve, do not use netCDF: they return arrays.
 """
 
 import os
@@ -20,7 +20,7 @@ from ..inputs.definition import StudyError
 from ..terminal import short_of_memory
 from .seal import is_whole
 
-NEEDED = 256_000_000  # bytes; what was held when the error came is free by now
+NEEDED = 256_000_000  # bytes; memory that was in use when the error came is free by now
 
 
 class Unusable(StudyError, OSError):
@@ -32,16 +32,16 @@ class Unusable(StudyError, OSError):
 
 
 class Access:
-    """The lock of xarray for netCDF, which a thread that holds it may take again, for work on the file `path`.
+    """The lock of xarray for netCDF, for work on the file `path`. A thread that holds it may take it again.
 
-    As a context manager it turns errors of netCDF into `Unusable`, or into OSError when a file is written, at the path
-    `writing`. NetCDF has one error for a damaged file, a full disk, and a want of memory: it is MemoryError where the
-    file is whole, or the disk has room, and memory is short. It has the methods of a lock because xarray uses it as
-    one, and it can be sent to another process with a dataset.
+    As a context manager it turns errors of netCDF into `Unusable`, or into OSError while the file `writing` is written.
+    NetCDF has one error for a damaged file, a full disk, and a lack of memory. It becomes MemoryError where memory is
+    short and the file is whole, or the disk has room. The class has the methods of a lock because xarray uses it as
+    one; it can be sent to another process with a dataset.
     """
 
-    _mine = threading.RLock()  # taken first: xarray's own lock would block a thread that holds it
-    _depth = 0  # how often the thread that holds the lock has taken it
+    _mine = threading.RLock()  # taken first: the lock of xarray would block a thread that already holds it
+    _depth = 0  # number of times that the holder has taken the lock
 
     def __init__(self, path, writing: Path | None = None):
         self.path, self.writing = Path(path), writing
@@ -49,17 +49,17 @@ class Access:
     def acquire(self, blocking: bool = True) -> bool:
         if not Access._mine.acquire(blocking):
             return False
-        taken = False
+        is_taken = False
         try:
-            # Without `blocking` it is xarray that closes a dataset nobody uses. It may come in the middle of other work
+            # Without `blocking`, xarray closes a dataset that nobody uses. That may happen in the middle of other work
             # of this thread in netCDF, and must fail then.
-            again = Access._depth > 0 and blocking
-            taken = again or NETCDF4_PYTHON_LOCK.acquire(blocking)
+            holds_already = Access._depth > 0 and blocking
+            is_taken = holds_already or NETCDF4_PYTHON_LOCK.acquire(blocking)
         finally:
-            Access._depth += taken
-            if not taken:
+            Access._depth += is_taken
+            if not is_taken:
                 Access._mine.release()
-        return taken
+        return is_taken
 
     def release(self) -> None:
         Access._depth -= 1
@@ -83,7 +83,7 @@ class Access:
 
 
 def memory_is_short() -> bool:
-    """Whether there is no memory for what netCDF may need, where all else has worked: chunks of some megabytes."""
+    """Whether memory is too short for netCDF, which needs chunks of some megabytes."""
     try:
         np.empty(NEEDED, np.uint8)
     except MemoryError:
@@ -102,7 +102,7 @@ def has_room(path: Path) -> bool:
 
 
 def are_whole(path: Path) -> bool:
-    """Whether the seal of a file is right, or of all parts in a folder: then no part of it is damaged."""
+    """Whether the seal of a file is right, or the seals of all parts in a folder: then nothing in it is damaged."""
     try:
         files = sorted(path.glob("*.nc")) if path.is_dir() else [path]
         return bool(files) and all(file.is_file() and is_whole(file) for file in files)
@@ -112,14 +112,14 @@ def are_whole(path: Path) -> bool:
 
 @contextmanager
 def access(path, writing: Path | None = None) -> Iterator[None]:
-    """Hold the lock, with SIGINT and SIGTERM held back: their exception could leave a lock locked."""
+    """Hold the lock, and delay SIGINT and SIGTERM: their exception could leave a lock locked."""
     with interrupts_wait(), Access(path, writing):
         yield
 
 
 @contextmanager
 def interrupts_wait() -> Iterator[None]:
-    """Hold SIGINT and SIGTERM back until the `with` block is left."""
+    """Delay SIGINT and SIGTERM until the end of the `with` block."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -135,6 +135,6 @@ def interrupts_wait() -> Iterator[None]:
             signal.raise_signal(pending[0])
 
 
-if hasattr(os, "register_at_fork"):  # a forked child must not inherit a lock whose thread it does not have
+if hasattr(os, "register_at_fork"):  # a forked child must not inherit a lock from a thread that it lacks
     _forking = Access("")
     os.register_at_fork(before=_forking.acquire, after_in_parent=_forking.release, after_in_child=_forking.release)

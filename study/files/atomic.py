@@ -1,4 +1,4 @@
-"""Files that are either whole or not there, also after a power cut."""
+"""Files that are complete or absent, even after a power cut."""
 
 import os
 import secrets
@@ -11,13 +11,14 @@ from pathlib import Path
 
 @contextmanager
 def replacing(path: Path, folder: Path | None = None, place: Callable | None = None) -> Iterator[Path]:
-    """A temporary path to write to. When the `with` block ends well, the file is flushed to disk and becomes `path`.
+    """A temporary path to write to. When the `with` block ends without an error, the file is flushed and becomes
+    `path`.
 
     If the block has left no file there, `path` stays as it is.
 
-    folder : where the temporary file is; by default, or if it is a link, which may lead to another file system,
-        beside `path`. Its name is random, since the process id may be the same on two machines that share a folder
-    place : is called with the temporary path and `path`, and gives the file its name; by default `os.replace`
+    folder : of the temporary file; by default that of `path`, and also if it is a link, which may lead to another file
+        system. The temporary name is random, since two machines that share a folder may have the same process id
+    place : place(temporary path, `path`) gives the file its name; by default `os.replace`
     """
     folder = None if folder and folder.is_symlink() else folder
     if path.is_symlink():
@@ -33,16 +34,16 @@ def replacing(path: Path, folder: Path | None = None, place: Callable | None = N
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
-    flush_folder(path.parent)  # else blocks might be removed before the rename is on the disk
+    flush_folder(path.parent)  # otherwise blocks might be removed before the rename is on the disk
 
 
 def target(path: Path) -> Path:
-    """The path itself, or where it leads if it is a symbolic link."""
+    """The path itself, or the target of a symbolic link."""
     return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
 def remove_temporary(path: Path, age: float = 0.0) -> None:
-    """Remove the temporary files beside `path` of writers that were killed, those that are `age` seconds old."""
+    """Remove the temporary files of killed writers beside `path` that are at least `age` seconds old."""
     path = target(path)
     for temporary in path.parent.glob(f".{escape(path.name)}.????????.tmp"):
         with suppress(FileNotFoundError):  # its writer has just ended
@@ -51,7 +52,7 @@ def remove_temporary(path: Path, age: float = 0.0) -> None:
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder and those above it, and flush their names to the disk."""
+    """Make a folder and its missing parents, and flush their names to the disk."""
     missing = [folder for folder in (path, *path.parents) if not folder.exists()]
     path.mkdir(parents=True, exist_ok=True)
     for folder in missing:

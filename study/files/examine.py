@@ -1,7 +1,7 @@
 """The condition of a results file: sound, damaged, of an earlier version, of another program.
 
-A results file is an export of the blocks of a study. It carries one digest, in the attribute `contents_digest`: over
-names, dimensions, types, numbers, coordinates and attributes. So it is right as a whole or not at all.
+A results file is an export of the blocks of a study. Its attribute `contents_digest` is one digest over names,
+dimensions, types, numbers, coordinates and attributes. So the file is right as a whole or not at all.
 """
 
 import hashlib
@@ -22,23 +22,23 @@ from .netcdf import File, check_regular
 from .seal import is_whole
 
 ATTRIBUTE = "contents_digest"
-FORMER = "checksums"  # what an earlier version wrote in place of the digest
+FORMER = "checksums"  # the attribute that an earlier version wrote in place of the digest
 CHUNK = 8192  # cases in a chunk of the file: 2 MB of a profile
 BROKEN = (KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowError)
-"""Exceptions while a file is read that is not laid out like our results."""
+"""Exceptions while reading a file that is not laid out like our results."""
 OURS = ("study_digest", "numerics_version")
-"""Attributes by which our results are known. Every results file has them."""
-PACKED = 10_000  # how many times as many bytes as its file a dataset may have; ours has up to a hundred times
+"""Attributes that every results file has, and by which it is recognised."""
+PACKED = 10_000  # largest plausible ratio of a dataset's bytes in memory to those of its file; ours reaches a hundred
 CHANGED = "is damaged, or another program has changed it: its numbers are not those that were written"
 
 
 @dataclass(frozen=True, eq=False)
 class Identity:
-    """What a file must say of itself to be that of certain cases of a study.
+    """The properties by which a file proves to be that of certain cases of a study.
 
     digest : of the study
     coordinates : dimension of the cases -> its values
-    attributes : others of the file, which must have them too; None: it may lack this one
+    attributes : further attributes; the file may lack one, and must not have another value of it
     """
 
     digest: str
@@ -46,7 +46,7 @@ class Identity:
     attributes: dict[str, object] = field(default_factory=dict)
 
     def differs(self, condition: "Condition", file: File) -> str:
-        """Why an undamaged file is not the one, "" if it is."""
+        """Why an undamaged file is not that of these cases; "" if it is."""
         if condition.digest != self.digest:
             return "its results are of another definition or version of the numerics"
         if list(condition.sizes) != list(self.coordinates):
@@ -54,9 +54,9 @@ class Identity:
         for dim, values in self.coordinates.items():
             if dim not in file.variables or not _same(file.read(dim), values):
                 return f"its values of {dim} are not those of these cases"
-        others = {name: file.attributes.get(name) for name in self.attributes}
-        wrong = [name for name, value in others.items() if value is not None and value != self.attributes[name]]
-        return f"its {wrong[0]} is {others[wrong[0]]}, not {self.attributes[wrong[0]]}" if wrong else ""
+        of_file = {name: file.attributes.get(name) for name in self.attributes}
+        wrong = [name for name, value in of_file.items() if value is not None and value != self.attributes[name]]
+        return f"its {wrong[0]} is {of_file[wrong[0]]}, not {self.attributes[wrong[0]]}" if wrong else ""
 
 
 def _same(array: np.ndarray, values: np.ndarray) -> bool:
@@ -69,14 +69,14 @@ class Condition:
     """The condition of a results file.
 
     kind : "sound"; "unverified": it seems right, but has no digest, since an earlier version or another program wrote
-        it; "damaged"; "foreign": not written by roughcoat; "misplaced": its cases are others than those that are
-        wanted; "unreadable"; "missing"
-    reason : what is wrong; it follows the path in a message
-    digest, numerics : of the study and of the solver, as the file says; "" where it does not
-    title, text, command, name : of the study, of its file, how it was run, and the name of the study
-    sizes : of the dimensions of the cases, in order; {} of a file without cases
-    seen : its `stamp` before it was examined, None where there was no file
-    unpacked : bytes of its variables in memory
+        it; "damaged"; "foreign": not written by roughcoat; "misplaced": it has other cases than the wanted ones;
+        "unreadable"; "missing"
+    reason : the fault; it follows the path in a message
+    digest, numerics : of the study, and version of the solver's numerics, as the file says; "" where it does not
+    title, text, command, name : title of the study, text of its file, command that ran it, and its name
+    sizes : of the dimensions of the cases, in order; {} for a file without cases
+    seen : `stamp` of the file before it was examined, None where there was no file
+    unpacked : bytes of the variables in memory
     """
 
     path: Path
@@ -107,8 +107,8 @@ class Condition:
 def examine(path, identity: Identity | None = None, most: float = inf) -> Condition:
     """The condition of a results file. All of it is read, and compared with its digest.
 
-    identity : of the cases that it must hold; of others it is "misplaced"
-    most : of a file of more bytes in memory the attributes alone are read
+    identity : of the cases that the file must hold; with other cases it is "misplaced"
+    most : if the file has more bytes in memory, only its attributes are read
     """
     path = Path(path)
     seen = stamp(path)
@@ -141,7 +141,7 @@ def examine(path, identity: Identity | None = None, most: float = inf) -> Condit
 
 
 def stamp(path: Path) -> tuple | None:
-    """What changes when a file is replaced or written to; None when there is none."""
+    """Numbers that change when a file is replaced or written to; None when there is no file."""
     try:
         status = path.stat()
     except OSError:
@@ -156,7 +156,7 @@ def statuses(path: Path) -> np.ndarray:
 
 
 def _described(file: File) -> Condition:
-    """What a file says of itself."""
+    """The condition of a file by its attributes."""
     attributes, variables = file.attributes, file.variables
     unpacked = sum(variable.unpacked for variable in variables.values())
     if not {*OURS} & {*attributes}:
@@ -169,7 +169,7 @@ def _described(file: File) -> Condition:
 
 
 class Sums:
-    """Checksums of the variables of a file while they are written or read, each from its first number to its last."""
+    """Running checksums of the variables of a file while they are written or read from beginning to end."""
 
     def __init__(self):
         self._sums: dict[str, hashlib._Hash] = {}
@@ -187,7 +187,7 @@ class Sums:
 
 
 def contents(file: File) -> str:
-    """The digest of all that an open file holds; it is in memory part by part."""
+    """The digest of the whole content of an open file, which is read part by part."""
     sums = Sums()
     for name, variable in file.variables.items():
         for window in _pieces(dict(zip(variable.dims, variable.shape, strict=True))):
@@ -196,13 +196,13 @@ def contents(file: File) -> str:
 
 
 def _pieces(sizes: dict[str, int]) -> Iterator[dict[str, slice]]:
-    """Windows that together are a variable of these dimensions, one behind the other; in each are whole chunks."""
+    """Consecutive windows that make up a variable of these dimensions; each consists of whole chunks."""
     of_cases = Grid({dim: size for dim, size in sizes.items() if dim != "x"}, {})
     return windows(of_cases, 8 * CHUNK, CHUNK) if 0 not in sizes.values() else iter([{}])
 
 
 def _head(file: File) -> list:
-    """Types, dimensions and attributes of all variables, and attributes of the file but those of the run."""
+    """Types, dimensions and attributes of all variables, and attributes of the file except those of the run."""
     described = {}
     for name, (kind, dims, shape, attributes) in file.variables.items():
         typed = {key: _typed(value) for key, value in attributes.items()}

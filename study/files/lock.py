@@ -1,4 +1,4 @@
-"""Advisory locks, which the system releases when their holder dies, however it dies: one run at a time in a folder."""
+"""Advisory locks: one run at a time in a folder. The system releases a lock when its holder dies, however it dies."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -15,16 +15,17 @@ except ImportError:  # not POSIX: two runs at once compute the same blocks twice
 
 @contextmanager
 def held(path: Path, *, shared: bool = False, wait: bool = True, waiting: Callable = lambda: None) -> Iterator[bool]:
-    """Hold the lock file `path`, whose folder is made when missing; yields whether it is held.
+    """Hold the lock file `path`, whose folder is made if it is missing; yields whether the lock is held.
 
-    shared : others may hold it shared at the same time
-    wait : wait until it is free, after a call of `waiting`; otherwise yield False at once
-    On a file system without locks it counts as held: every file is written under a name of its own and then renamed.
+    shared : whether other processes may hold the lock shared at the same time
+    wait : whether to call `waiting` and wait for a lock that is not free; otherwise False is yielded at once
+
+    On a file system without locks it counts as held: every file is written under a unique name and then renamed.
     """
     file = _opened(path)
     try:
         mine = locked(file, shared, wait, waiting)
-        while mine and not _is_at(file, path):  # while this one waited, the last holder removed the folder
+        while mine and not _is_at(file, path):  # the last holder removed the folder while this one waited
             os.close(file)
             file = _opened(path)
             mine = locked(file, shared, wait, waiting)
@@ -41,7 +42,7 @@ def _opened(path: Path) -> int:
 
 
 def locked(file: int, shared: bool, wait: bool, waiting: Callable = lambda: None) -> bool:
-    """Take the lock of an open file; see `held`. Returns whether it is held, until the file is closed."""
+    """Take the lock of an open file, until it is closed; see `held`. Returns whether it is held."""
     if fcntl is None:
         return True
     kind = fcntl.LOCK_SH if shared else fcntl.LOCK_EX

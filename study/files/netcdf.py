@@ -1,4 +1,4 @@
-"""Results files are opened, read and written here alone, always under the lock of `access`."""
+"""The only module that opens, reads and writes results files, always under the lock of `access`."""
 
 import errno
 import os
@@ -16,16 +16,16 @@ from .access import Access, Unusable, access, are_whole, memory_is_short
 from .lock import locked
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
-MOST_INDEXED = 1_000_000  # values of a coordinate: an axis of a study has no more
+MOST_INDEXED = 1_000_000  # largest number of values of a coordinate with an index: an axis of a study has no more
 END = {0: 40, 1: 44, 2: 28, 3: 28}
-"""Version of an HDF5 file, which is its byte 8 -> place of the 8 bytes that tell the length of the file."""
+"""Version of an HDF5 file (its byte 8) -> place of the 8 bytes that hold the length of the file."""
 
 
 class VariableHeader(NamedTuple):
     """A variable without its values.
 
-    kind : its type, `str` for netCDF's own texts; dims : names of its dimensions, a text of ours has one more, of its
-    characters
+    kind : type of the values, `str` for the strings of netCDF
+    dims : names of the dimensions; our texts have one more dimension, along their characters
     """
 
     kind: np.dtype | type
@@ -35,7 +35,7 @@ class VariableHeader(NamedTuple):
 
     @property
     def unpacked(self) -> int:
-        """Bytes in memory; a text of netCDF's own counts as eight."""
+        """Bytes in memory; a string of netCDF counts as eight."""
         return prod(self.shape) * int(getattr(self.kind, "itemsize", 8))
 
 
@@ -43,9 +43,9 @@ class File:
     """An open netCDF file. Its methods take the lock; as a context manager it is closed at the end."""
 
     def __init__(self, path: Path, mode: str = "r", called: Path | None = None):
-        """Open a file for reading, or with mode "w" make a new one. Messages name it `called`, by default its path.
+        """Open a file for reading, or make a new one with mode "w". Messages call it `called`, by default its path.
 
-        Raises FileNotFoundError, Unusable, and when it is written OSError.
+        Raises FileNotFoundError, Unusable, and OSError when it is written.
         """
         self.path, self._writing = Path(called or path), Path(path) if mode == "w" else None
         if not self._writing:
@@ -65,7 +65,7 @@ class File:
             with self._access():
                 self._file.close()
         else:
-            with access(self.path), suppress(RuntimeError):  # of a full disk: the first error is raised
+            with access(self.path), suppress(RuntimeError):  # from a full disk: the first error is raised
                 self._file.close()
 
     def _access(self):
@@ -79,20 +79,22 @@ class File:
 
     @property
     def variables(self) -> dict[str, VariableHeader]:
-        """Variables by their names."""
+        """Name -> variable."""
         with self._access():
             variables = self._file.variables.items()
-            return {name: VariableHeader(of.dtype, of.dimensions, of.shape, _attributes(of)) for name, of in variables}
+            return {
+                name: VariableHeader(var.dtype, var.dimensions, var.shape, _attributes(var)) for name, var in variables
+            }
 
     def read(self, name: str, window: dict[str, slice] | None = None, characters: bool = False) -> np.ndarray:
-        """A variable, or its part within a window, a slice for each dimension; texts as `characters` if asked for."""
+        """A variable, or its part within a window (a slice for each dimension); with `characters` texts stay arrays."""
         with self._access():
             variable, window = self._file[name], window or {}
             variable.set_auto_chartostring(not characters)
             return np.asarray(variable[tuple(window.get(dim, slice(None)) for dim in variable.dimensions)])
 
     def define(self, sizes: dict[str, int], attributes: dict) -> None:
-        """Make dimensions, those that are not there yet, and attributes of the file."""
+        """Make the dimensions that do not exist yet, and attributes of the file."""
         with self._access():
             for name, size in sizes.items():
                 if name not in self._file.dimensions:
@@ -100,37 +102,40 @@ class File:
             self._file.setncatts(_as_characters(attributes))
 
     def add(self, name: str, kind, dims: tuple[str, ...], attributes: dict, options: dict) -> None:
-        """Make a variable without values. options : of netCDF4's createVariable"""
+        """Make a variable without values.
+
+        options : of netCDF4's createVariable
+        """
         with self._access():
-            made = self._file.createVariable(name, kind, dims, **options)
-            made.set_auto_mask(False)
-            made.set_auto_chartostring(False)
+            variable = self._file.createVariable(name, kind, dims, **options)
+            variable.set_auto_mask(False)
+            variable.set_auto_chartostring(False)
             if "chunksizes" in options:
-                made.set_var_chunk_cache(size=1, nelems=1)  # each chunk is written once, whole: no cache of 64 MB
-            made.setncatts(_as_characters(attributes))
+                variable.set_var_chunk_cache(size=1, nelems=1)  # each chunk is written once, whole: no cache of 64 MB
+            variable.setncatts(_as_characters(attributes))
 
     def write(self, name: str, array: np.ndarray, window: dict[str, slice] | None = None) -> None:
-        """The values of a variable, or of its part within a window."""
+        """Write the values of a variable, or of its part within a window."""
         with self._access():
             variable, window = self._file[name], window or {}
             variable[tuple(window.get(dim, slice(None)) for dim in variable.dimensions)] = array
 
 
 def _as_characters(attributes: dict) -> dict:
-    """Attributes whose texts become characters in UTF-8 (NC_CHAR). netCDF4 makes a text that is not ASCII an NC_STRING,
-    at which the netcdf package of Octave gives up."""
+    """Attributes with texts as characters in UTF-8 (NC_CHAR). netCDF4 writes a text that is not ASCII as an NC_STRING,
+    which the netcdf package of Octave cannot read."""
     return {name: text.encode() if isinstance(text, str) and not text.isascii() else text
             for name, text in attributes.items()}  # fmt: skip
 
 
-def _attributes(of: netCDF4.Dataset | netCDF4.Variable) -> dict:
+def _attributes(owner: netCDF4.Dataset | netCDF4.Variable) -> dict:
     """Attributes of a file or a variable. A text that is not UTF-8 is read as Latin-1."""
     attributes = {}
-    for name in of.ncattrs():
+    for name in owner.ncattrs():
         try:
-            attributes[name] = of.getncattr(name)
+            attributes[name] = owner.getncattr(name)
         except UnicodeDecodeError:
-            attributes[name] = of.getncattr(name, encoding="latin-1")
+            attributes[name] = owner.getncattr(name, encoding="latin-1")
     return attributes
 
 
@@ -142,14 +147,14 @@ def read(path: Path) -> xr.Dataset:
 
 
 def read_lazily(path: Path) -> xr.Dataset:
-    """A file as dask arrays in its chunks: numbers are read when they are asked for, under the lock."""
+    """A file as dask arrays in its chunks: numbers are read when they are needed, under the lock."""
     check_regular(path)
     with access(path):
         return xr.open_dataset(path, engine="netcdf4", chunks={}, lock=Access(path))
 
 
 def read_together(paths: list, folder: Path, dims: list[str]) -> xr.Dataset:
-    """Files that are parts of one dataset, lazily, as `read_lazily`.
+    """Files that are parts of one dataset, opened lazily as in `read_lazily`.
 
     paths : nested lists, a level for each of the dimensions `dims`, along which the parts follow each other
     """
@@ -161,10 +166,10 @@ def read_together(paths: list, folder: Path, dims: list[str]) -> xr.Dataset:
 
 
 def read_of_others(path: Path) -> xr.Dataset:
-    """A large file of another program: numbers are read when they are asked for, under the lock.
+    """A large file of another program: numbers are read when they are needed, under the lock.
 
-    There are no dask arrays, since a file may have millions of chunks, most of which were never written, and no
-    indexes of coordinates of more than MOST_INDEXED values, which would be read at once.
+    There are no dask arrays, since a file may have millions of chunks, most of which were never written. Coordinates of
+    more than MOST_INDEXED values get no index, for which they would be read at once.
     """
     check_regular(path)
     with access(path):
@@ -176,7 +181,7 @@ def read_of_others(path: Path) -> xr.Dataset:
 
 
 def check_regular(path: Path) -> None:
-    """Raise Unusable for a FIFO, which would be waited for, or a folder; FileNotFoundError when there is nothing."""
+    """Raise Unusable for a folder, or a FIFO, on which reading would wait; FileNotFoundError when there is nothing."""
     try:
         mode = Path(path).stat().st_mode
     except (FileNotFoundError, NotADirectoryError) as error:
@@ -188,12 +193,12 @@ def check_regular(path: Path) -> None:
 
 
 def _cannot_be_opened(path: Path, error: OSError) -> Exception:
-    """The error to raise for a file that netCDF cannot open. Its own message is -101 whatever is wrong."""
+    """The error to raise for a file that netCDF cannot open. Its own error is -101 whatever the reason."""
     try:
         with open(path, "rb") as file:
             head, size = file.read(64), os.fstat(file.fileno()).st_size
             free = locked(file.fileno(), shared=True, wait=False)  # HDF5 locks a file that it writes
-    except FileNotFoundError as removed:  # just now: it was there a moment ago
+    except FileNotFoundError as removed:  # it was there a moment ago
         return removed
     except OSError as reason:
         return Unusable(path, "unreadable", f"cannot be read: {reason.strerror}")

@@ -1,4 +1,4 @@
-"""The files of large results, a folder of parts, as one dataset. What the parts say of themselves must fit together."""
+"""A folder of parts, the files of large results, as one dataset. The attributes of the parts must fit together."""
 
 import os
 import re
@@ -15,18 +15,20 @@ from .examine import Condition, examine
 from .netcdf import File, read_lazily, read_together
 
 DIVIDED = "parts"
-"""Attribute of a part of large results: how many parts there are along each dimension that is cut, "h 5, n 2"."""
+"""Attribute of a part of large results: number of parts along each dimension that is cut, "h 5, n 2"."""
 FIRST = "first_case"
 """Attribute of a part: the number of its first case. Parts of earlier versions lack it."""
-NAME = re.compile(r"(\d{12})-([0-9a-f]{16})\.nc")  # of a part: its first case and the study
+NAME = re.compile(r"(\d{12})-([0-9a-f]{16})\.nc")  # of a part: its first case and the digest of the study
 AGAIN = "run the study, which computes the right ones"
 
 
 class PartFile(NamedTuple):
     """A part as its file describes it.
 
-    counts : how many parts there are along each dimension that is cut; axes : dimension -> values of its coordinate
-    first : the number of its first case by its name; stated : by its attribute, None if it has none
+    counts : number of parts along each dimension that is cut
+    axes : dimension -> values of its coordinate
+    first : number of the first case by the name of the file
+    stated : number of the first case by its attribute; None if it has none
     """
 
     path: Path
@@ -44,8 +46,8 @@ class PartFile(NamedTuple):
 def open_parts(folder: Path) -> xr.Dataset:
     """The dataset of all parts in a folder, lazily.
 
-    Raises Unusable if they are not the parts of one study, each in the place that its name says. Parts of earlier
-    versions tell their place by the coordinates alone, which must fit those of the others.
+    Raises Unusable unless they are all parts of one study, each in the place that its name says. Parts of earlier
+    versions show their place only by their coordinates, which must fit those of the other parts.
     """
     parts = [_described(path) for path in sorted(folder.glob("*.nc"))]
     counts = parts[0].counts
@@ -65,7 +67,7 @@ def _strangers(parts: list[PartFile], counts: dict[str, int]) -> set[int]:
     for dim in parts[0].axes:
         cut = np.moveaxis(numbers, [*counts].index(dim), 0) if dim in counts else numbers
         seen = set()
-        for row in cut.reshape(counts.get(dim, 1), -1).tolist():  # parts of the same values of this dimension
+        for row in cut.reshape(counts.get(dim, 1), -1).tolist():  # parts with the same values of this dimension
             values = parts[row[0]].axes[dim]
             strangers |= {number for number in row if not np.array_equal(parts[number].axes.get(dim), values)}
             strangers |= {row[0]} if seen & {*values.tolist()} else set()
@@ -74,7 +76,7 @@ def _strangers(parts: list[PartFile], counts: dict[str, int]) -> set[int]:
 
 
 def named(condition: Condition) -> Condition:
-    """The condition of a file. A sound part of large results whose name says other cases is "misplaced"."""
+    """The condition of a file. A sound part of large results is "misplaced" if its name says other cases."""
     name = NAME.fullmatch(condition.path.name)
     if condition.kind != "sound" or not name:
         return condition
@@ -86,7 +88,10 @@ def named(condition: Condition) -> Condition:
 
 
 def opened_together(paths: list[Path], folder: Path, counts: dict[str, int]) -> xr.Dataset:
-    """The dataset of parts that have been looked at. counts : of parts along each dimension that is cut"""
+    """The dataset of parts that have been checked.
+
+    counts : number of parts along each dimension that is cut
+    """
     nested = np.array([os.fspath(path) for path in paths], dtype=object).reshape(tuple(counts.values())).tolist()
     dataset = read_together(nested, folder, list(counts)) if counts else read_lazily(paths[0])
     for name in (DIVIDED, FIRST):
@@ -95,13 +100,13 @@ def opened_together(paths: list[Path], folder: Path, counts: dict[str, int]) -> 
 
 
 def divided(text: str) -> dict[str, int]:
-    """The counts of the attribute DIVIDED. Raises ValueError for a text that is none."""
+    """The counts in the attribute DIVIDED. Raises ValueError for a text without counts."""
     words = [word.split(" ") for word in text.split(", ") if word]
     return {dim: int(number) for dim, number in words}
 
 
 def _described(path: Path) -> PartFile:
-    """What a part says of itself. Raises Unusable for a file that is no part of large results."""
+    """A part by its attributes. Raises Unusable for a file that is not a part of large results."""
     condition = examine(path, most=0)
     condition.raise_if_bad()
     name = NAME.fullmatch(path.name)
@@ -109,7 +114,7 @@ def _described(path: Path) -> PartFile:
         try:
             axes = {dim: file.read(dim) for dim in condition.sizes}
             counts, stated = divided(str(file.attributes.get(DIVIDED, ""))), file.attributes.get(FIRST)
-        except (KeyError, IndexError, ValueError):  # no results of ours
+        except (KeyError, IndexError, ValueError):  # not our results
             axes = {}
     if not axes or not name or not {*counts} <= {*axes}:
         raise Unusable(path, "foreign", "is no part of the results in this folder; move it away")

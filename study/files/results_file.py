@@ -1,4 +1,4 @@
-"""Results files as datasets: made, written and opened. They are exports: no case is read back from them."""
+"""Results files as datasets: creation, writing and opening. They are exports: no case is read back from them."""
 
 import hashlib
 import json
@@ -22,17 +22,17 @@ from .netcdf import File, check_regular, read, read_lazily, read_of_others
 from .parts_folder import open_parts
 from .seal import seal
 
-#: Bytes of all variables in memory; a larger file is opened lazily. Files are packed by up to a hundred times, so their
-#: own size says little. Reading and verifying so much takes a second or two.
+#: Bytes of all variables in memory above which a file is opened lazily. Files are compressed up to a hundred times, so
+#: their size on disk says little. Reading and verifying this much takes a second or two.
 LAZY = 200_000_000
 
 
 def encoding(array: xr.DataArray) -> dict:
-    """How a variable is stored: options of netCDF4's createVariable.
+    """Options of netCDF4's createVariable for a variable.
 
-    All but single numbers have netCDF's own checksums; the digest of the file covers single numbers as well.
-    Profiles, which are nearly all of a file, are not compressed: that takes longer than all other writing and gains
-    little.
+    Every variable except single numbers has the checksums of netCDF; the digest of the file covers single numbers too.
+    Profiles, which make up nearly all of a file, are not compressed: compression would take longer than all other
+    writing and gain little.
     """
     data, text = array.name not in array.coords, array.dtype.kind in "UO"
     options = {"fill_value": np.nan if data and array.dtype.kind == "f" else None}
@@ -47,8 +47,9 @@ def encoding(array: xr.DataArray) -> dict:
 def create(file: File, part: xr.Dataset, whole: xr.Dataset, chunk: dict[str, int]) -> Sums:
     """Define all variables of a results file, and write its coordinates; returns their sums.
 
-    part : a dataset of some cases, which has all variables; whole : one of all cases, which need not have results
-    chunk : dimension -> its length in a chunk, where that is not all of it
+    part : a dataset of some cases, which has all variables
+    whole : a dataset of all cases, which need not have results
+    chunk : dimension -> length of a chunk, where a chunk does not have all of it
     """
     variables, attributes = encode_dataset_coordinates(part)
     sizes, sums = dict(whole.sizes), Sums()
@@ -60,7 +61,7 @@ def create(file: File, part: xr.Dataset, whole: xr.Dataset, chunk: dict[str, int
             length = values.shape[-1]
             dims, kind, more = (*dims, f"string{length}"), "S1", {"_Encoding": "utf-8"}
             file.define({dims[-1]: length}, {})
-        elif kind.kind == "b":  # xarray's own way to write what is true or false
+        elif kind.kind == "b":  # the way in which xarray writes true and false
             kind, more = np.dtype(np.int8), {"dtype": "bool"}
         if name in part.data_vars and dims and kind != "S1":
             options["chunksizes"] = [chunk.get(dim, sizes[dim]) for dim in dims]
@@ -72,10 +73,10 @@ def create(file: File, part: xr.Dataset, whole: xr.Dataset, chunk: dict[str, int
 
 
 def stored(array: xr.DataArray) -> np.ndarray:
-    """The values as the file has them: texts as characters, along one more dimension, true and false as 1 and 0.
+    """The values as the file has them: texts as characters along one more dimension, true and false as 1 and 0.
 
-    NetCDF's own strings would have no checksum. And HDF5 2.2 crashes the interpreter when a file that has them is
-    opened a second time while it is open, as lazily opened results are.
+    The strings of netCDF would have no checksum. Besides, HDF5 2.2 crashes the interpreter when a file with strings is
+    opened while it is still open, as lazily opened results are.
     """
     if array.dtype.kind not in "UO":
         return array.values.astype(np.int8) if array.dtype.kind == "b" else array.values
@@ -83,9 +84,12 @@ def stored(array: xr.DataArray) -> np.ndarray:
     return words.astype(f"S{max(1, words.itemsize)}")[..., np.newaxis].view("S1")
 
 
-def write(dataset: xr.Dataset, path: Path, there: Condition) -> None:
-    """Write a small dataset. The file is complete or does not exist; see `put` for `there`."""
-    place = partial(put, there, dataset.attrs["study_digest"])
+def write(dataset: xr.Dataset, path: Path, before: Condition) -> None:
+    """Write a small dataset. The file is complete or does not exist.
+
+    before : the condition of the file at `path`, see `put`
+    """
+    place = partial(put, before, dataset.attrs["study_digest"])
     with replacing(path, place=place) as temporary:
         with File(temporary, "w", path) as file:
             sums = create(file, dataset, dataset, {})
@@ -97,28 +101,30 @@ def write(dataset: xr.Dataset, path: Path, there: Condition) -> None:
 
 
 def finish(file: File, sums: Sums) -> None:
-    """Write the digest, the last of all."""
+    """Write the digest, after everything else."""
     file.define({}, {ATTRIBUTE: sums.digest(file)})
 
 
-def put(there: Condition, digest: str, temporary: Path, path: Path) -> None:
-    """Give a complete file its place, where before it was `there`. A damaged file is kept as NAME.nc.damaged.
+def put(before: Condition, digest: str, temporary: Path, path: Path) -> None:
+    """Move a complete file to its place. A damaged file there is kept as NAME.nc.damaged.
+
+    before : the condition of the file at `path` before the results were computed
 
     Raises StudyError when a file has appeared or changed meanwhile, unless it has the results of the study `digest`.
     """
     if os.path.lexists(path):
-        if there.seen is None or stamp(path) != there.seen:
+        if before.seen is None or stamp(path) != before.seen:
             now = examine(path)
             if not (now.good and now.digest == digest):
                 what = "has appeared or changed while its results were computed, and stays"
-                raise StudyError([f"{there.path}: {what}: move it away, and the same command writes them"], code=1)
-        elif there.kind == "damaged":
+                raise StudyError([f"{before.path}: {what}: move it away, and the same command writes them"], code=1)
+        elif before.kind == "damaged":
             os.replace(path, f"{path}.damaged")
     os.replace(temporary, path)
 
 
 def numbers_digest(path: Path) -> str:
-    """The digest that a results file carries; sha256 of all its bytes if it has none; of a folder that of its parts."""
+    """The digest in a results file, or sha256 of all its bytes if it has none; for a folder the digest of its parts."""
     if path.is_dir():
         parts = [(part.name, numbers_digest(part)) for part in sorted(path.glob("*.nc"))]
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
@@ -134,9 +140,9 @@ def numbers_digest(path: Path) -> str:
 
 
 def open_results(path: str | os.PathLike) -> xr.Dataset:
-    """A results file, read into memory and closed, when nothing in it is damaged. A large one is opened lazily.
+    """A results file, read into memory and closed, if nothing in it is damaged. A large file is opened lazily.
 
-    Any thread may open, and read, while others run studies. A file without a digest, of an earlier version, is read
+    Any thread may open and read while others run studies. A file of an earlier version, without a digest, is read
     unverified. A netCDF file of another program is read as it is.
 
     Parameters
@@ -149,8 +155,8 @@ def open_results(path: str | os.PathLike) -> xr.Dataset:
 
     Raises
     ------
-    FileNotFoundError : there is none
-    StudyError : it is damaged, or cannot be read; also an OSError
+    FileNotFoundError : there is no such file
+    StudyError : the file is damaged, or cannot be read; it is also an OSError
     """
     path = Path(os.path.expanduser(path))
     if path.is_dir() and any(path.glob("*.nc")):
@@ -165,14 +171,17 @@ def open_results(path: str | os.PathLike) -> xr.Dataset:
         raise
     except MemoryError:
         raise
-    except Exception as error:  # of xarray, which takes attributes of variables for units of time and so on
+    except Exception as error:  # from xarray, which may take the attributes of variables as units of time and so on
         reason = f"{condition.reason}, which xarray cannot read: {on_one_line(str(error), 200)}"
         raise Unusable(path, "foreign", reason) from error
 
 
 def opened(condition: Condition) -> xr.Dataset:
-    """The dataset in a results file that has been examined. A large one has dask arrays in the chunks of the file:
-    numbers are read when they are asked for, in any thread, and netCDF verifies each chunk (StudyError, an OSError)."""
+    """The dataset in a results file that has been examined.
+
+    A large dataset has dask arrays in the chunks of the file: numbers are read when they are needed, in any thread, and
+    netCDF verifies each chunk (StudyError, an OSError).
+    """
     condition.raise_if_bad()
     return for_users(read_lazily(condition.path) if condition.unpacked > LAZY else read(condition.path))
 
@@ -184,7 +193,7 @@ def results_of(folder: Path, study: str) -> Path:
 
 
 def for_users(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset without the digest, which would be wrong in a file that a user makes of it. Its laws are known."""
+    """The dataset with its laws and without the digest, which would be wrong in a file that a user writes from it."""
     for name in (ATTRIBUTE, FORMER):
         dataset.attrs.pop(name, None)
     if "micro" in dataset.variables and not (known := lexicon_in(dataset).known).is_package:

@@ -1,7 +1,7 @@
-"""The seal: a checksum of all bytes of a block or a results file, behind their end.
+"""The seal: a checksum of all bytes of a block or a results file, appended to it.
 
-HDF5 trusts what a file says of itself, so of a flipped bit it may crash the interpreter, or never come back. It is not
-asked about a results file whose seal is broken.
+HDF5 trusts the content of a file, so a flipped bit may crash the interpreter, or make HDF5 run for ever. A results file
+with a broken seal is therefore never opened by HDF5.
 """
 
 import os
@@ -9,19 +9,19 @@ import zlib
 from pathlib import Path
 
 MARK = b"\nroughcoat crc32 "
-LENGTH = len(MARK) + 8  # and the checksum in hexadecimal digits
+LENGTH = len(MARK) + 8  # of the mark and the checksum in hexadecimal digits
 PIECE = 1 << 20
 
 
 def seal(path: Path) -> None:
-    """Append the seal to a complete file. Other programs read it as before, since HDF5 data tell their own length."""
+    """Append the seal to a complete file. Other programs can still read the file: HDF5 data state their own length."""
     with open(path, "rb+") as file:
         checksum = _checksum(file, os.fstat(file.fileno()).st_size)
         file.write(MARK + b"%08x" % checksum)
 
 
 def is_whole(path: Path) -> bool | None:
-    """Whether the seal of a file is right; None where there is none, such as behind a file that was written anew."""
+    """Whether the seal of a file is right; None without a seal, as after another program has written the file."""
     with open(path, "rb") as file:
         size = os.fstat(file.fileno()).st_size - LENGTH
         if size < 0:

@@ -1,4 +1,4 @@
-"""A contact in words: each quantity with its unit and how sure it is, how it was solved, and what it rests on."""
+"""A contact in words: each quantity with its unit and its uncertainty, the solution, and the assumptions behind it."""
 
 from .sentences import MODELS, NOT_VIOLATED, FarOutside, beside_rules, doubts, far_outside
 from .text import MOST_CASES, SHOWN, Summary, summary

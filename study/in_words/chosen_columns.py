@@ -1,4 +1,4 @@
-"""Tables of numbers as a user asks for them: these columns, in these units, beside the body without its layer."""
+"""Tables of numbers with the columns and units that a user chooses, perhaps beside the body without its layer."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ..terminal import shown
 from .text import OF_ASPERITIES, SHOWN
 
 COLUMNS = (*SHOWN, "status")
-"""Columns where none are asked for."""
+"""The columns by default."""
 _BARE = "--beside bare"
 DIGITS = 4  # of a number in a terminal
 _OF_LAYERS = {*FIRST_LAYER.values(), "cn", "ct", "profile", "base", "asperities_on", "n_bottom", "nu_bottom"}
@@ -28,9 +28,9 @@ _OF_LAYERS |= {"sublayers"}
 
 
 def selected(dataset: xr.Dataset, names: list[str] | tuple[str, ...] | None) -> xr.Dataset:
-    """The results, inputs and derived quantities of these names, in this order, beside the dimensions; None: all.
+    """The results, inputs and derived quantities with these names, in this order, after the dimensions; None: all.
 
-    Raises StudyError: a name that is none of these.
+    Raises StudyError: a name is unknown.
     """
     if not names:
         return dataset
@@ -46,9 +46,9 @@ def selected(dataset: xr.Dataset, names: list[str] | tuple[str, ...] | None) -> 
 
 
 def in_units(dataset: xr.Dataset, units: list[str] | None) -> xr.Dataset:
-    """The dataset with each quantity in that of the units that is of its kind; all others stay as they are.
+    """The dataset with its quantities in these units; quantities of another kind stay as they are.
 
-    Raises StudyError: a unit that is none, or in which no quantity is.
+    Raises StudyError: a unit is unknown, or no quantity can be in it.
     """
     wrong = []
     for unit in units or ():
@@ -65,7 +65,7 @@ def in_units(dataset: xr.Dataset, units: list[str] | None) -> xr.Dataset:
 
 
 def _size(unit: str, si: str) -> float:
-    """How many of the SI unit a unit is; 0 if it is of another kind."""
+    """The size of a unit in the SI unit; 0 if it is of another kind."""
     if si == "1":
         return 0.0
     try:
@@ -75,7 +75,7 @@ def _size(unit: str, si: str) -> float:
 
 
 def without_layer(parameters: dict[str, Any]) -> dict[str, Any]:
-    """The inputs of the same contact on the body without layers. StudyError: it has none already."""
+    """The inputs of the same contact on the body without layers. Raises StudyError: there are no layers."""
     left = {name: value for name, value in parameters.items() if name not in _OF_LAYERS and name[:7] != "layers."}
     if is_bare(parameters.get("base", "layered")) or len(left) == len(parameters):
         raise StudyError([f"{_BARE}: there is no layer to leave out"])
@@ -87,10 +87,10 @@ def inputs_without_layer(dataset: xr.Dataset) -> dict[str, Any]:
 
     Raises StudyError: there is no layer, or the dataset has lost an input.
     """
-    Contacts.of(dataset, _BARE)  # refuses what cannot be solved again, laws and tips that the program does not have
+    Contacts.of(dataset, _BARE)  # refuses contacts that cannot be solved again, whose laws or tips are missing
     lexicon, coords = lexicon_in(dataset), [str(name) for name in dataset.coords]
-    there = dict.fromkeys((*CONTROLS, *scene_of(coords), *lexicon.parameters_of(coords)))
-    names = [name for name in there if name in coords and name not in _follow(dataset)]
+    possible = dict.fromkeys((*CONTROLS, *scene_of(coords), *lexicon.parameters_of(coords)))
+    names = [name for name in possible if name in coords and name not in _follow(dataset)]
     if is_bare(dataset["base"]).all():
         raise StudyError([f"{_BARE}: there is no layer to leave out"])
     inputs = without_layer({name: _as_input(dataset[name]) for name in names if name != "base"} | {"base": "layered"})
@@ -99,36 +99,36 @@ def inputs_without_layer(dataset: xr.Dataset) -> dict[str, Any]:
 
 
 def _follow(dataset: xr.Dataset) -> set[str]:
-    """The inputs that follow from others in SI units: the ratio of moduli, the radius of two bodies, a mere scale."""
+    """Inputs that follow from others in SI units: a ratio of moduli, the radius of two bodies, a mere scale."""
     scaled = dataset.attrs.get("scale", "R") != "R" or "R1" in dataset.coords or "R2" in dataset.coords
     return {*["m"] * ("E_punch" in dataset.coords), *["R"] * scaled}
 
 
 def _as_input(array: xr.DataArray) -> Any:
-    """A coordinate as `study.solve` takes it: words of one value as a text, numbers with their unit."""
+    """A coordinate as an argument of `study.solve`: a single word as a text, numbers with their unit."""
     if not array.dims and array.dtype.kind in "UO":
         return str(array.values)
-    kept = {"units": array.attrs["units"]} if "units" in array.attrs else {}
+    attributes = {"units": array.attrs["units"]} if "units" in array.attrs else {}
     values = array.values.astype(str) if array.dtype.kind == "O" else array.values
     return xr.DataArray(
-        values, {dim: array[dim].values for dim in array.dims if dim in array.coords}, array.dims, attrs=kept
+        values, {dim: array[dim].values for dim in array.dims if dim in array.coords}, array.dims, attrs=attributes
     )
 
 
 def beside_bare(table: xr.Dataset, bare: xr.Dataset, names: list[str]) -> xr.Dataset:
-    """The table with the results of these names of the body without layers behind its own, called NAME bare."""
+    """The table with these results for the body without layers after its own, called NAME bare."""
     results = [name for name in names if name not in bare.coords]
-    beside = selected(bare, results)
-    return table.assign({f"{name} bare": beside[name] for name in results})
+    results_of_bare = selected(bare, results)
+    return table.assign({f"{name} bare": results_of_bare[name] for name in results})
 
 
 def table_of(contacts: xr.Dataset, names: list[str] | None, units: list[str] | None, bare: xr.Dataset | None) -> str:
     """The lines of the table, a line for each contact.
 
-    names : of the columns behind those of the dimensions; None: the results that `summary` has
-    bare : the contacts on the body without layers, whose results stand behind, called NAME bare
+    names : of the columns after those of the dimensions; None: the results of `summary`
+    bare : the contacts on the body without layers, whose results follow, called NAME bare
 
-    Raises StudyError: a name or unit that is none, or a profile, which has no place in a line.
+    Raises StudyError: an unknown name or unit, or a profile, which does not fit into a line.
     """
     names = names or usual(contacts)
     table = selected(contacts, names)
@@ -140,7 +140,7 @@ def table_of(contacts: xr.Dataset, names: list[str] | None, units: list[str] | N
 
 
 def rows_of(table: xr.Dataset, names: list[str] | None) -> dict[str, Any]:
-    """The frames of a table, without the status where other columns are asked for."""
+    """The frames of a table, without the status where only other columns are chosen."""
     return {
         kind: rows if not names or "status" in names else rows.drop(columns="status", errors="ignore")
         for kind, rows in frames(table).items()
@@ -148,7 +148,7 @@ def rows_of(table: xr.Dataset, names: list[str] | None) -> dict[str, Any]:
 
 
 def usual(contacts: xr.Dataset) -> list[str]:
-    """The columns of contacts where none are asked for."""
+    """The columns of contacts by default."""
     smooth = np.isin(contacts["micro"], list(lexicon_in(contacts).smooth_laws())).all()
     return [name for name in COLUMNS if name in contacts and not (smooth and name in OF_ASPERITIES)]
 

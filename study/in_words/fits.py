@@ -1,4 +1,4 @@
-"""Fits of measured curves in words: the fitted inputs with their intervals, and what a curve could not tell."""
+"""Fits of measured curves in words: the fitted inputs with their intervals, and the limits of each curve."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ from ..terminal import rounded
 from .sentences import NOT_VIOLATED
 
 NAMES_OF_SHIFTS = {"D0": "contact point", "P0": "baseline", "tilt": "slope of the baseline"}
-"""Unknowns of a fit that are no inputs of the contact."""
-MOST_CURVES = 20  # that are written out
-#: Inputs whose logarithms have a correlation beyond this are told apart by no curve; their product of powers may be.
+"""Unknowns of a fit that are not inputs of the contact."""
+MOST_CURVES = 20  # number of curves that are written out
+#: Correlation of the logarithms of two inputs above which no curve separates them; a product of their powers may be
+#: known.
 _ALIKE = 0.995
-#: Standard deviations from its prior beyond which an input contradicts it.
+#: Standard deviations from its prior above which an input contradicts it.
 _AGAINST = 2.5
 _WITHOUT_NUMBERS = ("no_contact", "invalid_input", "not_run")
 _SENTENCES = {
@@ -33,7 +34,7 @@ _SENTENCES = {
 }
 
 
-#: A load that rises from the shallowest point on, and is as well described by a straight line.
+#: For a load that rises from the shallowest point on, and that a straight line describes as well.
 _THROUGHOUT = (
     "The load rises from the shallowest point on, nearly along a straight line: either the baseline drifts, or the "
     "curve is in contact throughout, such as an unloading is. P(D) alone does not say where such a contact begins, and "
@@ -106,13 +107,13 @@ def _of_curve(curve: xr.Dataset, i: int, count: int, inputs: list[str], shifts: 
 
 
 def _rises_throughout(curve: xr.Dataset) -> bool:
-    """Whether y rises with x by most of its range along a line, by a good part of that in the shallowest third too."""
+    """Whether y rises with x nearly along a line, and still with a fifth of the slope in the shallowest third."""
     if f"{curve.attrs['y']}_fit" not in curve:
         return False
     x, y = (curve[curve.attrs[name]].values for name in ("x", "y"))
-    there = np.isfinite(x) & np.isfinite(y)
-    order = np.argsort(x[there], kind="stable")
-    x, y = x[there][order], y[there][order]
+    has_numbers = np.isfinite(x) & np.isfinite(y)
+    order = np.argsort(x[has_numbers], kind="stable")
+    x, y = x[has_numbers][order], y[has_numbers][order]
     third = len(x) // 3
     if third < 3 or np.ptp(x[:third]) == 0:
         return False
@@ -121,7 +122,7 @@ def _rises_throughout(curve: xr.Dataset) -> bool:
 
 
 def _residual(curve: xr.Dataset) -> list[str]:
-    """The distance of the points from the fit; nothing for a plan."""
+    """A sentence on the distance of the points from the fit; none for a plan."""
     if "residual" not in curve:
         return []
     name, rms = curve.attrs["y"], float(np.sqrt((curve["residual"] ** 2).mean()))
@@ -132,7 +133,7 @@ def _residual(curve: xr.Dataset) -> list[str]:
 
 
 def _doubts(curve: xr.Dataset, inputs: list[str]) -> list[str]:
-    """Where the points do not agree with the fit as independent points would; nothing of a plan."""
+    """Sentences where the points disagree with the fit, or are not independent; none for a plan."""
     if "effective_points" not in curve:
         return []
     name, lines = inputs[0], []
@@ -178,16 +179,18 @@ def _doubts(curve: xr.Dataset, inputs: list[str]) -> list[str]:
 
 
 def _points(curve: xr.Dataset) -> list[str]:
-    """Unusual points of a curve: gaps, equal x, no order; nothing for a plan. NaN after the last point
-    fills a shorter curve up and is no gap."""
+    """A sentence on unusual points of a curve: gaps, equal x, no order; none for a plan.
+
+    NaN after the last point only pads a shorter curve, and is not a gap.
+    """
     if "residual" not in curve:
         return []
     name, x, y = curve.attrs["x"], curve[curve.attrs["x"]].values, curve[curve.attrs["y"]].values
-    there = np.isfinite(x) & np.isfinite(y)
+    has_numbers = np.isfinite(x) & np.isfinite(y)
     written = np.flatnonzero(np.isfinite(x) | np.isfinite(y)).max(initial=-1) + 1
-    taken, gaps = x[there], written - there.sum()
-    equal = len(taken) - len(np.unique(taken))
-    steps = np.sign(np.diff(taken))
+    x_of_points, gaps = x[has_numbers], written - has_numbers.sum()
+    equal = len(x_of_points) - len(np.unique(x_of_points))
+    steps = np.sign(np.diff(x_of_points))
     words = [f"{gaps} of {written} points have no numbers and are left out."] * bool(gaps)
     words += [f"{equal} points stand at the {name} of another; each counts."] * bool(equal)
     words += [f"The points are not in the order of {name}, which does not matter."] * (len({*steps[steps != 0]}) > 1)
@@ -195,14 +198,14 @@ def _points(curve: xr.Dataset) -> list[str]:
 
 
 def _percent(share: float) -> str:
-    """Two digits, and no power of ten for 100 %."""
+    """A share as a percentage with two digits, and without a power of ten for 100 %."""
     return f"{float(f'{100 * share:.2g}'):g} %"
 
 
 def _long_name(name: str) -> str:
     if name.startswith("layers.1."):
         return ROWS[name_in_stack(1, name.removeprefix("layers.1."))].long_name.replace("the layer", "layer 1")
-    row = default().all_rows.get(name)  # None: of a law that is not registered
+    row = default().all_rows.get(name)  # None: an input of a law that is not registered
     return NAMES_OF_SHIFTS.get(name) or (row.long_name if row else name)
 
 
@@ -221,14 +224,15 @@ def _text(curve: xr.Dataset, name: str) -> str:
 
 
 def _rounded(end: float, spread: float) -> float:
-    """The end of an interval with as many decimals as two digits of the spread have."""
+    """The end of an interval with the decimals that two digits of the spread have."""
     if not (np.isfinite(end) and np.isfinite(spread) and spread > 0):
         return end
     return round(end, 1 - int(np.floor(np.log10(spread)))) + 0.0
 
 
 def _known(curve: xr.Dataset, inputs: list[str]) -> list[str]:
-    """The product of powers of two inputs that the curve says, and how well, where it cannot tell these apart."""
+    """Sentences on pairs of inputs that the curve cannot separate: the product of powers that is known, and how
+    well."""
     lines = []
     for a, first in enumerate(inputs):
         for second in inputs[a + 1 :]:

@@ -1,4 +1,4 @@
-"""A sentence about what the ± of the largest pressure is made of, and how it depends on the thickness of the layer."""
+"""A sentence on the parts of the ± of the largest pressure, and on its dependence on the thickness of the layer."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from ..inputs.definition import StudyError
 from ..inputs.vocabulary import VOCABULARY
 from ..terminal import rounded
 
-#: An input that makes more of the variance makes "nearly all" of it.
+#: An input with a larger share of the variance makes "nearly all" of it.
 _NEARLY = 0.99
-#: A thickness that must change by more than this part of itself hardly acts; nor does a derivative reach so far.
+#: If the thickness must change by more than this share of itself, it hardly acts; a derivative does not reach so far.
 _FAR = 0.5
-#: A relative spread that no printed digit shows. Its parts are lost in the error of the solution, which is below 1e-9.
-#: The sentence says it in words.
+#: Largest relative spread that no printed digit shows. Its parts are lost in the error of the solution, which is below
+#: 1e-9, so that the sentence says it in words.
 _UNSEEN = 1e-7
 
 
 def influence(case: xr.Dataset, name: str) -> list[str]:
-    """Which input makes most of the ± of a result of one case, and by how much h must change to change it by 1 %.
+    """A sentence on the input that makes most of the ± of a result of one case, and on the effect of h.
 
-    The case is solved again, for the derivatives. [] without a spread, and where that cannot be done.
+    The case is solved again, for the derivatives. [] without a spread, and where it cannot be solved again.
     """
     if not float(case.get(f"{name}_spread", 0.0)) > 0:
         return []

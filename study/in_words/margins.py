@@ -1,4 +1,4 @@
-"""Whether a contact holds, in words: what is closest to its limit, by what factor, and at which load it is there."""
+"""Whether a contact holds, in words: the part closest to its limit, by what factor, and the load at which it fails."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ from ..terminal import rounded
 from .stated_inputs import is_rigid
 from .stress_lines import in_stacks, of_interfaces, strengths_of_layer, which_of_stacks
 
-#: Below this modulus in Pa a material is a rubber or a gel, which tears and does not yield. Nearly all have a Poisson
-#: ratio close to 0.5.
+#: Modulus in Pa below which a material is a rubber or a gel, which tears and does not yield. Nearly all of these have a
+#: Poisson ratio close to 0.5.
 RUBBER = 1e8
-#: Stresses of thinner films, in a, take many seconds.
+#: Least thickness of a film over a: with thinner films the stresses take many seconds.
 _THINNEST = 2e-3
-#: The load at a limit is found to this part, or not said after so many contacts.
+#: Relative precision of the load at a limit, and number of contacts after which the search for it gives up.
 _SAME, _MOST = 1e-3, 8
-#: Beside rubber or gel nothing is said of what has less than this part of its strength.
+#: If a body is rubber or gel, nothing is said below this share of a strength.
 _FAR = 0.01
-#: Nothing is said of contacts wider than this, in R.
+#: Largest a/R of contacts on which something is said.
 _WIDEST = 0.2
 _THROUGH = "The layer is thin against the pitch: single spots press on the body through it, which is left out."
 _SHAPE = "Not looked at under this shape: study.extremes computes the stresses, study.first_yield the loads."
@@ -50,20 +50,21 @@ _OWN_LAW = (
     "The law of the asperities does not say what is below them: as of a sphere, the stress there is pmax - p(0) over "
     "{q:.3g}."
 )
-#: A sphere yields so deep below it, in the radius of its contact (nu = 0.3).
+#: Depth at which a body first yields below a sphere, in the radius of the contact (nu = 0.3).
 _DEEP = 0.48
 _SPOTS, _PUNCH = "of spots", "of the punch"
 
 
 class _Limit(NamedTuple):
-    """Something that may fail.
+    """A part of the contact that may fail.
 
-    who : words for it, as a subject; verb : what it does there; ing : the same, doing it
-    what : words for its stress; of : words for its strength
-    stress : its name among the extremes; or _PUNCH, or _SPOTS
+    who : words for the part, as a subject
+    verb, ing : words for its failure, "yield" and "yielding"
+    what, of : words for its stress, and for its strength
+    stress : name of the stress among the extremes; or _PUNCH, or _SPOTS
     strength, spread : in the unit of E2; NaN: not known
-    needs : the input that is its strength; "": nothing is said where it is not known
-    hard : bool, the strength is the hardness over 2.84
+    needs : the input for its strength; "": nothing is said where the strength is not known
+    hard : whether the strength is the hardness over 2.84
     """
 
     who: str
@@ -90,7 +91,7 @@ class Margin(NamedTuple):
 
 
 class _Compared(NamedTuple):
-    """A limit and the stress there, with its place in a."""
+    """A limit and the stress that it limits, with its place in a."""
 
     limit: _Limit
     stress: float
@@ -103,10 +104,12 @@ class _Compared(NamedTuple):
 
 
 class _Looked(NamedTuple):
-    """A contact of which something is known: its inputs, its problem and solution at the radius, and what was compared,
-    the closest first; of those whose strength is not known, the stress.
+    """A contact with known stresses.
 
-    hard : bool, no body is rubber or gel
+    problem, solution : at the radius of the contact
+    compared : stresses with their limits, the closest first
+    lacking : stresses whose strength is not known
+    hard : whether no body is rubber or gel
     """
 
     contact: Contacts
@@ -118,7 +121,7 @@ class _Looked(NamedTuple):
 
 
 def holds(case: xr.Dataset) -> Margin:
-    """Sentences about one contact that is solved; none where nothing is known of its strengths, and it has no units."""
+    """Sentences about one solved contact; none where its strengths are not known and it has no units."""
     looked = _looked_at(case)
     if isinstance(looked, str):
         return Margin([looked] * bool(looked))
@@ -134,8 +137,8 @@ def holds(case: xr.Dataset) -> Margin:
 
 
 def closest(case: xr.Dataset) -> str:
-    """The body or spots closest to their limit, and their share of it, in a few words: "asperities 1.1"; "-" where it
-    is not known."""
+    """The body or spots closest to their limit, and their share of it, in a few words: "asperities 1.1"; "-": not
+    known."""
     looked = _looked_at(case) if case["status"] == 0 else ""
     if isinstance(looked, str) or not looked.compared:
         return "-"
@@ -144,10 +147,10 @@ def closest(case: xr.Dataset) -> str:
 
 
 def _looked_at(case: xr.Dataset) -> _Looked | str:
-    """The stresses and limits of a contact; else why they are not known, "" where nothing is to be said."""
+    """The stresses and limits of a contact, or the reason why they are not known; "" where nothing is to be said."""
     try:
         contact = Contacts.of(case, "summary")
-    except StudyError:  # of a mean, say
+    except StudyError:  # such as for a mean
         return ""
     known = {body: [column[0] for column in columns] for body, columns in known_strengths(contact, {}).items()}
     moduli = [case[name] for name, _, _ in bodies_of(case.variables).values() if name in case]
@@ -165,51 +168,54 @@ def _looked_at(case: xr.Dataset) -> _Looked | str:
         return _FILM + "."
     at_a = replace(problem, control="a", value=np.array([_radius(contact)]))
     solution, limits = solve(at_a), _limits(contact, known)
-    found = [_Compared(*pair) for pair in _stresses(limits, at_a, solution, case) if np.isfinite(pair[1])]
-    compared = sorted((one for one in found if np.isfinite(one.limit.strength)), key=lambda one: -one.share)
-    lacking = [one for one in found if np.isnan(one.limit.strength) and one.limit.needs]
+    stresses = [_Compared(*row) for row in _stresses(limits, at_a, solution, case) if np.isfinite(row[1])]
+    compared = sorted((row for row in stresses if np.isfinite(row.limit.strength)), key=lambda row: -row.share)
+    lacking = [row for row in stresses if np.isnan(row.limit.strength) and row.limit.needs]
     return _Looked(contact, at_a, solution, compared, lacking, hard)
 
 
 def _stresses(limits: list[_Limit], problem: Problem, solution: Any, case: xr.Dataset) -> list[tuple]:
-    """(limit, stress, r, z) of each, r and z in a: those of the bodies are searched for together."""
+    """(limit, stress, r, z) of each limit, r and z in a. The stresses of all bodies are searched for together."""
     names = tuple(limit.stress for limit in limits if limit.stress in EXTREMES)
-    found = of_contacts(problem, solution, names=names) if names else {}
-    found |= in_stacks(problem, solution, [limit.stress for limit in limits])
+    stresses = of_contacts(problem, solution, names=names) if names else {}
+    stresses |= in_stacks(problem, solution, [limit.stress for limit in limits])
     if any(limit.stress in SPOT_EXTREMES for limit in limits):
         below = central_spot.of_contacts(problem, solution)
-        found |= {name: np.stack([value, 0 * value, z]) for name, (value, z) in below.items()}
+        stresses |= {name: np.stack([value, 0 * value, z]) for name, (value, z) in below.items()}
     if any(limit.stress == _PUNCH for limit in limits):
         nu = float(case["nu_punch"]) if "nu_punch" in case else 0.3
-        found[_PUNCH] = of_contacts(problem, solution, names=("mises2",), punch=np.array([nu]))["mises2"]
+        stresses[_PUNCH] = of_contacts(problem, solution, names=("mises2",), punch=np.array([nu]))["mises2"]
     if any(limit.stress == _SPOTS for limit in limits):
-        found[_SPOTS] = _of_spots(problem, solution)
-    return [(limit, *found[limit.stress][:, 0].tolist()) for limit in limits]
+        stresses[_SPOTS] = _of_spots(problem, solution)
+    return [(limit, *stresses[limit.stress][:, 0].tolist()) for limit in limits]
 
 
 def _of_spots(problem: Problem, solution: Any) -> np.ndarray:
-    """(3, 1): the stress below a spot, and its place; of a law without a radius of asperities that of a sphere under
-    the same pressure, on the surface. On a half-space it is at most that of one asperity that bears the whole load."""
-    found, E, nu = spots.of_contacts(problem, solution), *_below(problem)
+    """(3, 1): the stress below a spot, and its place.
+
+    A law without a radius of asperities has the stress of a sphere under the same pressure, on the surface. On a
+    half-space the stress is at most that of one asperity that bears the whole load.
+    """
+    stress, E, nu = spots.of_contacts(problem, solution), *_below(problem)
     below = stress_below_one(solution.P, E, problem.Ra, nu)
-    if np.isnan(found[0, 0]):
+    if np.isnan(stress[0, 0]):
         largest = np.fmax(solution.p_max[0], solution.p_spot[0])
-        found[:, 0] = (largest - solution.p0[0]) / yield_pressure(nu)[0], 0.0, 0.0
-    elif below[0] < found[0, 0] and not problem.feels_layer()[0]:
+        stress[:, 0] = (largest - solution.p0[0]) / yield_pressure(nu)[0], 0.0, 0.0
+    elif below[0] < stress[0, 0] and not problem.feels_layer()[0]:
         b = np.cbrt(3 * solution.P[0] * problem.Ra[0] / (4 * E[0]))
-        found[:, 0] = below[0], 0.0, _DEEP * b / solution.a[0]
-    return found
+        stress[:, 0] = below[0], 0.0, _DEEP * b / solution.a[0]
+    return stress
 
 
 def _below(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
-    """The modulus that the asperities feel, in series with the punch, and the Poisson ratio below them."""
+    """The modulus below the asperities, in series with the punch, and the Poisson ratio below them."""
     bare = is_bare(problem.base)
     E = np.where(bare, 1.0, layer_modulus(problem.n)) / (1 + problem.m)
     return E * problem.E2, np.where(bare, problem.nu2, problem.nu1)
 
 
 def _of_own_law(contact: Contacts, said: list[str]) -> list[str]:
-    """A sentence on asperities of which no more than pmax is known, where something is said of them."""
+    """A sentence on asperities for which only pmax is known, if other sentences are about them."""
     if np.isfinite(contact.problem.Ra[0]) or not any("asperities" in text for text in said):
         return []
     return [_OWN_LAW.format(q=float(yield_pressure(_below(contact.problem)[1])[0]))]
@@ -225,11 +231,11 @@ def _flowing(case: xr.Dataset) -> list[str]:
 
 
 def which_yields(dataset: xr.Dataset) -> str:
-    """Whether it is the layer or the body, of the contacts in which one of them yields."""
+    """Whether the layer or the body yields, in the contacts in which one of them does."""
     flags = dataset["validity"].values.ravel() & 512
     try:
         contacts = Contacts.of(dataset, "summary")
-    except StudyError:  # of a mean, say
+    except StudyError:  # such as for a mean
         return ""
     some, known = np.flatnonzero(flags), strengths(contacts, {})
     if layers := layer_strengths(contacts, {}):
@@ -249,7 +255,7 @@ def _radius(contact: Contacts) -> float:
 
 
 def _limits(contact: Contacts, known: dict[str, list]) -> list[_Limit]:
-    """The limits of a contact at which something fails."""
+    """The limits of a contact at which a part fails."""
     case, problem, limits = contact.dataset, contact.problem, []
     coated, mises, Y = not is_bare(problem.base[0]), "largest von Mises stress", "yield strength"
 
@@ -294,7 +300,7 @@ def _limits(contact: Contacts, known: dict[str, list]) -> list[_Limit]:
 def _material(case: xr.Dataset, body: str) -> Any:
     try:
         return materials.get(str(case[body].values)) if body in case else None
-    except LookupError:  # of a file of the user
+    except LookupError:  # a material of the user's file
         return None
 
 
@@ -303,7 +309,7 @@ def _part(share: float) -> str:
 
 
 def _closest(looked: _Looked, case: xr.Dataset) -> list[str]:
-    """Sentences on the closest limit, on the others, and on the load at which the closest is reached."""
+    """Sentences on the closest limit, on the other limits, and on the load that reaches the closest."""
     contact, first, *others = looked.contact, *looked.compared
     limit, share = first.limit, first.share
     place = _place(contact, first.r, first.z, float(looked.problem.value[0])) if np.isfinite(first.z) else ""
@@ -320,7 +326,8 @@ def _closest(looked: _Looked, case: xr.Dataset) -> list[str]:
 
 
 def _at_which_load(looked: _Looked, first: _Compared, case: xr.Dataset) -> list[str]:
-    """At which load the limit is reached. Where few asperities touch there, how many do."""
+    """Sentences on the load that reaches the limit, and on the number of asperities that touch then, if they are
+    few."""
     limit, share, contact = first.limit, first.share, looked.contact
     found = _load(looked, first, case)
     if found is None:
@@ -342,33 +349,35 @@ def _at_which_load(looked: _Looked, first: _Compared, case: xr.Dataset) -> list[
 
 
 def _spots_of(problem: Problem, solution: Any) -> float:
-    """The number of asperities that touch; NaN under a law that does not know it."""
+    """The number of asperities that touch; NaN under a law without a density."""
     return float(problem.Nbar[0] * np.pi * solution.a[0] ** 2)
 
 
 def _load(looked: _Looked, first: _Compared, case: xr.Dataset) -> tuple[float, float, Any] | None:
-    """The load at which the stress is the strength, near that of the contact, d ln P/d ln strength there and the
-    solution: by the secant in logarithms."""
+    """The load at which the stress reaches the strength, d ln P/d ln strength there, and the solution.
+
+    The search is a secant method in logarithms that starts at the load of the contact. None if it fails.
+    """
     problem, limit = looked.problem, first.limit
     P, value, slope = np.log(looked.solution.P[0]), np.log(first.share), 1 / 3
     for _ in range(_MOST):
         step = float(np.clip(-value / slope, -3, 3))
         at = replace(problem, control="P", value=np.exp([P + step]))
-        there = solve(at)
-        if there.a[0] > _WIDEST and value < 0:
+        solution = solve(at)
+        if solution.a[0] > _WIDEST and value < 0:
             return None
-        after = np.log(_stresses([limit], at, there, case)[0][1] / limit.strength)
+        after = np.log(_stresses([limit], at, solution, case)[0][1] / limit.strength)
         if not np.isfinite(after):
             return None
         slope = max((after - value) / step, 0.05) if step else slope
         P, value = P + step, after
         if abs(value) < _SAME:
-            return float(np.exp(P)), 1 / slope, there
+            return float(np.exp(P)), 1 / slope, solution
     return None
 
 
 def _needed(contact: Contacts, lacking: list[_Compared]) -> list[str]:
-    """Which strengths would say more, and how large they must be for the contact to hold."""
+    """A sentence on the strengths that are not known, and how large they must be for the contact to hold."""
     parts = [
         f"of {limit.who}, which need{'' if limit.plural else 's'} above {_with_unit(contact, stress)} ({limit.needs})"
         for limit, stress, *_ in lacking
@@ -385,7 +394,7 @@ def _place(contact: Contacts, r: float, z: float, a: float) -> str:
 
 
 def _with_unit(contact: Contacts, value: float, length: int = 0, spread: float = 0.0) -> str:
-    """A stress, or with length = 2 a load, with ± if it has a spread."""
+    """A stress as text, or a load with length = 2, with ± if it has a spread."""
     if not contact.scene:
         return f"{value:.2g} E2*{' R^2' * (length == 2)}"
     stress, size = (unit.item() for unit in contact.units)

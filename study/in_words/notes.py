@@ -1,4 +1,4 @@
-"""Sentences about some contacts alone: shapes, adhesion, asperities that feel the layer, spots that unload."""
+"""Sentences for special contacts: shapes, adhesion, asperities that feel the layer, spots that unload."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ from .numbers import in_its_unit
 
 #: Results of pull-off and pull-in that a summary lists, in this order.
 OF_PULL_OFF = tuple(name for name in names("pull_off") if name != "stable")
-#: Cones and what is taken for cones -> their half angle in degrees; None: it is an input.
+#: Cones, and pyramids that count as cones -> cotangent of their half angle; None: the angle is an input.
 _CONES = {KIND.name: None} | {kind.name: float(kind.of(size=1).cot[0]) for kind in PYRAMIDS}
-#: Below this a correction is not worth a sentence: it is less than what the moduli of a material spread.
+#: Least correction that is worth a sentence: a smaller one is less than the spread of a material's moduli.
 _SMALL = 0.005
-#: A law that ends at less than this part of the largest contact fraction ends because the disc cell goes wrong.
+#: A law that ends below this share of the largest contact fraction ends because the disc cell goes wrong.
 _EARLY = 0.999
 _FAR = f"The pitch of the asperities is above {MOST:g} h: what the layer does to them is not known there"
 _MERGED = (
@@ -41,15 +41,15 @@ _MERGED = (
 law of asperities on the coated body ends there"
 )
 _HALF_SPACE = 'asperities_on = "half_space" has numbers, of a half-space of the layer\'s material.'
-#: Of spheres with random heights, which a scan gives: measured on six surfaces (docs/roughness.md, Which law when).
+#: On spheres with random heights, as from a scan: measured on six surfaces (docs/roughness.md, Which law when).
 _SPHERES = (
     "If they come from a scan: spheres touch about two thirds of the area that the scan itself touches, and their pmax "
     "is up to 1.4 times too small, up to 9 times where single points stand out. rc.roughness.law(scan), or "
     "`roughcoat scan FILE --law OUT.csv`, is the law of the scan itself (docs/roughness.md)."
 )
-#: The load is lowered to this part; pressures that are larger there by less than _SAME of the largest are the same.
+#: The load is reduced to this share. Pressures that grow by less than _SAME of the largest count as unchanged.
 _LESS, _SAME = 0.9, 1e-6
-#: Radii in a that are looked at.
+#: Radii in a at which the pressure is examined.
 _RADII = np.sin(np.linspace(0, np.pi / 2, 25))
 
 
@@ -59,12 +59,12 @@ def sticks(contacts: xr.Dataset) -> bool:
 
 
 def shape_of(case: xr.Dataset) -> str:
-    """The shape of the punch of one contact; the paraboloid where none is given."""
+    """The shape of the punch of one contact; by default the paraboloid."""
     return str(case["shape"].values) if "shape" in case.variables else PARABOLOID
 
 
 def of_shape(case: xr.Dataset) -> list[str]:
-    """Sentences about the shape of the punch; none of a paraboloid."""
+    """Sentences about the shape of the punch; none for a paraboloid."""
     shape = shape_of(case)
     if shape == PARABOLOID:
         return []
@@ -85,7 +85,7 @@ def _angle_of(shape: str) -> str:
 
 
 def _inwards(case: xr.Dataset, shape: str) -> list[str]:
-    """A note on the surface under a cone, which is pulled inwards: Hay, Bolshakov and Pharr (1999)."""
+    """A note on the inward pull of the surface under a cone: Hay, Bolshakov and Pharr (1999)."""
     nu = case.get("nu2" if is_bare(case["base"]) else "nu1")
     if shape not in _CONES or nu is None:
         return []
@@ -102,12 +102,13 @@ def _inwards(case: xr.Dataset, shape: str) -> list[str]:
 
 
 def of_scan(case: xr.Dataset) -> list[str]:
-    """A sentence on spheres of random heights in the place of a scan; none with another law."""
+    """A sentence on spheres with random heights that stand for a scan; none with another law."""
     return [f"Spheres: {_SPHERES}"] if case["micro"].values == heights.LAW.name else []
 
 
 def of_adhesion(case: xr.Dataset) -> list[str]:
-    """Sentences about a contact that may stick: whether it is stable, when it comes off, to what it jumps."""
+    """Sentences about a contact with adhesion: whether it is stable, when it pulls off, and where it jumps into
+    contact."""
     if not sticks(case):
         return []
     if not case["w_adhesion"] > 0:
@@ -115,8 +116,8 @@ def of_adhesion(case: xr.Dataset) -> list[str]:
     if not np.isfinite(case["P_off"]):
         return ["Adhesion: pull-off is not known."]
     off = f"P = {_text(case, 'P_off')}, D = {_text(case, 'D_off')}, a = {_text(case, 'a_off')}"
-    held = _held(case)
-    said = [f"Adhesion: {held} it comes off at {off}."]
+    control = _control_of_machine(case)
+    said = [f"Adhesion: {control} it comes off at {off}."]
     if case["status"] == 0:
         state = "This contact is stable" if case["stable"] else "This contact is not stable: left alone it comes off"
         said.insert(0, f"{state}.")
@@ -127,7 +128,7 @@ def of_adhesion(case: xr.Dataset) -> list[str]:
     return said
 
 
-def _held(case: xr.Dataset) -> str:
+def _control_of_machine(case: xr.Dataset) -> str:
     """The control of the punch, as the beginning of a sentence."""
     k = case["k_machine"] if "k_machine" in case.variables else None
     if k is not None and np.isfinite(k) and k > 0:
@@ -141,7 +142,7 @@ def _text(case: xr.Dataset, name: str) -> str:
 
 
 def unit_of_length(case: xr.Dataset) -> list[str]:
-    """A sentence where a profile is in units of a length that nobody gave as such."""
+    """A sentence where the unit of length of a profile is not given."""
     scale = case.attrs.get("scale", "R")
     in_R = shape_of(case) == "power" or shape_of(case).startswith("table:") and "table_unit" not in case.variables
     if scale in ("R", "1") or not in_R or "R" not in case.variables:
@@ -151,7 +152,7 @@ def unit_of_length(case: xr.Dataset) -> list[str]:
 
 
 def presses_on(case: xr.Dataset) -> str:
-    """The end of the sentence on the model: what the asperities press on, where the contact says it."""
+    """The end of the sentence on the model: the body under the asperities, where the contact says it."""
     if "asperities_used" not in case or case["asperities_used"] == 0:
         return ""
     felt = case["asperities_used"] == USED.index("layer")
@@ -161,7 +162,7 @@ def presses_on(case: xr.Dataset) -> str:
 
 
 def ended(contacts: xr.Dataset) -> list[str]:
-    """Sentences on contacts at pressures that the law of asperities on their bodies does not know, and the way out."""
+    """Sentences on contacts at pressures beyond the end of their law of asperities, and the way out."""
     if "asperities_used" not in contacts:
         return []
     outside = (contacts["status"].values == Status.OUTSIDE_LAW) & (
@@ -204,7 +205,7 @@ def falling(contacts: xr.Dataset) -> list[str]:
         before = solve(replace(problem, control="P", value=_LESS * now.P), _RADII)
         r = _RADII * (now.a / before.a)[:, None]
         p, lam = (
-            np.array([np.interp(at, _RADII, own, right=0.0) for at, own in zip(r, profile, strict=True)])
+            np.array([np.interp(at, _RADII, values, right=0.0) for at, values in zip(r, profile, strict=True)])
             for profile in (before.p, before.lam)
         )
         yielded = np.empty(len(index))

@@ -12,7 +12,7 @@ from ..inputs.punch.shapes import ANGLES
 from ..inputs.vocabulary import BODIES, CONTROLS
 from ..specimen.quantities import READABLE, readable
 
-#: Words that a text needs before it, to be understood among others.
+#: Inputs whose text needs a word before it -> the word.
 _WORDS = {"shape": "shape", "tip": "tip", "adhesion": "adhesion", "branch": "branch"}
 #: The word of `asperities_on` -> the ground of the asperities.
 _ASPERITIES = {
@@ -50,14 +50,14 @@ def in_its_unit(case: xr.Dataset, name: str, value: float, spread: float = 0.0) 
 
 
 def spread_of(case: xr.Dataset, name: str) -> float:
-    """The spread of an input, or what the spreads of the inputs make of a result; 0 where there is none."""
+    """The spread of an input, or that of a result from the spreads of the inputs; 0 without one."""
     return float(case[f"{name}_spread"]) if f"{name}_spread" in case else 0.0
 
 
 def result_text(case: xr.Dataset, name: str) -> str:
     """A result with its unit and ±."""
-    given = name in CONTROLS and name in case.coords
-    return _with_spread(case, name, float(case[name]), spread_of(case, name), "error" * (not given))
+    is_given = name in CONTROLS and name in case.coords
+    return _with_spread(case, name, float(case[name]), spread_of(case, name), "error" * (not is_given))
 
 
 def ring_text(case: xr.Dataset, place: int) -> str:
@@ -84,7 +84,10 @@ def peak_text(case: xr.Dataset, pressure: float) -> str:
 
 
 def _with_spread(case: xr.Dataset, name: str, value: float, spread: float, error: str) -> str:
-    """A value with ±: of its spread, of its `error` and of `model_error`. error : "" of what was given."""
+    """A value with ±, from its spread, its `error` and `model_error`.
+
+    error : name of the error; "" for an input
+    """
     if not np.isfinite(value):
         return "unknown" if np.isnan(value) else "infinite" if value > 0 else "minus infinite"
     if not np.isfinite(spread):
@@ -95,6 +98,6 @@ def _with_spread(case: xr.Dataset, name: str, value: float, spread: float, error
 
 
 def _size(case: xr.Dataset, name: str, value: float) -> float:
-    """The size to which errors of a result are relative: with adhesion at least the load and depth of pull-off."""
+    """The size to which errors of a result are relative: with adhesion at least the load or the depth at pull-off."""
     off = case.get(f"{name}_off")
     return abs(value) if off is None or not np.isfinite(off) else max(abs(value), abs(float(off)))

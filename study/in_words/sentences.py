@@ -1,5 +1,5 @@
-"""Sentences about contacts: before they are solved, whether they are far outside what the model describes; and then how
-they were solved, by which model, what they rest on, and what is beyond the model."""
+"""Sentences about contacts: before they are solved, whether they are far outside the model; afterwards, how well they
+were solved, by which model, under which assumptions, and what the model leaves out."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from .margins import RUBBER, holds, which_yields
 from .notes import ended, falling, of_adhesion, of_scan, of_shape, presses_on, sticks, unit_of_length
 from .pressures import largest_of_all
 
-#: A contact is far outside if it exceeds the limit of an assumption this many times. The estimate is right to about
-#: that factor: of 300 random contacts beyond no limit it takes none for far outside, and of 300 that exceed one 50
-#: times it finds all but a few (tests/physical/words/test_far_outside.py).
+#: A contact is far outside the model if it exceeds the limit of an assumption by this factor. The estimate is right to
+#: about the same factor: among 300 random contacts within all limits it puts none far outside, and among 300 that
+#: exceed a limit 50 times it finds all except a few (tests/physical/words/test_far_outside.py).
 FAR = 10.0
-#: Only contacts on layers softer than this against the body (n = E1*/E2*) are looked at: they may take seconds, the
-#: more the softer the layer is. A choice, for the time falls evenly as n rises.
+#: Largest n = E1*/E2* of the contacts that are judged: on such soft layers a contact may take seconds, more on softer
+#: layers. This is a choice, since the time falls steadily as n rises.
 SOFT = 0.1
-MOST = 100  # contacts of a grid that are looked at, evenly spread: so few that it is not noticed
+MOST = 100  # number of contacts of a grid that are judged, evenly spread: few enough to take no noticeable time
 SAID = f"far outside what the model describes: an estimate exceeds limits {FAR:g} times and more. It may take long."
 _BASES = {
     "half_space": "a half-space",
@@ -46,7 +46,7 @@ MODELS = {base: f"{words} under the asperities" for base, words in _BASES.items(
 MODELS |= {f"smooth_{base}": f"{words}, without asperities" for base, words in _BASES.items()}
 EXCEEDED = "None of the assumptions that `validity` checks is violated, except that a strength is exceeded, as follows."
 NOT_VIOLATED = "None of the assumptions that are checked is violated (docs/model.md, Four answers)."
-#: Behind a model with asperities.
+#: Follows a model with asperities.
 WHOSE = " The asperities are the punch's; a rough surface under a polished punch is the same contact, and of two rough \
 surfaces the sum counts (docs/model.md, Elastic punch)."
 SLIDES = 'The layer slides on the body without friction, since bonding is not given. One that is deposited or glued on \
@@ -54,14 +54,14 @@ does not slide, and if it is soft it is then much stiffer: bonding = "bonded".'
 
 
 class FarOutside(UserWarning):
-    """Said before anything is solved."""
+    """A warning before contacts far outside the model are solved."""
 
 
 def far_outside(definition: Definition) -> list[str]:
-    """A sentence for each assumption that at least half of the contacts of a study violate FAR times over, by an
-    estimate; below a first one that says so. [] of most studies.
+    """A sentence for each assumption that at least half of the contacts of a study exceed by FAR, by an estimate, after
+    a first sentence that says so. [] for most studies.
 
-    Only rough contacts on soft exact layers are looked at, of studies with units: others are solved at once, or not
+    Only rough contacts on soft exact layers, in studies with units, are judged: others are solved quickly, or cannot be
     judged.
     """
     grid = definition.grid
@@ -78,7 +78,7 @@ def far_outside(definition: Definition) -> list[str]:
 
 
 def _exceeded(parameters: dict[str, np.ndarray], known: Known) -> dict[str, np.ndarray]:
-    """Name of each assumption -> (n,) bool: the contact exceeds its limit FAR times, by an estimate."""
+    """Name of each assumption -> (n,) bool: the contact exceeds its limit by FAR, by an estimate."""
     size = len(parameters["micro"])
     unknown = {"status": np.zeros(size), "model_used": np.full(size, np.nan), "model_error": np.full(size, np.nan)}
     estimated = estimate(lexicon_of(known).problem(parameters))
@@ -86,7 +86,7 @@ def _exceeded(parameters: dict[str, np.ndarray], known: Known) -> dict[str, np.n
 
 
 def doubts(contact: xr.Dataset) -> list[str]:
-    """A sentence for each assumption of the model that some cases violate, and for inputs that nothing real has."""
+    """A sentence for each assumption of the model that some cases violate, and for inputs that no real body has."""
     v = dict(contact.variables)  # arithmetic of DataArrays takes longer than solving a contact
     found = rule.sentences(v | (largest_of_all(contact) if v["p_max"].attrs.get("units") == "Pa" else {}))
     yields = rule.RULES["body_yields"].sentence
@@ -95,12 +95,12 @@ def doubts(contact: xr.Dataset) -> list[str]:
 
 
 def beside_rules(contact: xr.Dataset) -> list[str]:
-    """Sentences on contacts beside those of the rules, which see no problem that could be solved again."""
+    """Sentences on contacts in addition to those of the rules, which cannot solve a contact again."""
     return falling(contact) + ended(contact)
 
 
 def _near_0(case: xr.Dataset) -> str:
-    """The second size to which an error is relative: with adhesion a load or a depth may be 0."""
+    """Words for the size to which an error is relative with adhesion, where a load or a depth may be 0."""
     names = [name for name in "PD" if abs(case[name]) < abs(case.get(f"{name}_off", 0.0))]
     return f" ({' and '.join(names)}: of the size at pull-off)" * bool(names)
 
@@ -108,7 +108,7 @@ def _near_0(case: xr.Dataset) -> str:
 def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
     """Sentences on a case: how well it is solved, by which model, which assumptions it violates, whether it holds.
 
-    judged : the quantities shown of which `error` is the largest error; p_max is among them where there are asperities
+    judged : the displayed quantities whose largest error is `error`; p_max is among them if there are asperities
     """
     word, used = (flag_words(case[name]).item() for name in ("status", "model_used"))
     if word == "converged":
@@ -140,11 +140,11 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
 
 
 def assumed(case: xr.Dataset) -> list[str]:
-    """A sentence for each default that stands for an input which was not given, and may be far from it."""
+    """A sentence for each input that was not given, if its default may be far from the true value."""
     v = case.variables
-    taken = {name for name in v if v[name].attrs.get("comment") == ASSUMED}
-    found = unit_of_length(case) + [SLIDES] * bool("bonding" in taken and not is_bare(v["base"].item()))
+    defaults = {name for name in v if v[name].attrs.get("comment") == ASSUMED}
+    found = unit_of_length(case) + [SLIDES] * bool("bonding" in defaults and not is_bare(v["base"].item()))
     for modulus, ratio, _ in bodies_of(v).values():
-        if ratio in taken and modulus in v and v[modulus].attrs.get("units") == "Pa" and v[modulus] < RUBBER:
+        if ratio in defaults and modulus in v and v[modulus].attrs.get("units") == "Pa" and v[modulus] < RUBBER:
             found.append(f"{ratio} = {v[ratio].item():g}. Of rubbers and gels, as soft as this, it is nearly 0.5.")
     return found

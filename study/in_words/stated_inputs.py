@@ -1,4 +1,4 @@
-"""Which inputs of contacts a text or a figure states, in which order, and in which words."""
+"""The inputs of contacts that a text or a figure states, their order, and their words."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from ..inputs.vocabulary import BODIES, CONTROLS, bodies_of, names, parameters_o
 from .numbers import given_text, spread_of
 
 _OF_BODIES = [name for body in ("punch", "layer", "body") for name in (body, *BODIES[body][:2])]
-#: Inputs without a default that a contact may have and not use: "sigma" of micro = "disc_cell", "E1" of a half-space.
+#: Inputs without a default that a contact may have and not use: "sigma" with micro = "disc_cell", "E1" on a half-space.
 _OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta", "hardness", "yield_strength", "Y1", "Y2", "Y_punch")
 
 
 def of_lower_layers(inputs: Iterable[str]) -> list[str]:
-    """Names of what the layers of a stack below the first have, and the first besides, one layer after the other.
+    """Names of the inputs of a stack's layers below the first, and of the further inputs of the first, layer by layer.
 
-    inputs : names of the inputs of contacts, which say how many layers there are
+    inputs : names of the inputs of contacts, which show the number of layers
     """
     inputs = [str(name) for name in inputs]
     names = (*bodies_of(inputs), *scene_of(inputs), *parameters_of_layers(inputs))
@@ -49,9 +49,9 @@ def of_lower_layers(inputs: Iterable[str]) -> list[str]:
 
 
 def all_inputs(contacts: Iterable[str], lexicon: Lexicon) -> list[str]:
-    """All inputs in order: radii, what the bodies are made of, the control, the layer, the asperities.
+    """All inputs in order: radii, materials of the bodies, the control, the layer, the asperities.
 
-    contacts : a dataset, or names of its variables: the layers that it has are among the inputs
+    contacts : a dataset, or names of its variables, which show the number of layers
     """
     between = [name for name in names("material") if name not in (*_OF_BODIES, "base")]
     of_laws = [name for name, entry in lexicon.rows.items() if entry.role == "roughness" and name != "micro"]
@@ -62,10 +62,10 @@ def all_inputs(contacts: Iterable[str], lexicon: Lexicon) -> list[str]:
 
 
 def used_inputs(contacts: xr.Dataset) -> list[str]:
-    """The inputs in a dataset that the answer of some contact depends on; [] for a dataset without contacts.
+    """The inputs in a dataset on which the answer of some contact depends; [] for a dataset without contacts.
 
-    Left out are ν of a rigid body, and n and m where the moduli are given. A law that is not registered may depend on
-    all that there is of asperities.
+    ν of a rigid body is left out, and so are n and m where the moduli are given. A law that is not registered may
+    depend on every input of asperities.
     """
     if "base" not in contacts.variables:
         return []
@@ -98,7 +98,7 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
 
 
 def _of_punch_hidden(contacts: xr.Dataset, lexicon: Lexicon) -> set[str]:
-    """Inputs of the shape and of adhesion that say nothing: defaults, and what is there for the solver alone."""
+    """Inputs of the shape and of adhesion that need not be stated: defaults, and inputs for the solver alone."""
     hidden = {"table_unit"} if "shape" in contacts and np.any(in_metres(contacts["shape"].values, lexicon)) else set()
     hidden |= {LAW_UNIT}
     if "w_adhesion" in contacts:
@@ -114,7 +114,7 @@ def _of_punch_hidden(contacts: xr.Dataset, lexicon: Lexicon) -> set[str]:
 def is_rigid(contacts: xr.Dataset, body: str) -> bool:
     """Whether the punch of all contacts, or the base under their layers, is known to be rigid.
 
-    The modulus says it, if there is one: `groupby` and `mean` of xarray leave out m and n where these vary.
+    The modulus decides, if there is one: `groupby` and `mean` of xarray drop m and n where these vary.
     """
     modulus, ratio = ("E_punch", "m") if body == "punch" else ("E2", "n")
     if modulus in contacts:
@@ -125,8 +125,8 @@ def is_rigid(contacts: xr.Dataset, body: str) -> bool:
 
 
 def given(case: xr.Dataset, left_out=()) -> list[str]:
-    """The line "Given: ..." of one contact, and "Not used: ..." if it has inputs that change nothing; without its
-    control and the names `left_out`."""
+    """The line "Given: ..." of one contact, without its control and the names `left_out`, and "Not used: ..." if it has
+    inputs that change nothing."""
     used = used_inputs(case)
     inputs = [name for name in used if name not in (*left_out, *CONTROLS) and not name.startswith("layers.")]
     unsaid = " (assumed)" * ("R" in case and "E_punch" not in case)
@@ -139,7 +139,7 @@ def given(case: xr.Dataset, left_out=()) -> list[str]:
 
 
 def _stack(case: xr.Dataset, used: list[str]) -> list[str]:
-    """A line of the geometry of a stack of layers, from the second one down to the base; [] of one layer."""
+    """A line on the geometry of a stack, from its second layer down to the base; [] for a single layer."""
     parts: dict[str, list[str]] = {}
     for name in (name for name in used if name.startswith("layers.") and name in case and not case[name].dims):
         number, _, field = name.removeprefix("layers.").partition(".")
@@ -152,15 +152,15 @@ def _stack(case: xr.Dataset, used: list[str]) -> list[str]:
 
 
 def _pieces(case: xr.Dataset, used: list[str]) -> list[str]:
-    """Whether bodies of one material, whose moduli have a spread, are independent pieces: it changes every ±."""
+    """Texts that say whether bodies of one material, with a spread, are independent pieces: it changes every ±."""
     of_material: dict[str, list[str]] = {}
     for body, (modulus, ratio, _) in bodies_of(case.variables).items():
         if body in case and modulus in used and spread_of(case, modulus) + spread_of(case, ratio) > 0:
             of_material.setdefault(str(case[body].values), []).append(body)
     texts = []
     for material, bodies in of_material.items():
-        one = all(case[body].attrs.get("comment") == SAME_PIECE for body in bodies)
-        which = "one piece" if one else "independent pieces"
+        is_one_piece = all(case[body].attrs.get("comment") == SAME_PIECE for body in bodies)
+        which = "one piece" if is_one_piece else "independent pieces"
         bodies = [body.removesuffix(".material").replace("layers.", "layer ") for body in bodies]
         texts += [f"{', '.join(bodies[:-1])} and {bodies[-1]} {which} of {material}"] * (len(bodies) > 1)
     return texts

@@ -20,13 +20,13 @@ from ..specimen.quantities import readable
 from .numbers import given_text, in_its_unit, spread_of
 from .stated_inputs import is_rigid
 
-MOST_CASES = 20  # of a grid that are written out
+MOST_CASES = 20  # number of cases of a grid that are written out
 _BODIES = {"Y1": "layer", "Y2": "body", "Ya": "asperities", "Y_punch": "punch"}
 _ANY_LOAD = "yields under any load: below a sharp tip or corner the stress is infinite"
 
 
 def of_stresses(dataset: xr.Dataset) -> str | None:
-    """The text on such a dataset; None of any other."""
+    """The text on a dataset of one of these functions; None for any other dataset."""
     if "model_used" in dataset:
         return None
     kinds = {"first_yield": _first_yield, "h_protect": _protection, "mises2_r": _extremes, "stress_error": _fields}
@@ -49,20 +49,21 @@ def of_stresses(dataset: xr.Dataset) -> str | None:
 
 def _first_yield(case: xr.Dataset) -> list[str]:
     first = flag_words(case["first_yield"]).item().replace("_", " ")
-    there = [end for end in _BODIES if f"found_{end}" in case and not ("P_Y_layer" in case and end == "Y1")]
+    ends = [end for end in _BODIES if f"found_{end}" in case and not ("P_Y_layer" in case and end == "Y1")]
     if first == "layer" and "first_layer" in case:
         lines = [f"First to yield, of what is known: layer {int(case['first_layer'])}."]
     else:
         lines = [f"First to yield, of what is known: the {first}."] if first != "not known" else ["No load is found."]
     for number in case["layer"].values.tolist() if "P_Y_layer" in case else ():
         lines += _of_body(case.sel(layer=number), "Y_layer", f"layer {number}")
-    for end in there:
+    for end in ends:
         lines += _of_body(case, end)
     return lines
 
 
 def _of_body(case: xr.Dataset, end: str, layer: str = "") -> list[str]:
-    """Whether a body, or a `layer` of a stack, yields, at which load and where, and what the contact violates there."""
+    """Sentences on the load and the place at which a body, or a `layer` of a stack, yields, and on assumptions that the
+    contact violates there."""
     body = layer or f"the {_BODIES[end]}"
     found = flag_words(case[f"found_{end}"]).item()
     verb = "yield" if end == "Ya" else "yields"
@@ -105,22 +106,22 @@ def _protection(case: xr.Dataset) -> list[str]:
 
 def _extremes(case: xr.Dataset) -> list[str]:
     for dim in ("layer", "interface"):
-        if dim in case.dims:  # of stacks
+        if dim in case.dims:  # the contact is on a stack
             case = _one_by_one(case, dim)
     names = [str(name) for name in case.data_vars if f"{name}_r" in case and np.isfinite(float(case[str(name)]))]
     rows = []
     for name in names:
         r, z = float(case[f"{name}_r"]), float(case[f"{name}_z"])
-        there = f"{_stress(case, name, float(case[name]))}, {_place(r, z)}" if np.isfinite(r) else "none"
+        text_of_stress = f"{_stress(case, name, float(case[name]))}, {_place(r, z)}" if np.isfinite(r) else "none"
         label = case[name].attrs.get("long_name", name)
-        rows.append((VOCABULARY[name].long_name if name in VOCABULARY else label, there))
+        rows.append((VOCABULARY[name].long_name if name in VOCABULARY else label, text_of_stress))
     width = max((len(label) for label, _ in rows), default=0)
     return [f"  {label:{width}}  {text}" for label, text in rows] or ["The contact has no solution."]
 
 
 def _one_by_one(case: xr.Dataset, dim: str) -> xr.Dataset:
-    """The dataset with a variable for each layer or interface in place of one over `dim`."""
-    apart = {}
+    """The dataset with a variable for each layer or interface in place of a variable over `dim`."""
+    single = {}
     for name in [str(name) for name in case.data_vars if dim in case[name].dims]:
         for number in case[dim].values.tolist():
             value = case[name].sel({dim: number}, drop=True)
@@ -128,8 +129,8 @@ def _one_by_one(case: xr.Dataset, dim: str) -> xr.Dataset:
             for several in ("each layer", "each interface"):
                 words = words.replace(several, f"{several.removeprefix('each ')} {number}")
             end = next((end for end in ("_r", "_z") if name.endswith(end)), "")
-            apart[f"{name.removesuffix(end)} {number}{end}"] = value.assign_attrs(long_name=words)
-    return case.drop_dims(dim).assign(apart)
+            single[f"{name.removesuffix(end)} {number}{end}"] = value.assign_attrs(long_name=words)
+    return case.drop_dims(dim).assign(single)
 
 
 def _fields(case: xr.Dataset) -> list[str]:
@@ -149,7 +150,7 @@ def _fields(case: xr.Dataset) -> list[str]:
 
 
 def _stress(case: xr.Dataset, name: str, value: float) -> str:
-    """A stress with its unit, or over E2*, over E1* on a rigid body."""
+    """A stress with its unit, or over E2* (E1* on a rigid body)."""
     text = in_its_unit(case, name, float(f"{value:.4g}"))
     scale = case[name].attrs.get("scale", "")
     return text.replace(scale, "E1*" if is_rigid(case, "base") else "E2*") if scale else text
@@ -165,7 +166,7 @@ def _place(r: float, z: float) -> str:
     return f"{across}, at the surface" if z == 0 else f"{across}, {z:.3g} a deep"
 
 
-#: Extreme of the interfaces, or of the lower sides of layers -> words for the largest of them and where it is.
+#: Extreme of the interfaces, or of the lower sides of layers -> words for the largest value and its place.
 _LARGEST = {
     "tau_interface": "largest shear stress of an interface is {} (interface {})",
     "sz_interface_max": "largest tension across one is {} (interface {})",
@@ -174,26 +175,32 @@ _LARGEST = {
 
 
 def in_stacks(problem: Problem, solution: Any, names: list[str]) -> dict[str, np.ndarray]:
-    """The extremes of stacks called "mises_layer 2", of layer 2, or "mises2 0", of no layer: name -> (3, B), the value
-    in the unit of E2, r and z in a."""
+    """Extremes of stacks by name -> (3, B): the value in the unit of E2, r and z in a.
+
+    A name has the number of a layer, "mises_layer 2", or 0 for none, "mises2 0".
+    """
     wanted = [name for name in names if " " in name and name.split()[0] in EXTREMES]
     if not wanted:
         return {}
     values = of_contacts(problem, solution, names=tuple(dict.fromkeys(name.split()[0] for name in wanted)))
-    made = {}
+    extremes = {}
     for name in wanted:
         key, number = name.split()
-        made[name] = values[key][..., int(number) - 1] if DIMENSION[EXTREMES[key][1]] else values[key]
-    return made
+        extremes[name] = values[key][..., int(number) - 1] if DIMENSION[EXTREMES[key][1]] else values[key]
+    return extremes
 
 
 def strengths_of_layer(case: xr.Dataset, number: int, unit: float) -> list[tuple]:
-    """Strengths of the material of a layer beside that at which it yields, and of the interface below it: (who, stress,
-    words for it, verb, words for the strength, strength and its spread in the `unit`, Pa, False: not from hardness)."""
-    name, made = name_in_stack(number, "material"), []
+    """Strengths of a layer's material other than its yield strength, and of the interface below it.
+
+    unit : of the strengths, Pa
+
+    Each is (who, stress, words for it, verb, words for the strength, strength, its spread, False: not from hardness).
+    """
+    name, strengths = name_in_stack(number, "material"), []
     try:
         material = materials.get(str(case[name].values)) if name in case else None
-    except LookupError:  # of a file of the user
+    except LookupError:  # a material of the user's file
         material = None
     for who, stress, what, of in (
         (f"layer {number}", "s1_layer", "largest tension", "fracture"),
@@ -202,12 +209,12 @@ def strengths_of_layer(case: xr.Dataset, number: int, unit: float) -> list[tuple
         if strength := getattr(material, f"{of}_strength", None):
             verb, words = ("crack", "fracture strength") if of == "fracture" else ("fail", "strength")
             spread = getattr(material, f"{of}_strength_spread")
-            made.append((who, f"{stress} {number}", what, verb, words, strength / unit, spread / unit, False))
-    return made
+            strengths.append((who, f"{stress} {number}", what, verb, words, strength / unit, spread / unit, False))
+    return strengths
 
 
 def of_interfaces(contact: Contacts, problem: Problem, solution: Any) -> list[str]:
-    """A sentence on which interface and which lower side bear most, of one contact on a stack of several layers."""
+    """A sentence on the interface and the lower side under the largest stress, for a contact on a stack of layers."""
     if not is_stack(problem.base[0]):
         return []
     values, parts = of_contacts(problem, solution, names=tuple(_LARGEST)), []
@@ -220,8 +227,11 @@ def of_interfaces(contact: Contacts, problem: Problem, solution: Any) -> list[st
 
 
 def which_of_stacks(contacts: Contacts, some: np.ndarray, layers: list, body: np.ndarray) -> str:
-    """Which layer of stacks, or whether it is the body, that yields, of `some` contacts; strengths : of
-    :func:`~..data.body_strengths.layer_strengths`, and (B,) of the body."""
+    """A sentence on the layer of stacks, or the body, that yields in `some` contacts.
+
+    layers : strengths of the layers, by :func:`~..data.body_strengths.layer_strengths`
+    body : strength of the body, (B,)
+    """
     problem = contacts.problem.take(some)
     stresses = in_stacks(
         problem, solve(problem), [f"mises_layer {j}" for j in range(1, len(layers) + 1)] + ["mises2 0"]

@@ -1,4 +1,4 @@
-"""A contact in words: each quantity with its unit and how sure it is, how it was solved, and what it rests on."""
+"""A contact in words: each quantity with its unit and its uncertainty, the solution, and the assumptions behind it."""
 
 from __future__ import annotations
 
@@ -20,29 +20,29 @@ from .sentences import sentences
 from .stated_inputs import given, is_rigid
 from .stress_lines import of_stresses
 
-MOST_CASES = 20  # of a grid that a summary writes out
+MOST_CASES = 20  # number of cases of a grid that a summary writes out
 SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
-_JUDGED = tuple(name for name in SHOWN if name != "dP_dD")  # what `error` is the largest error of
-#: Left out of smooth contacts: there the real pressure is the nominal one, and the real area is the nominal area.
+_JUDGED = tuple(name for name in SHOWN if name != "dP_dD")  # results whose largest error is `error`
+#: Results that smooth contacts do not show: the real pressure is the nominal one, and the real area the nominal area.
 OF_ASPERITIES = ("p_max", "Ar_An")
-#: Words behind "indentation depth" where the punch yields too, or may.
+#: Words after "indentation depth" where the punch gives way too, or may.
 OF_BOTH = " (approach of both bodies)"
 SPOT_LABEL = "largest real pressure in the central spot"
 RING_LABEL, PEAK_LABEL = "largest nominal pressure, in a ring", "largest real pressure, in the ring"
 
 
 class Summary(str):
-    """A text whose repr is the text itself. A notebook shows its lines, and of one contact a small picture of p(r)."""
+    """A text whose repr is the text itself. A notebook shows its lines, and for one contact a small picture of p(r)."""
 
     picture = ""
 
     @classmethod
     def of(cls, text: str, case: xr.Dataset) -> Summary:
-        """The text on one contact, with its picture, if it has a profile."""
-        made = cls(text)
+        """The text on one contact, with a picture if it has a profile."""
+        summary_of_case = cls(text)
         if "p" in case and "x" in case.coords:
-            made.picture = curve(case["x"].values, case["p"].values, "r/a", "nominal pressure p")
-        return made
+            summary_of_case.picture = curve(case["x"].values, case["p"].values, "r/a", "nominal pressure p")
+        return summary_of_case
 
     def __repr__(self) -> str:
         return str(self)
@@ -55,21 +55,21 @@ def summary(contact: xr.Dataset) -> Summary:
     """The answer of `study.solve` in words.
 
     The text has the inputs; each quantity with its unit and ±; status, model used and validity as sentences. ± is one
-    standard deviation: the root of the sum of the squares of `error`, of `model_error` and of what the spreads of the
-    inputs make of the quantity (`NAME_spread`). `error` and `model_error` are of the other six quantities; dP/dD is
-    taken to be as sure. Where the profile p is larger in a ring than in the centre, the text has the pressure of that
-    ring and its radius.
+    standard deviation: the root of the sum of the squares of `error`, of `model_error` and of the spread that follows
+    from the inputs (`NAME_spread`). `error` and `model_error` belong to the other six quantities; dP/dD is assumed to
+    be as accurate. Where the profile p is larger in a ring than in the centre, the text has the pressure and the radius
+    of that ring.
 
     Parameters
     ----------
-    contact : of `study.solve`, in physical units or dimensionless; of a grid the first 20 cases are written out. Of
-        `study.fit` the text has what was fitted to each curve, and what a curve could not tell; of `study.design` what
-        was found for each contact, and of a single one each solution; of `study.first_yield`, `h_protect`, `extremes`
-        and `stresses` what they found
+    contact : from `study.solve`, in physical units or dimensionless; of a grid the first 20 cases are written out. From
+        `study.fit` the text has the fitted inputs of each curve, and what the curve could not tell; from `study.design`
+        the answer for each contact, or each solution of a single contact; from `study.first_yield`, `h_protect`,
+        `extremes` and `stresses` their answers
 
     Returns
     -------
-    Summary : a text, which a notebook shows with its lines
+    Summary : a text, which a notebook shows with its line breaks
 
     Raises
     ------
@@ -98,7 +98,7 @@ def summary(contact: xr.Dataset) -> Summary:
         raise ValueError(f"{bare[0]} has lost its attributes, which say what its numbers mean: keep them (keep_attrs)")
     dims = [str(dim) for dim in contact["status"].dims]
     if not dims:
-        contact = as_dataset(contact) if "p_spread" in contact else contact  # the derivatives are those of a dataset
+        contact = as_dataset(contact) if "p_spread" in contact else contact  # derivatives need a dataset
         return Summary.of(_summary_of_case(contact), contact)
     contact = contact.reset_index([dim for dim in dims if hasattr(contact.indexes.get(dim), "levels")])
     cases = contact.stack({"one": dims}, create_index=False)
@@ -113,11 +113,11 @@ def summary(contact: xr.Dataset) -> Summary:
 
 
 def _of_design(designed: xr.Dataset) -> Summary:
-    """The answer of `study.design` for each contact; for a single contact each solution in words."""
+    """The answer of `study.design` for each contact, or each solution in words for a single contact."""
     dims = [str(dim) for dim in designed["design_status"].dims]
     if not dims:
         solutions = [designed.isel(solution=number) for number in range(designed.sizes["solution"])]
-        solutions = [one for one in solutions if one["status"] != NOT_RUN]
+        solutions = [solution for solution in solutions if solution["status"] != NOT_RUN]
         text = "\n\n".join([str(designed["message"].values) + ".", *map(_summary_of_case, solutions)])
         return Summary.of(text, solutions[0]) if len(solutions) == 1 else Summary(text)
     cases, texts = designed.stack({"one": dims}, create_index=False), []
@@ -130,7 +130,7 @@ def _of_design(designed: xr.Dataset) -> Summary:
 
 
 def _summary_of_case(case: xr.Dataset, dims=()) -> str:
-    """The text of one case; inputs along `dims` are not repeated."""
+    """The text on one case; inputs along `dims` are not repeated."""
     rough = case["micro"].values not in lexicon_in(case).smooth_laws()
     names = [name for name in SHOWN if rough or name not in OF_ASPERITIES]
     names += [name for name in OF_PULL_OFF if name in case]
@@ -143,7 +143,7 @@ def _summary_of_case(case: xr.Dataset, dims=()) -> str:
 
 
 def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:
-    """Long name, symbol and text of each result; after those of the centre those of a ring, where that has more."""
+    """Long name, symbol and text of each result; results of the centre are followed by larger ones in a ring."""
     top, rows = largest(case), []
     for name in names:
         label = VOCABULARY[name].long_name + OF_BOTH * (name == "D" and not is_rigid(case, "punch"))
@@ -158,10 +158,10 @@ def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:
 
 
 def columns(contacts: xr.Dataset) -> str:
-    """A line for each contact of a grid: the inputs that differ, the results that `summary` has, status, validity;
-    where strengths are known, the body or spots closest to their limit, with their share of it.
+    """A line for each contact of a grid: the inputs that differ, the results of `summary`, status, validity; where
+    strengths are known, the body or spots closest to their limit, with their share of it.
 
-    contacts : of `study.solve`, over one dimension or more; above 20 the last lines are counted, not written
+    contacts : from `study.solve`, over one dimension or more; of more than 20 contacts the rest is only counted
     """
     dims = list(contacts["status"].dims)
     cases = contacts.stack({"case": dims}, create_index=False)
@@ -180,7 +180,7 @@ def columns(contacts: xr.Dataset) -> str:
 
 
 def _row(case: xr.Dataset, dims: list, names: list[str]) -> list[str]:
-    """The cells of one contact. A result that is not known stands as "-"."""
+    """The cells of one contact. A result that is not known is "-"."""
     inputs = [re.sub(rf"^{re.escape(dim)} (= |of )?", "", given_text(case, dim)) for dim in dims]
     results = ["-" if np.isnan(case[name]) else result_text(case, name) for name in names]
     flags = [str(decode(case[name]).values) for name in ("status", "validity")]

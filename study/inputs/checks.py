@@ -1,4 +1,4 @@
-"""Mistakes in the inputs, or in a grid, as a whole, though each parameter is right."""
+"""Mistakes in the inputs together, or in a grid as a whole, although each single parameter is right."""
 
 from collections.abc import Callable, Collection, Iterable
 from functools import partial
@@ -26,7 +26,7 @@ FITTED = ("B", "beta")
 def missing_everywhere(
     lexicon: Lexicon, names: Collection[str], texts_of: Callable[[str], Iterable], errors: list[str]
 ) -> list[str]:
-    """Messages for parameters without a default that some case needs and that stand nowhere.
+    """Messages for parameters without a default that some case needs but no input gives.
 
     names : of the parameters that the user gives
     texts_of : a function: name of a parameter such as base -> its values
@@ -39,7 +39,7 @@ def missing_everywhere(
     stacked = [word for word in STACKS if word in texts_of("base")]
     if stacked and "h" not in names and not any(name.startswith("layers.") and name.endswith(".h") for name in names):
         return [f"layers are missing: base = {shown(stacked[0])} needs them"]
-    neither = not {*FITTED} & {*names}  # then both are fitted, and one message is about both
+    neither = not {*FITTED} & {*names}  # if neither is given, both are fitted, and one message is about both
     for name in lexicon.parameters_of(names):
         parameter = lexicon.parameter(name)
         selector, words, *_ = parameter.needed_by
@@ -75,7 +75,7 @@ def dimensions_that_differ(request: Request, values: dict[str, np.ndarray]) -> l
     """Messages for dimensions whose name is taken, and for inputs that disagree on the length or coordinate of one.
 
     values : of axes without units, and names of materials. An input over the dimension of its own name is the
-        coordinate of that
+        coordinate of that dimension
     """
     inputs = {name: entry for name, entry in request.inputs.items() if not entry.is_wrong}
     arrays = {name: entry for name, entry in inputs.items() if entry.array is not None}
@@ -103,7 +103,7 @@ def dimensions_that_differ(request: Request, values: dict[str, np.ndarray]) -> l
 
 
 def _taken(request: Request, name: str) -> list[str]:
-    """Messages for dimensions of a DataArray whose name is that of something else."""
+    """Messages for dimensions of a DataArray whose name is already taken."""
     messages, rows = [], request.lexicon.all_rows
     for dim in request.inputs[name].dims:
         owner = request.inputs.get(dim)
@@ -158,7 +158,7 @@ def mixed_units(grid: Grid) -> list[str]:
 def picard_for_nothing(grid: Grid) -> list[str]:
     """A message if all cases with the scheme "picard" are smooth: it solves rough cases only.
 
-    In a grid that has it for rough cases too, each smooth case is refused by its status.
+    If the grid also has it for rough cases, the status of each smooth case refuses it.
     """
     asked, smooth = along(grid, "scheme") == "picard", grid.lexicon.smooth_laws()
     if not asked.any() or (asked & ~one_of(along(grid, "micro"), smooth)).any():
@@ -169,7 +169,7 @@ def picard_for_nothing(grid: Grid) -> list[str]:
 
 
 def heights_that_yield(grid: Grid) -> list[str]:
-    """A message if sigma or cut stands beside asperities that yield, and no other case has a use for it."""
+    """A message if sigma or cut is given together with asperities that yield, and no other case uses it."""
     micro = along(grid, "micro")
     heights = [name for name in ("sigma", "cut") if name in grid.values]
     if not heights or not (micro == "elastic_plastic").any():

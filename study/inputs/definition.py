@@ -1,4 +1,4 @@
-"""Study files: TOML text -> a checked, frozen Definition with the digest of what determines its numbers."""
+"""Study files: TOML text -> a checked, frozen Definition with a digest of everything that determines its numbers."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,23 +14,23 @@ from .punch.asperities import many_bodies
 from .request import MOST_MESSAGES
 from .vocabulary import finite, names
 
-POINTS = 33  # of a profile, unless the study says it
+POINTS = 33  # of a profile, unless the study sets them
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a mistake, so `run` wants --yes
 MOST_VALUES = 5_000_000_000  # 40 GB: no larger grid is allowed, it can be cut into several studies
 DTYPES = ("float64", "float32")
 PER_CASE = 16  # numbers of a case besides the profiles, roughly
-#: Cases in a block: ordinary ones, those that take some milliseconds each, those that may take ten seconds each.
-#: A block is some seconds of work. A run that is killed loses the blocks in work.
+#: Cases in a block: of ordinary cases, of those that take some milliseconds each, of those that may take ten seconds
+#: each. A block is some seconds of work. A killed run loses the blocks that are being computed.
 USUAL, SLOW, SLOWEST = 8000, 1000, 100
 #: On the exact layer a case with a larger n, or a smaller rtol, may need a mesh that no other case can use.
 _STIFF, _FINE = 1e3, 1e-9
-_MANY_NODES = 96  # the most that the solver begins with by itself; with more a case takes some milliseconds
+_MANY_NODES = 96  # the solver never chooses more at first; with more a case takes some milliseconds
 
 
 class StudyError(ValueError):
     """Input that cannot be used; `messages` has every reason, one line each.
 
-    code : exit code of a command; 2 for a wrong input, 1 for a right one that leads to something wrong
+    code : exit code of a command; 2 for a wrong input, 1 if something goes wrong with a valid input
     """
 
     def __init__(self, messages, code: int = 2):
@@ -40,7 +40,7 @@ class StudyError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class Definition:
-    """What a study computes.
+    """The cases and results of a study.
 
     text : the study file as it was read; goes into the dataset
     x : (m,) points r/a of the profiles
@@ -48,10 +48,10 @@ class Definition:
     dtype : "float64" or "float32", of the stored numbers
     block : number of cases computed and stored at a time
     digest : sha256 of all that determines the numbers
-    laws : "NAME VERSION" of each micro law that is not of this package; the version is in the digest
+    laws : "NAME VERSION" of each micro law from outside this package; the version is in the digest
     results : names of the results, without profiles and flags
     scene : of a study with units, a `study.inputs.scene.scene.Scene`; its grid is dimensionless, its results are in SI
-    inputs : names of those inputs of the solver that change with some spread; results have derivatives by them
+    inputs : names of the solver's inputs that change with some spread; results have derivatives by them
     stresses : names of the largest stresses and their places, if the study wants them
     says_what_is_felt : whether the results have `asperities_used`
     """
@@ -83,18 +83,18 @@ class Definition:
 
     @property
     def numbers(self) -> int:
-        """How many numbers the blocks hold, roughly. The results hold as many, and as many spreads."""
+        """Rough number of the numbers in the blocks. The results hold as many, and as many spreads."""
         per_case = PER_CASE + len(self.stresses) + len(self.x) * len(self.profiles)
         return self.grid.size * per_case * (1 + len(self.inputs))
 
     def in_results(self, table: dict) -> dict:
-        """The table, whose keys are dimensions of the grid, with the names that the results give to these."""
+        """The table, whose keys are dimensions of the grid, with the names of these dimensions in the results."""
         names = self.scene.dims if self.scene else {}
         return {names.get(dim, dim): value for dim, value in table.items()}
 
 
 def settings(tables: dict, errors: list[str]) -> tuple:
-    """What the title and the section [output] say: title, x, profiles, dtype and stresses of a Definition."""
+    """The title, x, profiles, dtype and stresses of a Definition, from the title and the section [output]."""
     title = tables.get("title", "")
     output = {"x": POINTS, "profiles": True, "dtype": DTYPES[0], "stresses": False} | tables.get("output", {})
     x = profile_points(output["x"], errors)
@@ -143,7 +143,7 @@ def profile_points(x, errors: list[str]) -> np.ndarray:
 
 
 def usual_block(grid: Grid) -> int:
-    """Number of cases in a block, unless the study says it. The slowest kind of case in the grid decides."""
+    """Number of cases in a block, unless the study sets it. The slowest kind of case in the grid decides."""
     n, rtol, nodes = (along(grid, name) for name in ("n", "rtol", "nodes"))
     layered = np.any(may_be_layered(along(grid, "base")))
     approximated = (along(grid, "scheme") == "picard").any()

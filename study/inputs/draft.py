@@ -32,7 +32,7 @@ MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x as
 
 @dataclass
 class Draft:
-    """Collects the numbers of parameters; `finish` makes the Grid of them.
+    """Collects the numbers of parameters; `finish` turns them into the Grid.
 
     request : the inputs; its `errors` are those of the draft
     sizes, values, labels : as those of the Grid
@@ -49,7 +49,7 @@ class Draft:
 
     @property
     def lexicon(self) -> Lexicon:
-        """What the words of the request stand for."""
+        """The lexicon of the words in the request."""
         return self.request.lexicon
 
     def expand(self) -> None:
@@ -103,7 +103,7 @@ class Draft:
         return is_table and word not in self.lexicon.known.profiles
 
     def _named(self, name: str, raw: list) -> list:
-        """The values of `micro` or `shape` as names that the lexicon has. Raises ValueError for what cannot be used."""
+        """The values of `micro` or `shape` as names in the lexicon. Raises ValueError for one that cannot be used."""
         if name == "micro":
             self.request.learn(raw)
             return self.lexicon.names_of(raw)
@@ -115,7 +115,7 @@ class Draft:
         return words
 
     def check(self, labels: dict[str, np.ndarray]) -> None:
-        """Messages for what is missing, and for dimensions on which two inputs disagree. Fills in the defaults.
+        """Messages for missing inputs, and for dimensions on which two inputs disagree. Fills in the defaults.
 
         labels : axes that are not among the values, as they are in SI
         """

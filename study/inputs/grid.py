@@ -23,7 +23,7 @@ class Grid:
     values : parameter -> (its dimensions, array over them); NaN in a case that does not need it
     labels : the same for coordinates that are no parameters (`case`, `label`, those of DataArrays)
     fitted : whether B and beta are fitted to Nbar and Ra
-    lexicon : what its words stand for
+    lexicon : of its words
     """
 
     sizes: dict[str, int]
@@ -59,7 +59,7 @@ def along(grid: Grid, name: str) -> np.ndarray:
 
 
 def columns(grid: Grid, index: np.ndarray) -> dict[str, np.ndarray]:
-    """Parameters of the cases numbered `index` (k,), each (k,); NaN where the case does not need it."""
+    """Parameters of the cases numbered `index` (k,), each (k,); NaN where the case does not need the parameter."""
     places = dict(zip(grid.sizes, np.unravel_index(index, grid.shape), strict=True)) if grid.sizes else {}
     return {
         name: array[tuple(places[dim] for dim in dims)] if dims else np.full(len(index), array)
@@ -96,7 +96,7 @@ def windows(grid: Grid, most: int, chunk: int) -> Iterator[dict[str, slice]]:
 def box(shape: tuple[int, ...], most: int) -> list[int]:
     """Lengths of a box of at most `most` cases that are consecutive in flat order.
 
-    They are 1, ..., 1, then a part of one dimension, then whole dimensions.
+    The lengths are 1, ..., 1, then a part of one dimension, then whole dimensions.
     """
     lengths, inner = [1] * len(shape), 1
     for axis in reversed(range(len(shape))):
@@ -117,7 +117,7 @@ def as_array(parameter: Parameter, raw: list, key: str, errors: list[str], gaps:
     """Check the values of one parameter and make them an array of float, int or text.
 
     raw : list of values, or a list with one value
-    key : how messages call the parameter; entry i of several is called key[i]
+    key : name of the parameter in messages, where entry i of several is called key[i]
     errors : messages are appended here
     gaps : None is allowed and becomes NaN
     """
@@ -188,7 +188,7 @@ def check_range(raw: dict, key: str, errors: list[str], names: tuple[str, ...]) 
 
 
 def twins(values: list) -> list[tuple[int, int]]:
-    """[(i, j)], the first two places that hold the same value, or []: of an axis, neither could be selected."""
+    """[(i, j)], the first two places with the same value, or []. On an axis neither of the two could be selected."""
     first = {}
     for j, value in enumerate(values):
         i = first.setdefault(value, j)
@@ -223,5 +223,5 @@ def _same(label: object, other: object) -> bool:
 
 
 def quoted(name: str, table: dict) -> str:
-    """An entry of a table as a message quotes it: "num = 3", or "num is missing"."""
+    """An entry of a table as messages quote it: "num = 3", or "num is missing"."""
     return f"{name} = {shown(table[name])}" if name in table else f"{name} is missing"

@@ -4,8 +4,8 @@ A value counts if its case uses the parameter (`needed_by`, `used_by` in the sol
 default. So keys and digests stay the same when a value that no case uses is edited, or when a parameter with a default
 is added to the program. A case has the same key on another grid, in another order of the axes and in another run.
 
-Whoever changes a default, or how keys are made, must change NUMERICS_VERSION, which is in the digest and beside every
-key. Otherwise a case on disk could be found by the key of another.
+Whoever changes a default, or the way keys are made, must change NUMERICS_VERSION, which is in the digest and beside
+every key. Otherwise the key of one case could find another case on disk.
 """
 
 import hashlib
@@ -23,18 +23,19 @@ from .grid import Grid, along
 from .punch.asperities import stand_apart
 from .vocabulary import CONTROLS
 
-#: Strengths, with which answers are compared: no case depends on them, but the flags in a results file do.
+#: Strengths. Results are compared with them: no case depends on them, but the flags in a results file do.
 STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
-#: In the digests of studies with strengths, also of named materials: raised when the masks that compare with them do.
+#: In the digests of studies with strengths, also those of named materials: raised when the masks of `validity` that
+#: compare with strengths change.
 _OF_STRENGTHS = "3"
-#: In the keys of rough cases on layers thinner than the pitch: raised when numbers of these alone change.
+#: In the keys of rough cases on layers thinner than the pitch: raised when only their numbers change.
 _OF_CELLS = "asperities far apart on a layer, 2"
 #: Stresses depend on these even where the contact does not, as on nu2 of a body on which the layer slides.
 RATIOS = ("nu1", "nu2")
 #: In the keys and digests of stored stresses: raised when the search for the largest ones finds others.
 _OF_STRESSES = "3"
-#: In the keys of cases that have another shape than the paraboloid, or that stick, beside NUMERICS_VERSION: raised when
-#: numbers of these alone change.
+#: In the keys of cases that stick, or whose shape is not the paraboloid, beside NUMERICS_VERSION: raised when only
+#: their numbers change.
 _OF_SHAPES = "4"
 
 
@@ -44,7 +45,7 @@ def acts(grid: Grid, name: str) -> np.ndarray:
 
 
 def counts(grid: Grid, name: str) -> np.ndarray:
-    """Whether the value of a parameter counts in a key: it acts, and is not the default. Shape as of `acts`."""
+    """Whether the value of a parameter counts in a key: it acts, and is not the default. Shape as in `acts`."""
     value, default = along(grid, name), grid.lexicon.parameter(name).default
     changed = ~np.isnan(value) if default is None else value != default
     return changed & acts(grid, name)
@@ -58,12 +59,13 @@ def law_versions(grid: Grid) -> list[str]:
 
 
 def is_strength(name: str) -> bool:
-    """Whether an input is a strength, which is compared with the answer and changes none: "Y1", "layers.2.Y"."""
+    """Whether an input is a strength, such as "Y1" or "layers.2.Y": results are compared with it, none depends on
+    it."""
     return name in STRENGTHS or name.startswith("layers.") and name.endswith(".Y")
 
 
 def digest_of(definition) -> str:
-    """sha256 over what determines the results of a `Definition`: not title, comments or block size.
+    """sha256 over all that determines the results of a `Definition`: not title, comments or block size.
 
     The values of a dimension are always in it, since results are selected by them. Of the other parameters only the
     values that count are.
@@ -91,7 +93,7 @@ def digest_of(definition) -> str:
     digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
     if definition.scene is None:
         return digest
-    # until they were derived by too, a spread of an input that has its default value was left out of every ±
+    # older results have no derivatives by inputs with their default values, and their ± leaves out those spreads
     at_default = [name for name in definition.inputs if name not in CONTROLS and not counts(grid, name).any()]
     return _digest_of_scene(digest, definition.scene, at_default)
 
@@ -122,7 +124,7 @@ def _digest_of_values(grid: Grid, name: str) -> tuple:
     if not dims and (array is None or array == grid.lexicon.parameter(name).default):  # quick: most parameters end here
         return ()
     values = along(grid, name)
-    if name == "shape" or name.endswith(".profile"):  # of a table its numbers count
+    if name == "shape" or name.endswith(".profile"):  # the numbers of a table count
         values = np.array([_identity(grid, name, word) for word in values.ravel().tolist()]).reshape(values.shape)
     several = tuple(np.flatnonzero(np.array(values.shape) == 1))
     mask = np.broadcast_to(counts(grid, name).any(axis=several, keepdims=True), values.shape)
@@ -130,7 +132,7 @@ def _digest_of_values(grid: Grid, name: str) -> tuple:
 
 
 def digest_of_array(array: np.ndarray) -> str:
-    """Numbers by their float64 bytes, all else (labels of a DataArray may be dates) by its text."""
+    """The digest of numbers by their float64 bytes, and of others, such as dates that label a DataArray, by text."""
     numbers = array.dtype.kind in "iufb"
     raw = (array.astype("<f8") + 0.0).tobytes() if numbers else "\0".join(map(str, array.ravel().tolist())).encode()
     return hashlib.sha256(raw).hexdigest()
@@ -156,9 +158,10 @@ def case_keys(grid: Grid, stresses: bool = False) -> np.ndarray:
 
 
 def find(keys: np.ndarray, stored: np.ndarray, rank: np.ndarray) -> np.ndarray:
-    """(B,) int64: the row of each of the keys (B, 2) among the `stored` (N, 2), that of lowest `rank`; -1: not there.
+    """(B,) int64: the row of each of the keys (B, 2) in `stored` (N, 2), or -1 if it is not there. Of several rows the
+    one of lowest `rank` is taken.
 
-    Of two different stored keys with the same first half one may be reported as not there.
+    If two different stored keys have the same first half, one of them may be reported as not there.
     """
     if not len(stored):
         return np.full(len(keys), -1)
@@ -169,7 +172,7 @@ def find(keys: np.ndarray, stored: np.ndarray, rank: np.ndarray) -> np.ndarray:
 
 
 def _identity(grid: Grid, name: str, word: str) -> str:
-    """A text that tells what a word of a parameter stands for from all else."""
+    """A text that identifies the meaning of a parameter's word."""
     known = grid.lexicon.known
     if name.endswith(".profile"):
         return profile_identity(word, known.profiles)

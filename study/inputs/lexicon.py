@@ -1,4 +1,5 @@
-"""What the words of a call, a study or results stand for: the vocabulary, with what laws and shapes of users add."""
+"""The meaning of the words in a call, a study or results: the vocabulary, with the additions of users' laws and
+shapes."""
 
 from collections import ChainMap
 from collections.abc import Iterable, Mapping
@@ -27,7 +28,7 @@ KNOWN = "known"
 
 @dataclass(frozen=True, eq=False)
 class Lexicon:
-    """The words of a call, a study or results: the rows of this package, and what their own laws and shapes add.
+    """The words of a call, a study or results: the rows of this package, and the additions of users' laws and shapes.
 
     known : the laws, shapes and tables of profiles that the words stand for
     """
@@ -39,7 +40,7 @@ class Lexicon:
 
     @once
     def of_users(self) -> dict[str, Entry]:
-        """The rows of parameters that laws and shapes declare and this package has not."""
+        """The rows of parameters that laws and shapes declare but this package lacks."""
         rows = {}
         for law in self.known.laws.values():
             for name, row in law.parameters.items():
@@ -74,14 +75,14 @@ class Lexicon:
         return row._replace(interval=interval) if interval else row
 
     def parameters_of(self, names: Iterable[str]) -> list[str]:
-        """Names of all parameters that inputs may have, those of the layers too which are among the `names` of some."""
+        """Names of all parameters of inputs, also for the layers that the `names` of inputs mention."""
         return [*self.parameters, *parameters_of_layers(names)]
 
     def problem(self, numbers: Mapping[str, Any], **changed: Any) -> Problem:
-        """The problem of numbers by name, such as those of a scene or of cases of a grid: one value, or (B,), each.
+        """The problem of a table of numbers, such as those of a scene or of the cases of a grid.
 
-        numbers : what is no parameter among them counts for nothing
-        changed : parameters with other values; a control takes the place of that of the numbers
+        numbers : name -> one value, or (B,); names that are no parameters have no effect
+        changed : parameters with other values; a control replaces the control among the numbers
         """
         left_out = {*changed, *(CONTROL if {*changed} & {*CONTROL} else ())}
         names = [name for name in self.parameters_of(numbers) if name in numbers and name not in left_out]
@@ -107,7 +108,7 @@ class Lexicon:
         return names_of(micro)
 
     def law_or_name(self, micro: str) -> Law | str:
-        """What says to another call which law is meant: the law itself of a user's, else its name."""
+        """The value of `micro` for another call: the law itself if it is a user's, otherwise its name."""
         return micro if micro in PACKAGE.known.laws else self.known.laws[micro]
 
     def smooth_laws(self) -> list[str]:
@@ -117,26 +118,26 @@ class Lexicon:
 
 @lru_cache(maxsize=64)
 def lexicon_of(known: Known) -> Lexicon:
-    """The lexicon of what is known."""
+    """The lexicon of laws, shapes and tables."""
     return Lexicon(known)
 
 
 def default() -> Lexicon:
-    """The lexicon of this package, and of what the program has registered."""
+    """The lexicon of this package, and of the laws and shapes that the program has registered."""
     return lexicon_of(known_by_default())
 
 
 PACKAGE = lexicon_of(OF_SOLVER)
 """The lexicon of this package alone."""
 
-# A law must not call a parameter like a result, or like another argument of `study.solve`.
+# A parameter of a law must not have the name of a result, or of another argument of `study.solve`.
 RESERVED.update({*VOCABULARY, "cases", "profiles", "title", "workers"} - set(OF_SOLVER.parameters))
 RESERVED.update(f"{name}_spread" for name in VOCABULARY)
 RESERVED.update(SCENE, BODIES)
 
 
 def lexicon_for(tables: Iterable[Mapping[str, Any]], names: Iterable[str] = ()) -> Lexicon:
-    """The lexicon of a call, as far as it can be had: what is wrong with a law is told where `micro` is read.
+    """The lexicon of a call. It lacks laws that cannot be used: the reading of `micro` gives their messages.
 
     tables : parameters, cases; names : of parameters, for which laws of installed packages are looked at
     """
@@ -148,7 +149,7 @@ def lexicon_for(tables: Iterable[Mapping[str, Any]], names: Iterable[str] = ()) 
 
 
 def encoding_of(lexicon: Lexicon, values: Mapping[str, Any]) -> dict:
-    """The encoding of the coordinate `micro` of results: empty where all is of this package.
+    """The encoding of the coordinate `micro` of results: empty if all laws and shapes are of this package.
 
     values : parameter -> its values
     """
@@ -157,23 +158,23 @@ def encoding_of(lexicon: Lexicon, values: Mapping[str, Any]) -> dict:
 
 
 def with_known(dataset: Any, lexicon: Lexicon, values: Mapping[str, Any]) -> Any:
-    """The dataset itself, of results that were solved with the lexicon; `values` as of :func:`encoding_of`."""
+    """The dataset itself, which now knows the lexicon of its solution; `values` as for :func:`encoding_of`."""
     if "micro" in dataset.variables:
         dataset.variables["micro"].encoding |= encoding_of(lexicon, values)
     return dataset
 
 
 def lexicon_in(contact: Any) -> Lexicon:
-    """The lexicon of a dataset, of one contact, or of variables by name: what it was solved with.
+    """The lexicon with which a dataset, one contact, or variables by name were solved.
 
-    Of results of a file it is that of the program, with the laws of installed packages that the results name. A table
-    of the user's is not read: whoever sends a results file must not choose which files are opened.
+    Results from a file have the lexicon of the program, with the laws of installed packages that the results name. A
+    table of the user's is not read: whoever sends a results file must not choose which files are opened.
     """
     if "micro" in contact and KNOWN in contact["micro"].encoding:
         return lexicon_of(contact["micro"].encoding[KNOWN])
     there, stated = known_by_default(), getattr(contact, "attrs", {}).get("micro_laws", "")
     for line in stated.splitlines() if isinstance(stated, str) else ():
         if (name := name_in(line)) not in there.laws and not name.startswith(PREFIX):
-            with suppress(ValueError):  # then it stays unknown
+            with suppress(ValueError):  # otherwise the law stays unknown
                 there = there.with_laws_of(name)
     return lexicon_of(there)

@@ -1,4 +1,4 @@
-"""Where studies lie: in `studies` of the working folder, and in the book that comes with roughcoat.
+"""The places of studies: `studies` in the working folder, and the book that comes with roughcoat.
 
 Both hold study files and chapters, which are folders of study files. A file `figures.py` may stand beside these.
 """
@@ -63,13 +63,13 @@ def known_studies() -> list[str]:
 
 
 def files_here() -> list[Path]:
-    """The study files in the working folder, among the files .toml of other programs. A study file is known by the
-    heading of a section that only these have."""
+    """The study files in the working folder, among the .toml files of other programs. A study file has a section whose
+    heading occurs in no other program's files."""
     return [path for path in sorted(Path().glob("*.toml")) if path.is_file() and SECTION.search(_text(path))]
 
 
 def _text(path: Path) -> str:
-    from .reading import text_in  # here: it loads numpy
+    from .reading import text_in  # imported here, since it loads numpy
 
     try:
         return text_in(path)
@@ -78,14 +78,14 @@ def _text(path: Path) -> str:
 
 
 def is_study(name: str) -> bool:
-    """Whether a name, or a path, is that of a study file, and not of a figure, a table or a results file."""
+    """Whether a name or path belongs to a study file, and not to a figure, a table or a results file."""
     return Path(name).suffix == ".toml" or name in known_studies()
 
 
 def study_file(path, beside: Path | None = None) -> Path:
     """The study file at a path, or with a name, in `studies` or in the book.
 
-    beside : a folder where a name is looked for first, then in the studies of which it is a chapter
+    beside : the folder to search first; then comes the folder of studies of which it is a chapter
 
     A name may have its chapter, "paper/main_case", and a path may lack it: `studies/main_case.toml` is
     `studies/paper/main_case.toml`. Raises StudyError when there is no such file, or there are two.
@@ -105,7 +105,7 @@ def study_file(path, beside: Path | None = None) -> Path:
 
 
 def _in(root: Path, name: str) -> Path | None:
-    """The study file of a name in a folder, or in the one chapter that has it. Raises StudyError if two chapters do."""
+    """The study file with a name in a folder, or in its only chapter with one. Raises StudyError if two have one."""
     here, *inside = (folder / f"{name}.toml" for folder in chapters(root))
     paths = [here] if here.exists() else [path for path in inside if path.exists()]
     if len(paths) > 1:
@@ -116,7 +116,7 @@ def _in(root: Path, name: str) -> Path | None:
 
 
 def _not_found(text: str, place: Path) -> Exception:
-    """The error for a study file that is not there, with those that are perhaps meant."""
+    """The error for a study file that does not exist, with the files that may be meant."""
     from .definition import StudyError
     from .vocabulary import suggest
 

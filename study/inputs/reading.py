@@ -1,8 +1,8 @@
 """From a study file, or the parameters of a call, to a checked, frozen Definition.
 
 Numbers have units, `R = "5 mm"`, `h = ["2 um", "20 um"]`, `P = { start = "1 mN", ... }`, or none. Inputs may have
-spreads ("200 ± 10 GPa", materials by name). Then results have derivatives by the inputs of the solver, and from these
-follows `NAME_spread`.
+spreads ("200 ± 10 GPa", materials by name). Then results have derivatives by the inputs of the solver, which give
+`NAME_spread`.
 """
 
 import errno
@@ -48,7 +48,7 @@ _NO_QUOTES = re.compile(r"=[\s\[{]*+(?:[-+.\d][-+.\deE_]*+\s*+)?(?:[^\W\d_]|±)"
 
 
 def read(path) -> Definition:
-    """Definition of a study file. Raises StudyError with all that is wrong with it."""
+    """Definition of a study file. Raises StudyError with all its mistakes."""
     return from_tables(*parsed(path))
 
 
@@ -81,8 +81,8 @@ def from_call(
 def complete(request: Request, tables: dict, name: str, text: str, where: str, most: float = MOST_VALUES) -> Definition:
     """The definition that a request describes, with its digest. Raises StudyError with every message.
 
-    tables : title, [output], the block of [numerics] and the order of [axes] are read from these
-    most : how many numbers the results may hold
+    tables : they have the title, [output], the block of [numerics] and the order of [axes]
+    most : largest number of numbers in the results
     """
     draft, errors, scene = Draft(request), request.errors, None
     draft.expand()
@@ -158,7 +158,7 @@ def parsed(path) -> tuple[dict, str, str, str]:
 
 
 def _no_section(key: str, value: Any) -> str:
-    """A message about a key at the top of the file: a parameter, say, since the line [model] is missing."""
+    """A message about a key at the top of the file, such as a parameter if the line [model] is missing."""
     lacking = absent(key)
     near = f"; {lacking}" if lacking else suggest(key, SECTIONS)
     below = near.startswith("; known") and not isinstance(value, (dict, list))
@@ -202,7 +202,7 @@ def _check_keys(text: str) -> None:
 
 
 def same_tables(text: str, other: str) -> bool:
-    """Whether the texts of two study files say the same, but for the title, comments and the order of lines."""
+    """Whether the texts of two study files say the same, except for the title, comments and the order of lines."""
     try:
         _check_keys(text)
         _check_keys(other)
@@ -212,7 +212,7 @@ def same_tables(text: str, other: str) -> bool:
 
 
 def hint(text: str, reason: str) -> str:
-    """The end of a message about wrong TOML, if the line has one of the usual mistakes; else ""."""
+    """The end of a message about wrong TOML, if the line has one of the usual mistakes; otherwise ""."""
     if "overwrite" in reason:
         return "; a name is given twice in one section"
     place = re.search(r"at line (\d+)", reason)

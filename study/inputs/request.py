@@ -1,4 +1,4 @@
-"""What a call of Python or a study file asks for, in one form for both. No number is read here."""
+"""The request of a Python call or of a study file, in one form for both. No number is read here."""
 
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ from .sample import LIMITS
 from .scene.stacks import in_call, in_tables
 from .vocabulary import BODIES, NUMERICS, SCENE, no_parameter
 
-MOST_MESSAGES = 30  # that are shown for a study at a time
+MOST_MESSAGES = 30  # shown for a study at a time
 #: Attributes `units` of pure numbers. pint writes "dimensionless".
 PURE = ("1", "", "dimensionless")
 #: The end of a message about `same_piece`.
@@ -25,8 +25,8 @@ NEEDS_NAMES = (
 
 @dataclass(frozen=True)
 class AnyValue:
-    """The value of an input that a contact must have and on which nothing depends: the number where inputs have no
-    units, else the text."""
+    """The value of an input that a contact must have but on which nothing depends: the number if inputs have no units,
+    otherwise the text."""
 
     number: float
     text: str
@@ -34,7 +34,7 @@ class AnyValue:
 
 @dataclass
 class Input:
-    """A parameter as it stands in the call or file: numbers, texts, quantities of pint, or names of materials.
+    """A parameter as written in the call or file: numbers, texts, quantities of pint, or names of materials.
 
     section : of the study file, "" in Python
     dims : its dimensions, () of a single value
@@ -61,12 +61,12 @@ class Input:
 
     @property
     def is_wrong(self) -> bool:
-        """Whether it was refused and has no values."""
+        """Whether the input was refused and has no values."""
         return self.array is None and self.values is None
 
     @property
     def has_unit(self) -> bool:
-        """Whether it, or one of its values, has a unit or a spread."""
+        """Whether the input, or one of its values, has a unit or a spread."""
         if self.array is not None:
             return self.unit != "1"
         values = self.values.values() if isinstance(self.values, dict) else self.values
@@ -75,7 +75,7 @@ class Input:
         return not pure and any(type(value) is Quantity or has_unit(value) for value in values)
 
     def at(self, place: list[int]) -> Any:
-        """What stands at a place, one index for each dimension; None for a number from a range or a material."""
+        """The value at a place, one index for each dimension; None for a number from a range or a material."""
         if self.array is not None:
             return f"{self.array.values[tuple(place)]:g}" + f" {self.unit}" * (self.unit != "1")
         value = self.values[place[0] if place else 0]
@@ -91,7 +91,7 @@ class Request:
     sections : name -> the section of the file where it stands, "" in Python
     rows : of [[cases]]; sample : the section of this name
     labels : of the cases
-    same_piece : whether bodies of one material are one piece of it
+    same_piece : whether bodies of one material are cut from one piece
     correlations : pair of inputs -> correlation of their spreads
     sign : the input, in words, that makes this a study with units; "" if none does. It has a unit, or exists only in
         such studies
@@ -111,7 +111,7 @@ class Request:
 
     @property
     def physical(self) -> bool:
-        """Whether it has units."""
+        """Whether the request has units."""
         return bool(self.sign)
 
     @classmethod
@@ -189,7 +189,7 @@ class Request:
             self.errors += equal_values(name, [label or i for i, label in enumerate(self.labels)])
 
     def _add(self, entry: Input) -> None:
-        """Note an input, unless it stands there already or is in a wrong section."""
+        """Add an input, unless it has been added already or is in a wrong section."""
         name, section = entry.name, entry.section
         if name == "same_piece":
             self.errors.append("same_piece is for all cases alike: true or false, no axis and not in cases")
@@ -212,8 +212,8 @@ class Request:
             self.sections[name], self.inputs[name] = section, entry
 
     def learn(self, micro: list) -> None:
-        """Add to the lexicon what the values of `micro` stand for: laws as objects, tables, laws of installed packages.
-        Raises ValueError for a law that cannot be used."""
+        """Add the laws that the values of `micro` stand for to the lexicon: objects, tables, laws of installed
+        packages. Raises ValueError for a law that cannot be used."""
         self.lexicon = lexicon_of(self.lexicon.known.with_laws_of(micro))
 
     def _learn_profiles(self, entry: Input) -> None:
@@ -229,14 +229,14 @@ class Request:
         self.lexicon = lexicon_of(self.lexicon.known.with_tips(words))
 
     def _is_parameter(self, name: str) -> bool:
-        """Whether this is the name of a parameter. Laws of installed packages are looked at before the answer is no."""
+        """Whether this is the name of a parameter. Before it says no it looks at the laws of installed packages."""
         if name not in self.lexicon.parameters:
             with suppress(ValueError):  # a law that cannot be loaded is an error when `micro` names it
                 self.lexicon = lexicon_of(self.lexicon.known.with_laws_of((), [name]))
         return name in self.lexicon.parameters
 
     def _turn(self, entry: Input) -> None:
-        """Make the numbers of an angle degrees."""
+        """Convert the numbers of an angle to degrees."""
         if entry.name not in ANGLES or entry.is_wrong:
             return
         try:
@@ -249,7 +249,7 @@ class Request:
             entry.array = entry.values = None
 
     def _decided(self) -> "Request":
-        """The request itself, with its `sign`, values in place of any, and its cases before its axes."""
+        """The request itself, with its `sign`, numbers or texts in place of each `AnyValue`, and cases before axes."""
         signs = [entry for name, entry in self.inputs.items() if name in SCENE or name in BODIES or entry.has_unit]
         for entry in sorted(signs, key=lambda entry: bool(entry.dims))[:1]:  # a single value rather than several
             values = [value for value in entry.values if value is not None] if isinstance(entry.values, list) else []

@@ -17,11 +17,11 @@ from .vocabulary import BODIES, Parameter, check, si_unit
 KEYS = ("start", "stop", "spacing", "over")  # of a range
 LIMITS = {"size": (1, LONGEST_AXIS), "seed": (0, 2**32 - 1)}
 ANY_NUMBER = Parameter(interval="(-inf, inf)")
-"""Bounds of a range of SI numbers in [sample]. The numbers that are drawn are checked later, as all with units are."""
+"""Bounds of a range of SI numbers in [sample]. The random numbers are checked later, like all inputs with units."""
 
 
 def values_of_axis(entry: Any, request: Any) -> list | None:
-    """The values of a list or a range; those of a range with units are in SI. None if it has a mistake.
+    """The values of a list or a range, which are in SI for a range with units. None if it has a mistake.
 
     entry : an input of the request
     """
@@ -34,7 +34,7 @@ def values_of_axis(entry: Any, request: Any) -> list | None:
 
 
 def sampled(request: Any, names: list[str], check_values: Callable) -> dict[str, list]:
-    """What [sample] draws for the parameters `names`: entries of lists, numbers of ranges; {} if there is a mistake.
+    """The random values of the parameters `names` in [sample]: entries of lists, numbers in ranges; {} for a mistake.
 
     request : with the table [sample]; if the study has units, the numbers of ranges are in SI
     check_values : a function of a name and its values that appends messages
@@ -90,7 +90,7 @@ def _in_si(raw: dict, key: str, unit: str, errors: list[str]) -> dict:
 
 
 def _unit_of_range(name: str, raw: dict, rows: Mapping) -> str:
-    """The SI unit of the ends of a range of [sample]: with over = "Ra^2" that of the product with Ra²."""
+    """The SI unit of the ends of a range of [sample]. With over = "Ra^2" it is the unit of the product with Ra²."""
     i, j = rows[name].powers
     other, power = divisor(raw)
     if other in rows:
@@ -105,9 +105,9 @@ def draw(table, parameters: dict[str, Parameter], errors: list[str]) -> dict[str
     parameters : NAME -> what values it may have
     errors : messages are appended here; {} is returned then
 
-    Each parameter has random numbers of its own, so that a further parameter changes no other and a larger `size`
-    continues the sample. Values are rounded to six digits: powers differ in the last bit between machines, rounded ones
-    do not, and any case can be written down.
+    Each parameter has its own random numbers: a further parameter changes no other, and a larger `size` continues the
+    sample. Values are rounded to six digits. Powers differ in the last bit between machines, but rounded values do not,
+    and any case can be written down.
     """
     if not isinstance(table, dict):
         errors.append(f"sample = {shown(table)}: must be a table [sample]")

@@ -23,7 +23,7 @@ INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "node
 TRUTHS = {"stable": "int8"}
 """Results that are true or false, of some studies alone -> the type in which blocks store them."""
 WITH_SPREADS = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD", "A0", "lam0")
-"""Results that have spreads, as profiles do; the others say how well the case is solved."""
+"""Results that have spreads, like profiles; the others tell how well the case is solved."""
 BY_INPUT = "_by_input"
 """NAME_by_input: derivatives of the result NAME by logarithms of the solver's inputs, by Poisson ratios themselves."""
 NOT_RUN = 127
@@ -31,7 +31,7 @@ NOT_RUN = 127
 
 SI = {(0, 0): "1", (0, 1): "m", (0, 2): "m^2", (0, -2): "1/m^2", (1, 0): "Pa", (1, 1): "N/m", (1, 2): "N"}
 SI[-1, 1] = "m/Pa"
-"""SI units by their powers of E2* and R; all others are written as powers of Pa and m."""
+"""SI units by their powers of E2* and R; all other powers are written with Pa and m."""
 
 
 def si_unit(powers: tuple[int, int]) -> str:
@@ -73,7 +73,7 @@ class Entry:
 def over_scale(symbol: str, powers: tuple[int, int], scales: tuple[str, str] = ("E2*", "R"), gap: str = " ") -> str:
     """A symbol over its scale E2*^i R^j: "(dP/dD)/(E2* R)", "N̄ R^2".
 
-    powers : (i, j); scales : how E2* and R are written; gap : what is written between two factors
+    powers : (i, j); scales : texts for E2* and R; gap : text between two factors
     """
     numerator: list[str] = []
     times: list[str] = []
@@ -90,15 +90,15 @@ LONGEST = 100  # most letters of a wrong name that are compared with others
 
 
 def entries(tables: dict) -> dict[str, Entry]:
-    """Name -> row, of tables as those of vocabulary.toml: role -> name -> the other fields."""
+    """Name -> row, from tables like vocabulary.toml: role -> name -> the other fields."""
     rows = [(name, role, row) for role, table in tables.items() for name, row in table.items()]
     return {name: Entry(name, role, **row | {"powers": tuple(row.get("powers", (0, 0)))}) for name, role, row in rows}
 
 
 _TABLES = tomllib.loads((files(__package__) / "vocabulary.toml").read_text(encoding="utf-8"))
-#: What the first layer of a stack has under the name of a case with one layer.
+#: Field of the first layer of a stack -> its name, which is that of a case with one layer.
 FIRST_LAYER = FIRST | {"E1": "E1", "material": "layer"}
-#: What a layer may have in a list, and its words.
+#: Field that a layer may have in a list -> its words.
 OF_A_LAYER = {
     "h": "thickness of layer {}",
     "n": "ratio of the reduced moduli of layer {} and half-space",
@@ -124,13 +124,13 @@ def name_in_stack(number: int, field: str) -> str:
 
 @cache
 def _of_layers() -> tuple[dict[str, Entry], dict[str, Entry], dict[str, tuple]]:
-    """The rows of VOCABULARY, SCENE and BODIES for what layers have under names of their own, such as "layers.2.h"."""
+    """The rows of VOCABULARY, SCENE and BODIES for the inputs of layers, which have names such as "layers.2.h"."""
     rows, scene, bodies = {}, {}, {}
     for number in range(1, MOST + 1):
         for field, words in OF_A_LAYER.items():
             name = name_in_stack(number, field)
             if name.startswith("layers.") and field in LAYER:
-                symbol = f"{_SYMBOLS[field]}l{number}" if field in _SYMBOLS else ""  # ν2 is that of the body
+                symbol = f"{_SYMBOLS[field]}l{number}" if field in _SYMBOLS else ""  # ν2 belongs to the body
                 powers = LAYER[field].powers
                 rows[name] = Entry(name, "material", words.format(number), symbol, powers)
             elif name.startswith("layers.") and field != "material":
@@ -143,19 +143,19 @@ def _of_layers() -> tuple[dict[str, Entry], dict[str, Entry], dict[str, tuple]]:
 
 
 def _follows(place: int):
-    """The rows of a table that follow from their names, as `NamedRows.further`."""
+    """The function of a name that gives its row in a table, for `NamedRows.further`."""
     return lambda name: _of_layers()[place].get(name) if is_of_layers(name) else None
 
 
 def is_of_layers(name: object) -> bool:
-    """Whether a name can be that of what a layer of a stack has."""
+    """Whether a name can be that of an input of a layer of a stack."""
     return isinstance(name, str) and name.startswith(("layers.", "sublayers"))
 
 
 SCENE = NamedRows(entries({"scene": _TABLES.pop("scene")}), _follows(1))
-"""Inputs of a study with units that the solver does not know. Its parameters follow from them."""
+"""Inputs of a study with units that are no parameters of the solver. These parameters follow from them."""
 VOCABULARY = NamedRows(entries(_TABLES), _follows(0))
-"""Parameters, results and coordinates. A `Lexicon` has the parameters of laws and shapes of users besides."""
+"""Parameters, results and coordinates. A `Lexicon` also has the parameters of users' laws and shapes."""
 ROWS = ChainMap(VOCABULARY, SCENE)
 """Rows of SCENE and VOCABULARY."""
 #: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
@@ -166,14 +166,14 @@ BODIES = NamedRows(
 
 
 def _layers_in(names) -> int:
-    """The number of layers that inputs have, of the names of these; 0 of no stack."""
+    """The number of layers, from the names of inputs; 0 without a stack."""
     words = [name for name in names if is_of_layers(name)]
     numbers = [name.split(".")[1] for name in words if name.startswith("layers.")]
     return min(max((int(number) for number in numbers if number.isdigit()), default=int(bool(words))), MOST)
 
 
 def parameters_of_layers(names) -> tuple[str, ...]:
-    """Names of the parameters of the layers of a stack which are among the `names` of some; () of none."""
+    """Names of the parameters of the layers of a stack that the `names` of inputs mention; () without a stack."""
     return _of_count(_layers_in(names))
 
 
@@ -184,13 +184,13 @@ def _of_count(count: int) -> tuple[str, ...]:
 
 
 def scene_of(names) -> list[str]:
-    """Names of SCENE, those of the layers too which are among the `names` of inputs."""
+    """Names of SCENE, also for the layers that the `names` of inputs mention."""
     count = _layers_in(names)
     return [*SCENE, *(name for name in _of_layers()[1] if int(name.split(".")[1]) <= count)] if count else [*SCENE]
 
 
 def bodies_of(names) -> dict[str, tuple[str, str, str]]:
-    """BODIES, with those of the layers which are among the `names` of inputs."""
+    """BODIES, also for the layers that the `names` of inputs mention."""
     count = _layers_in(names)
     return BODIES | {f"layers.{i}.material": BODIES[f"layers.{i}.material"] for i in range(2, count + 1)}
 
@@ -226,7 +226,7 @@ OF_PARAMETERS = ("control", "material", "shape", "adhesion", "roughness", "numer
 
 
 class Names(tuple):
-    """Names of parameters. Those of layers, such as "layers.2.h", are in it and are not listed: see
+    """Names of parameters. It contains the names of layers, such as "layers.2.h", but does not list them: see
     `Lexicon.parameters_of`."""
 
     def __contains__(self, name: object) -> bool:
@@ -240,8 +240,8 @@ PARAMETERS = Names(names(*OF_PARAMETERS))
 def attributes(name: str, rigid: bool = False, rows: Mapping[str, Entry] = VOCABULARY) -> dict:
     """CF attributes of a dimensionless variable: long_name, and where they apply symbol, scale, equation.
 
-    The long_name ends with what stands on the axis of a plot, "thickness of the layer, h/R". There are no units: CF
-    wants none of a pure number, and xarray would write "[1]" behind every label.
+    The long_name ends with the label for the axis of a plot, "thickness of the layer, h/R". There are no units: CF
+    wants none for a pure number, and xarray would write "[1]" after every label.
 
     rigid : of layers on a rigid base, where E1* is the unit of moduli
     rows : of a vocabulary that has the name
@@ -253,7 +253,7 @@ def attributes(name: str, rigid: bool = False, rows: Mapping[str, Entry] = VOCAB
 
 
 def allowed(parameter: Parameter) -> str:
-    """What the values of a parameter must be, as the end of a message: "must be > 0"."""
+    """The condition on the values of a parameter, as the end of a message: "must be > 0"."""
     if parameter.choices:
         words = [f'"{choice}"' for choice in parameter.choices if not choice.startswith("table:")]
         words += ['or "table:FILE.csv"'] * bool({"paraboloid", "uniform", "disc_cell"} & {*parameter.choices})
@@ -265,7 +265,7 @@ def allowed(parameter: Parameter) -> str:
 
 
 def check(parameter: Parameter, value) -> str:
-    """What is wrong with one value of a parameter: "" or a text such as "must be > 0"."""
+    """The mistake in one value of a parameter: "" or a text such as "must be > 0"."""
     if parameter.choices:
         table = str(value).removeprefix("Table:")
         hint = f'; a table of your own is "table:{table}"' * table.endswith(".csv")
@@ -303,10 +303,10 @@ def no_parameter(name: str, words, place: str = "") -> str:
 
 
 def absent(name: str) -> str:
-    """What not_there.toml says of a name that is no parameter, a result too; "" if it says nothing.
+    """The sentence of not_there.toml about a name that is no parameter, perhaps a result; "" if it has none.
 
-    The whole name is looked up, then its parts, as of "friction_coeff" and "E_film". Of several parts the one that
-    comes first in the file counts.
+    The whole name is looked up first, then its parts, as in "friction_coeff" and "E_film". If the file has several of
+    the parts, the first one in the file counts.
     """
     name = str(name)[:LONGEST]
     if name in PARAMETERS or name in SCENE:
@@ -328,7 +328,7 @@ _ABSENT = {_as_word(word): entry["says"] for entry in _NOT_THERE.values() for wo
 
 
 def suggest(word: str, words, listed=None) -> str:
-    """The end of a message: '; did you mean "Nbar"?' if a word is similar, else a list of the words, or of `listed`."""
+    """The end of a message: '; did you mean "Nbar"?' if a word is similar, otherwise the words, or `listed`."""
     lower = {name.lower(): name for name in words}
     near = difflib.get_close_matches(str(word).lower()[:LONGEST], lower, n=1, cutoff=0.6)
     if near:

@@ -1,1 +1,1 @@
-"""Asked backwards: inputs from measured curves (fit), and inputs from wanted results (design). See docs/fit.md."""
+"""Inverse questions: inputs from measured curves (fit), and inputs from wanted results (design). See docs/fit.md."""

@@ -1,4 +1,4 @@
-"""Measured curves: from a file, arrays or a dataset to columns in SI."""
+"""Measured curves from a file, arrays or a dataset, as columns in SI."""
 
 import csv
 import re
@@ -24,8 +24,8 @@ _AS_IT_IS = Reading()
 _UNITS = {"D": "m", "P": "N", "a": "m", "dP_dD": "N/m"}
 _SUCH = {"D": "nm", "P": "nN", "a": "um", "dP_dD": "N/m"}
 _CALLED = "D (depth), P (load), a (contact radius) or dP_dD (stiffness)"
-_SPACED = re.compile(r"\S+(?:\s+(?:\[[^\]]*\]|\([^)]*\)))?")  # headings apart by spaces, each with its unit
-_ROWS, _MOST = 10_000, 20  # rows of a text that are read at a time, and messages about one source
+_SPACED = re.compile(r"\S+(?:\s+(?:\[[^\]]*\]|\([^)]*\)))?")  # headings separated by spaces, each with its unit
+_ROWS, _MOST = 10_000, 20  # number of rows of a text that are read at a time, and of messages about one source
 _HEADING = re.compile(r"\s*(\w+)\s*(?:\[([^\]]*)\]|\(([^)]*)\))?\s*")
 
 
@@ -42,17 +42,17 @@ def curves(
 
     Parameters
     ----------
-    source : path of a text file whose columns have headings with units, "D [nm]", "P [nN]", one curve, or several
-        with a column `curve`; or of an instrument (.jpk-force, .ibw, .tab, .h5 ..., by the extra `afm`); or a
+    source : path of a text file whose columns have headings with units, "D [nm]", "P [nN]", with one curve, or several
+        and a column `curve`; or of an instrument's file (.jpk-force, .ibw, .tab, .h5 ..., with the extra `afm`); or a
         dictionary {"D": (array, unit), "P": (array, unit)}, arrays (point,) or (curve, point); or a Dataset that has
-        these over `point`, or over `curve` and `point`, with an attribute `units` each. Depths may be in any order, and
-        equal; NaN is no point
-    part : "approach" or "retraction", of a file of an instrument
-    curve : the one to take of several: its name in the column `curve`, or its number, counted from 0; None: all
-    spring_constant : of the cantilever, N/m or a text with a unit; None: the file has it
-    sensitivity : length that the cantilever bends by a volt, m/V or a text with a unit; None: the file has it
-    area : of the columns h (depth), P (load) and S (stiffness at the start of unloading) of Oliver and Pharr: the area
-        function of the tip, which makes a = √(A(hc)/π) of the contact depth hc = h - 0.75 P/S. Numbers C0, C1, C2 ...
+        these over `point`, or over `curve` and `point`, each with an attribute `units`. Depths may be in any order, and
+        equal; NaN is not a point
+    part : "approach" or "retraction", for a file of an instrument
+    curve : one of several curves: its name in the column `curve`, or its number, counted from 0; None: all
+    spring_constant : of the cantilever, N/m or a text with a unit; None: from the file
+    sensitivity : deflection of the cantilever per volt, m/V or a text with a unit; None: from the file
+    area : for the columns h (depth), P (load) and S (stiffness at the start of unloading) of Oliver and Pharr: the area
+        function of the tip, by which a = √(A(hc)/π) with the contact depth hc = h - 0.75 P/S. Numbers C0, C1, C2 ...
         of A = C0 hc² + C1 hc + C2 hc^(1/2) + C3 hc^(1/4) + ..., hc in nm, A in nm²; or a function of hc in m to m².
         None where there is a column A. The dataset has a and dP_dD = S
 
@@ -62,8 +62,8 @@ def curves(
 
     Raises
     ------
-    StudyError : no such file, no heading, no unit, another unit, columns of unequal lengths, a file without two points;
-        an option of instruments beside anything else
+    StudyError : no such file, no heading, no unit, a wrong unit, columns of unequal lengths, a file without two points;
+        an option of instruments beside another source
 
     Examples
     --------
@@ -75,7 +75,7 @@ def curves(
 
 
 def measured(source: Any, least: int = 2, reading: Reading = _AS_IT_IS, area: Any = None) -> xr.Dataset:
-    """The dataset that `curves` returns, with `least` columns or more: a plan needs one."""
+    """The dataset that `curves` returns, with at least `least` columns: a plan needs only one."""
     is_file = isinstance(source, (str, Path))
     if is_file and is_of_instrument(Path(source), reading):
         return _of_columns(of_instrument(Path(source), reading), least=least)
@@ -90,8 +90,8 @@ def measured(source: Any, least: int = 2, reading: Reading = _AS_IT_IS, area: An
 
 
 def _chosen(dataset: xr.Dataset, curve: Any) -> xr.Dataset:
-    """One of several curves, by its name or number, without the points that only longer curves have. Where names are
-    numbers, they count."""
+    """One of several curves, by its name or number, without the points that only longer curves have. A number that is a
+    name counts as the name."""
     names = [str(name) for name in dataset["curve"].values] if "curve" in dataset.coords else []
     if str(curve) in names:
         number = names.index(str(curve))
@@ -102,8 +102,8 @@ def _chosen(dataset: xr.Dataset, curve: Any) -> xr.Dataset:
     else:
         number = place(curve, dataset.sizes["curve"], "curves")
     chosen = dataset.isel(curve=[number])
-    there = np.any([np.isfinite(chosen[name].values[0]) for name in chosen.data_vars], axis=0)
-    last = int(np.max(np.flatnonzero(there), initial=-1)) + 1
+    has_numbers = np.any([np.isfinite(chosen[name].values[0]) for name in chosen.data_vars], axis=0)
+    last = int(np.max(np.flatnonzero(has_numbers), initial=-1)) + 1
     return chosen.isel(point=slice(0, last))
 
 
@@ -175,7 +175,7 @@ def _of_columns(
     labels = None if curve is None else {label: i for i, label in enumerate(dict.fromkeys(curve))}
     if curve is not None and labels is not None:
         numbers = np.array([labels[label] for label in curve])
-        arrays = {name: _apart(array, numbers) for name, array in arrays.items()}
+        arrays = {name: _as_rows(array, numbers) for name, array in arrays.items()}
     arrays = {name: np.atleast_2d(array) for name, array in arrays.items()}
     shapes = [array.shape for array in arrays.values()]
     for axis, what in ((1, "points"), (0, "curves")):
@@ -194,8 +194,11 @@ def _of_columns(
     return xr.Dataset(variables, {} if labels is None else {"curve": list(labels)})
 
 
-def _apart(array: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-    """One long column as rows, one for each curve. numbers : of the curve of each value"""
+def _as_rows(array: np.ndarray, numbers: np.ndarray) -> np.ndarray:
+    """One long column as rows, one for each curve.
+
+    numbers : number of the curve of each value
+    """
     order = np.argsort(numbers, kind="stable")
     lengths = np.bincount(numbers)
     row = numbers[order]
@@ -242,9 +245,9 @@ def _text(path: Path) -> str:
         raise StudyError([f"{where}: there is no such file"]) from None
     except OSError as error:
         raise StudyError([f"{where}: cannot be read: {error.strerror}"]) from None
-    except ValueError as error:  # of the door
+    except ValueError as error:  # of userfile
         raise StudyError([f"{where}: {error}"]) from None
-    if b"\0" in raw:  # of a spreadsheet, say, or in UTF-16
+    if b"\0" in raw:  # a spreadsheet, say, or UTF-16
         raise StudyError([f"{where}: cannot be read as text: save it as CSV, in UTF-8"])
     try:
         return raw.decode("utf-8-sig")
@@ -253,7 +256,10 @@ def _text(path: Path) -> str:
 
 
 def _numbers(rows: list[list[str]], columns: list[str], first: int, where: str) -> dict[str, Any]:
-    """Column -> numbers of the rows, of which the first has the number `first`; of the column `curve` their labels."""
+    """Column -> numbers of the rows; for the column `curve` their labels.
+
+    first : number of the first row
+    """
     if any(len(cells) != len(columns) for cells in rows):
         _check_rows(rows, columns, first, where)
     numbers: dict[str, Any] = {}

@@ -1,5 +1,5 @@
-"""The public function `design`: the value of one input that makes a wanted result, with its ±, and the message of each
-contact: the answer, or why there is none and what would help."""
+"""The public function `design`: the value of one input for a wanted result, with its ±, and the message for each
+contact: the answer, or the reason why there is none and the input that would help."""
 
 import time
 import warnings
@@ -22,10 +22,10 @@ from .design_cases import Wanted
 from .design_question import read_wanted
 from .design_search import STATUSES, Outcome, answered, searched, solutions, solved
 
-#: Behind a target that lies within the range that is reached.
+#: Follows a target within the range that is reached.
 _JUMPS = 'contacts have no solution, or it jumps, as where base = "auto" changes its model'
-_FLAT = 1e-9  # a result that changes by less of itself does not depend on the input
-_MOST = 0.99  # an input that makes more of the variance makes "nearly all" of it
+_FLAT = 1e-9  # a result whose relative change is smaller does not depend on the input
+_MOST = 0.99  # an input with a larger share of the variance makes "nearly all" of it
 
 
 def design(
@@ -38,28 +38,29 @@ def design(
     correlations: dict[tuple[str, str], float] | None = None,
     **parameters: Any,
 ) -> xr.Dataset:
-    """The value of one input at which a result is as wanted: docs/design.md.
+    """The value of one input at which a result has a wanted value: docs/design.md.
 
-    Every solution within the bounds is found: the result is scanned over the input, its turns are looked for, and each
+    Every solution within the bounds is found: the result is scanned over the input, its turns are located, and each
     crossing of the wanted value is a solution.
 
     Parameters
     ----------
-    targets : one wanted result and its value, {"p_max": "180 MPa"}: a, P, D, p0, p_max, Ar_An or dP_dD;
-        or P_off, the load at pull-off, < 0, of a punch that adheres: its ± is not known, NaN
-    by : one input that is a number, and two bounds, {"h": ("1 um", "1 mm")}; also P, a or D, which controls then
-    progress : whether a call of more than two seconds says how far it is; None: in a notebook or on a terminal
-    cases, same_piece, correlations, parameters : as of `study.solve`, without the target and the input of `by`
+    targets : one wanted result and its value, {"p_max": "180 MPa"}: a, P, D, p0, p_max, Ar_An or dP_dD; or P_off, the
+        load at pull-off, < 0, of a punch with adhesion, whose ± is not known, NaN
+    by : one numerical input and two bounds, {"h": ("1 um", "1 mm")}; P, a or D is then the control
+    progress : whether a call of more than two seconds shows its progress; None: in a notebook or on a terminal
+    cases, same_piece, correlations, parameters : as in `study.solve`, without the target and the input of `by`
 
     Returns
     -------
-    xarray.Dataset : contacts as of `study.solve` over the dimensions of the parameters and `solution`, with NaN and
+    xarray.Dataset : contacts as from `study.solve` over the dimensions of the parameters and `solution`, with NaN and
         the status "not_run" where there are fewer solutions. The input, say `h`, is a coordinate over the same
-        dimensions; `h_spread` its standard deviation, to first order, of the spreads of the other inputs; `h_low`,
-        `h_high` where the result is one standard deviation off, NaN if it is nowhere on that side. Without spreads
-        `h_spread` is 0. Over the dimensions of the parameters: `design_status` (found; several; none_below, none_above:
-        the target is below, or above, all that is reached; at_edge: a solution within 1e-6 of a bound, in ln; unsolved:
-        where it would be, contacts have no solution, or the result jumps) and `message`, the answer in words
+        dimensions. `h_spread` is its standard deviation, to first order, from the spreads of the other inputs, 0
+        without spreads. At `h_low` and `h_high` the result is one standard deviation off; NaN if that is nowhere on
+        that side. Over the dimensions of the parameters: `design_status` (found; several; none_below, none_above: the
+        target is below, or above, the whole range that is reached; at_edge: a solution within 1e-6 of a bound, in ln;
+        unsolved: at the place of a solution contacts have no solution, or the result jumps) and `message`, the answer
+        in words
 
     Raises
     ------
@@ -67,7 +68,7 @@ def design(
 
     Notes
     -----
-    An interrupt ends the search. Cases searched until then are returned, the others are "not_run".
+    An interrupt ends the search. Cases that were searched before are returned, the others are "not_run".
 
     Examples
     --------
@@ -87,15 +88,17 @@ def design(
     outcome = answered(want, pieces, t, change, stream)
     designed = contacts.assign(_variables(want, outcome, contacts))
     designed, left_out = with_coordinates(designed, parameters)
-    beyond = doubts(designed) if want.definition.scene else beside_rules(designed)
-    left_out += ["\n".join(["a contact found is beyond what the model describes:", *beyond])] * bool(beyond)
+    doubts_on_contacts = doubts(designed) if want.definition.scene else beside_rules(designed)
+    left_out += ["\n".join(["a contact found is beyond what the model describes:", *doubts_on_contacts])] * bool(
+        doubts_on_contacts
+    )
     for text in left_out:
         warnings.warn(text, stacklevel=2)
     return designed
 
 
 def _variables(want: Wanted, outcome: Outcome, contacts: xr.Dataset) -> dict[str, xr.Variable]:
-    """The variables of a design beside those of its contacts: the spread and the ends of the input, status, message."""
+    """Variables of a design besides those of its contacts: the spread and the ends of the input, status, message."""
     name, dims = want.name, contacts["status"].dims
     unit = want.definition.grid.lexicon.all_rows[name].unit if want.definition.scene else ""
     about = {"units": unit} if unit not in ("", "1") else {}
@@ -163,7 +166,7 @@ def _value(want: Wanted, name: str, value: float, spread: float = 0.0) -> str:
 
 
 def _solution(want: Wanted, outcome: Outcome, row: int, number: int, ends: list[float]) -> str:
-    """One solution with its ±, and which input makes most of it."""
+    """One solution in words, with its ± and the input that makes most of it."""
     x, spread, low, high = ends
     text = _value(want, want.name, x, spread)
     if not spread > 0:
@@ -184,7 +187,7 @@ def _solution(want: Wanted, outcome: Outcome, row: int, number: int, ends: list[
 
 
 def _none(want: Wanted, outcome: Outcome, row: int) -> str:
-    """Why there is no solution, with the range that is reached."""
+    """The reason why there is no solution, with the range that is reached."""
     least, t_least, largest, t_largest = outcome.reach[row]
     span = f"{want.name} from {_text(want, want.name, want.low)} to {_text(want, want.name, want.high)}"
     wish = _value(want, want.target, want.level)
@@ -200,7 +203,7 @@ def _none(want: Wanted, outcome: Outcome, row: int) -> str:
 
 
 def _helps(want: Wanted, outcome: Outcome) -> dict[int, str]:
-    """Case without a solution -> which input would move the result most, where it is nearest to what is wanted."""
+    """Case without a solution -> the input that would move the result most, where it is closest to the target."""
     lacking = np.isin(outcome.status, (2, 3))
     if not lacking.any() or want.target not in QUANTITIES:
         return {}
@@ -211,15 +214,15 @@ def _helps(want: Wanted, outcome: Outcome) -> dict[int, str]:
     names = [name for name in by_input["input"].values.tolist() if name not in (want.name, *fits)]
     slopes = by_input.sel(input=names).values.reshape(want.size, len(names)).copy()
     for column, name in enumerate(names):
-        if is_ratio(name):  # whose derivatives are not by the logarithm
+        if is_ratio(name):  # derivatives by ratios are not by their logarithms
             slopes[:, column] *= contacts[name].broadcast_like(contacts["status"]).values.ravel()
-    slopes, texts = np.nan_to_num(slopes), {}  # NaN: by what a case does not have
+    slopes, texts = np.nan_to_num(slopes), {}  # NaN: the case does not have the input
     for row in np.flatnonzero(lacking).tolist():
         best = int(np.argmax(np.abs(slopes[row])))
         slope = float(slopes[row, best])
         if slope:
             smaller = outcome.status[row] == 2
-            way = "less" if (slope > 0) == smaller else "more"
+            direction = "less" if (slope > 0) == smaller else "more"
             change = f"{float(f'{abs(slope):.2g}'):g} % {'smaller' if smaller else 'larger'}"
-            texts[row] = f". {names[best]} would move it most: 1 % {way} makes it {change}"
+            texts[row] = f". {names[best]} would move it most: 1 % {direction} makes it {change}"
     return texts

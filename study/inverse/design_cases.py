@@ -1,4 +1,4 @@
-"""The contacts of a design: a grid in which one input is looked for, solved at any values of it."""
+"""The contacts of a design: a grid with one wanted input, solved at any values of that input."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -21,18 +21,18 @@ from ..inputs.scene.scene import Scene, over
 from ..inputs.vocabulary import VOCABULARY
 from ..work.cases import compute, parcel
 
-#: A contact that is pulled off has the load of that too.
+#: A contact that has pulled off has a load at pull-off too.
 _WITH_PULL_OFF = (Status.CONVERGED, Status.PULLED_OFF)
-BLOCK = 8000  # cases that are solved at a time, at most
+BLOCK = 8000  # largest number of cases that are solved at a time
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """A wanted result, and the input that is looked for.
+    """A wanted result, and the input that must be determined for it.
 
     definition : of the grid, in which the input has its lower bound
     target, level : name and value of the wanted result, in SI or dimensionless
-    name, low, high : of the input that is looked for, and its bounds, likewise
+    name, low, high : name and bounds of the input, likewise
     """
 
     definition: Definition
@@ -47,16 +47,16 @@ class Wanted:
         return self.definition.grid.size
 
     def t_of(self, x: Any) -> Any:
-        """ln of values of the input; themselves where a bound is not positive."""
+        """ln of values of the input, or the values themselves where a bound is not positive."""
         return np.log(x) if self.low > 0 else x
 
     def x_of(self, t: Any) -> Any:
-        """Values of the input, within its bounds."""
+        """Values of the input at t, within its bounds."""
         return np.clip(np.exp(t) if self.low > 0 else t, self.low, self.high)
 
     @property
     def width(self) -> float:
-        """The unit of t: 1 for an input with a logarithm, else the whole range."""
+        """The unit of t: 1 for an input with a logarithm, otherwise the whole range."""
         return 1.0 if self.low > 0 else self.high - self.low
 
     @property
@@ -66,7 +66,7 @@ class Wanted:
 
     @once
     def _inputs(self) -> tuple[dict, dict]:
-        """SI values of the scene, {} without units, and all else: name -> (B,)."""
+        """SI values of the scene, {} without units, and all other inputs: name -> (B,)."""
         grid, scene = self.definition.grid, self.definition.scene
         others = columns(grid, np.arange(grid.size))
         dims = tuple(grid.sizes)
@@ -100,9 +100,9 @@ class Wanted:
         return with_unit(numbers, VOCABULARY[self.target].powers, unit, R)
 
     def at(self, t: np.ndarray) -> Definition:
-        """The definition of the contacts at t (B, n): the grid with the dimension `solution` behind the others.
+        """The definition of the contacts at t (B, n): the grid with `solution` as its last dimension.
 
-        It has the inputs by which a change of the looked-for input is felt, beside those with spreads.
+        Its derivatives are by the inputs with spreads, and by those that the wanted input changes.
         """
         definition, scene = self.definition, self.definition.scene
         grid, dims = definition.grid, (*definition.grid.sizes, "solution")
@@ -127,7 +127,7 @@ class Wanted:
 
 
 def solve_into(arrays: dict[str, np.ndarray], definition: Definition, index: np.ndarray) -> None:
-    """Solve the cases `index` and put their columns into those of all."""
+    """Solve the cases `index` and put their columns into `arrays`, those of all cases."""
     for name, values in compute(parcel(definition, index)).items():
         arrays[name][index] = values
 

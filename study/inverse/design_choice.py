@@ -1,4 +1,4 @@
-"""Which contacts are good enough (`feasible`), and which are not beaten by another one (`front`)."""
+"""The contacts that keep to limits (`feasible`), and those that no other contact beats (`front`)."""
 
 import operator
 from collections.abc import Sequence
@@ -14,17 +14,17 @@ from ..specimen.quantities import quantity
 from ..terminal import shown
 
 _COMPARED = {"<=": operator.le, ">=": operator.ge, "<": operator.lt, ">": operator.gt}
-_FLAGS = ("validity", "status", "model_used")  # which are compared with whole numbers
+_FLAGS = ("validity", "status", "model_used")  # variables that are compared with whole numbers
 
 
 def feasible(contacts: xr.Dataset, **limits: str | int) -> xr.DataArray:
-    """Which contacts keep to all limits.
+    """Whether contacts keep to all limits.
 
     Parameters
     ----------
-    contacts : of `study.solve` or `study.design`, or of a results file
+    contacts : from `study.solve` or `study.design`, or of a results file
     limits : name of an input, a result or a derived quantity -> "< 250 MPa", "<= 6 um", "> 0.1", ">= 1 N"; without
-        units "< 0.02". validity -> a sum of masks that are allowed, 0 for none; status, model_used -> their number
+        units "< 0.02". validity -> the sum of the allowed masks, 0 for none; status, model_used -> their number
 
     Returns
     -------
@@ -48,22 +48,22 @@ def feasible(contacts: xr.Dataset, **limits: str | int) -> xr.DataArray:
         if name in _FLAGS:
             if isinstance(limit, bool) or not isinstance(limit, (int, np.integer)):
                 raise StudyError([f"feasible: {name} = {shown(limit)}: must be a whole number, such as {name}=0"])
-            kept = (values & ~np.int64(limit)) == 0 if name == "validity" else values == limit
+            keeps = (values & ~np.int64(limit)) == 0 if name == "validity" else values == limit
         else:
             compare, number = _limit(name, limit, values)
-            kept = compare(values, number)
-        good = good & (kept.all("x") if "x" in kept.dims else kept)
+            keeps = compare(values, number)
+        good = good & (keeps.all("x") if "x" in keeps.dims else keeps)
     return good.transpose(*contacts["status"].dims).rename("feasible")
 
 
 def front(contacts: xr.Dataset, least: Sequence[str] = (), most: Sequence[str] = ()) -> xr.Dataset:
-    """The contacts of a dataset that no other one of it beats.
+    """The contacts of a dataset that no other contact in it beats.
 
-    Another one beats a contact if it is better in one of the quantities, and worse in none.
+    A contact beats another if it is better in one of the quantities, and worse in none.
 
     Parameters
     ----------
-    contacts : of `study.solve` or `study.design`, or of a results file
+    contacts : from `study.solve` or `study.design`, or of a results file
     least, most : names of inputs, results or derived quantities of which less, or more, is better
 
     Returns
@@ -105,7 +105,7 @@ def front(contacts: xr.Dataset, least: Sequence[str] = (), most: Sequence[str] =
 def _unbeaten(costs: np.ndarray) -> np.ndarray:
     """(n,) bool: the rows of costs (n, k) that no other row beats."""
     alive = np.ones(len(costs), bool)
-    for i in np.lexsort(costs.T[::-1]):  # no row behind another one beats it
+    for i in np.lexsort(costs.T[::-1]):  # in this order no later row beats an earlier one
         if alive[i]:
             alive &= ~((costs >= costs[i]).all(axis=1) & (costs > costs[i]).any(axis=1))
     return alive
@@ -118,7 +118,7 @@ def _solved(contacts: xr.Dataset, who: str) -> xr.DataArray:
 
 
 def _quantity(contacts: xr.Dataset, name: str, who: str) -> xr.DataArray:
-    """A variable of the dataset, or what is derived from it."""
+    """A variable of the dataset, or a quantity derived from it."""
     if name in contacts.variables:
         return contacts[name]
     if name in QUANTITIES:
@@ -131,7 +131,7 @@ def _quantity(contacts: xr.Dataset, name: str, who: str) -> xr.DataArray:
 
 
 def _limit(name: str, limit: str, values: xr.DataArray) -> tuple:
-    """How a quantity is compared, and with which number, in the unit of its values."""
+    """The comparison of a limit, and its number in the unit of the values."""
     text = limit.strip() if isinstance(limit, str) else ""
     sign = next((sign for sign in _COMPARED if text.startswith(sign)), "")
     unit = values.attrs.get("units", "1")
@@ -144,7 +144,7 @@ def _limit(name: str, limit: str, values: xr.DataArray) -> tuple:
     si_unit = rows[name].unit if name in rows and unit != "1" else unit
     try:
         number = quantity(name, text.removeprefix(sign).strip(), si_unit)
-        size = 1.0 if unit == si_unit else quantity(name, f"1 {unit}", si_unit).value  # of study.readable
+        size = 1.0 if unit == si_unit else quantity(name, f"1 {unit}", si_unit).value  # from study.readable
     except ValueError as error:
         raise StudyError([f"feasible: {error}"]) from None
     if number.spread:

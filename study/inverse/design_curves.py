@@ -1,4 +1,4 @@
-"""Curves of one result over one input: scanned, with their turns, and where they cross a level."""
+"""Curves of one result over one input: their scan, their turns, and the places where they cross a level."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,18 +7,21 @@ import numpy as np
 from scipy.optimize import elementwise
 
 SCAN = 24
-"""Points of a scan. Between two of these a curve may turn twice unseen: tools/errors/designs.py counts how often."""
+"""Number of points in a scan. Between two of them a curve may turn twice unseen: tools/errors/designs.py counts how
+often."""
 EDGE = 1e-6
-"""A crossing as near as this to a bound, in ln of the input, is at the bound."""
-#: A turn is looked for where the second difference of three points exceeds this part of the middle one. Below it stand
-#: curves that are flat except for the error of the solver.
+"""Distance from a bound, in ln of the input, within which a crossing is at the bound."""
+#: Least second difference of three points, over the middle one, for the search of a turn. Curves with smaller ones are
+#: flat except for the error of the solver.
 _BENT = 1e-5
-#: Places of turns, in parts of the distance of two points of the scan: a turn is flat, and errs by the square of this.
+#: Precision of the places of turns, over the distance between points of the scan. A curve is flat at a turn, so its
+#: value errs by the square of this.
 _TURN = 1e-3
-#: Beside each bound is a further point, at this part of the distance of two: a turn in the last interval shows too.
+#: Distance of a further point from each bound, over that between points of the scan. It shows a turn in the last
+#: interval.
 _BESIDE = 0.01
-_HALVINGS = 12  # so often the interval is halved in which contacts cease to have a solution
-_NEAR = 1e-12  # of two ends of a bracket, in ln of the input
+_HALVINGS = 12  # number of halvings of the interval in which contacts cease to have a solution
+_NEAR = 1e-12  # distance between the ends of a bracket, in ln of the input
 
 Evaluate = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """(t (b,), row (b,)) -> the result (b,) where the input is exp(t), or t, in the case `row`; NaN without a solution."""
@@ -26,28 +29,28 @@ Evaluate = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 @dataclass(frozen=True)
 class Curves:
-    """A curve for each of k cases: points in the order of t. Neighbours that are finite are joined.
+    """A curve for each of k cases: points in the order of t. Finite neighbours are joined.
 
-    t, y : (k, m); behind the last point of a row t is inf and y is NaN
+    t, y : (k, m); after the last point of a row t is inf and y is NaN
     """
 
     t: np.ndarray
     y: np.ndarray
 
     def reach(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Smallest y of each row and its t, largest y and its t, (k,) each; without any y NaN and the first t."""
+        """Smallest y of each row and its t, largest y and its t, (k,) each; NaN and the first t for a row without y."""
         low, high = (np.where(np.isnan(self.y), fill, self.y) for fill in (np.inf, -np.inf))
         places = np.argmin(low, axis=1), np.argmax(high, axis=1)
         rows = np.arange(len(self.t))
         return tuple(array[rows, place] for place in places for array in (self.y, self.t))
 
     def at(self, rows: np.ndarray) -> "Curves":
-        """Those of some rows."""
+        """The curves of some rows."""
         return Curves(self.t[rows], self.y[rows])
 
 
 def scanned(evaluate: Evaluate, rows: np.ndarray, low: float, high: float) -> Curves:
-    """The curves of cases `rows` between two bounds of t, with the ends of gaps and the turns among the points."""
+    """The curves of the cases `rows` between two bounds of t. The ends of gaps and the turns are among the points."""
     points, k = np.linspace(low, high, SCAN), len(rows)
     near = _BESIDE * (points[1] - points[0])
     t = np.tile([low, low + near, *points[1:-1], high - near, high], (k, 1))
@@ -57,7 +60,10 @@ def scanned(evaluate: Evaluate, rows: np.ndarray, low: float, high: float) -> Cu
 
 
 def _with(curves: Curves, place: np.ndarray, t: np.ndarray, y: np.ndarray) -> Curves:
-    """The curves with further points: `place` (b,) is the row of each."""
+    """The curves with further points.
+
+    place : row of each point, (b,)
+    """
     if not len(place):
         return curves
     count = np.bincount(place, minlength=len(curves.t))
@@ -88,15 +94,15 @@ def _ends_of_gaps(evaluate: Evaluate, rows: np.ndarray, curves: Curves) -> tuple
 
 
 def _turns(evaluate: Evaluate, rows: np.ndarray, curves: Curves, near: float) -> tuple:
-    """(row, t, y) of the turns of the curves, each within the three points beside it."""
-    before, here, behind = curves.y[:, :-2], curves.y[:, 1:-1], curves.y[:, 2:]
-    turning = (here - before) * (here - behind) >= 0
-    place, left = np.nonzero(turning & (np.abs(before - 2 * here + behind) > _BENT * np.abs(here)))
+    """(row, t, y) of the turns of the curves, each found between three neighbouring points."""
+    before, middle, after = curves.y[:, :-2], curves.y[:, 1:-1], curves.y[:, 2:]
+    turning = (middle - before) * (middle - after) >= 0
+    place, left = np.nonzero(turning & (np.abs(before - 2 * middle + after) > _BENT * np.abs(middle)))
     if not len(place):
         return place, np.array([]), np.array([])
-    sign = np.sign(before - here + (behind - here))[place, left]
+    sign = np.sign(before - middle + (after - middle))[place, left]
     ends = tuple(curves.t[place, left + i] for i in range(3))
-    size = np.abs(here[place, left])
+    size = np.abs(middle[place, left])
 
     def downwards(t: np.ndarray, row: np.ndarray, sign: np.ndarray, size: np.ndarray) -> np.ndarray:
         return sign * evaluate(t, row) / size
@@ -110,7 +116,7 @@ def _turns(evaluate: Evaluate, rows: np.ndarray, curves: Curves, near: float) ->
 def crossings(evaluate: Evaluate, curves: Curves, rows: np.ndarray, level: np.ndarray, rtol: float) -> np.ndarray:
     """t (k, n) at which the curves of the cases `rows` have the value `level` (k,), in order and padded with NaN.
 
-    The value there is right to `rtol`. A curve that begins or ends within rtol of its level crosses it there.
+    The value is right to `rtol`. A curve that begins or ends within rtol of its level crosses it at that end.
     """
     level = np.asarray(level, dtype=float)
     with np.errstate(invalid="ignore"):
@@ -128,12 +134,12 @@ def crossings(evaluate: Evaluate, curves: Curves, rows: np.ndarray, level: np.nd
         tolerances = {"xatol": _NEAR, "xrtol": 0.0, "fatol": 0.1 * rtol, "frtol": 0.0}
         args = rows[place], level[place]
         root = elementwise.find_root(distance, bracket, args=args, tolerances=tolerances)
-        t = np.where(np.abs(root.f_x) <= rtol, root.x, np.nan)  # else it jumps there: base = "auto" changes its model
+        t = np.where(np.abs(root.f_x) <= rtol, root.x, np.nan)  # otherwise it jumps: base = "auto" changes its model
     last = np.isfinite(curves.t).sum(axis=1) - 1
-    for column, beside in ((np.zeros_like(last), np.zeros_like(last)), (last, last - 1)):
+    for column, interval in ((np.zeros_like(last), np.zeros_like(last)), (last, last - 1)):
         numbers = np.arange(len(level))
         at_end = np.abs(curves.y[numbers, column] / level - 1) <= rtol
-        touching = np.flatnonzero(at_end & ~crossed[numbers, beside])
+        touching = np.flatnonzero(at_end & ~crossed[numbers, interval])
         place, t = np.append(place, touching), np.append(t, curves.t[touching, column[touching]])
     place, t = place[np.isfinite(t)], t[np.isfinite(t)]
     order = np.lexsort((t, place))
@@ -146,12 +152,12 @@ def crossings(evaluate: Evaluate, curves: Curves, rows: np.ndarray, level: np.nd
 def ends(
     evaluate: Evaluate, curves: Curves, rows: np.ndarray, t: np.ndarray, level: float, spread: np.ndarray, rtol: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """t below and above each solution, (k, n) each, where the result is `spread` (k, n) off, on its own branch.
-
-    A result that rises is sought at level - spread below the solution and at level + spread above it, one that falls
-    the other way round. NaN where the next solution, or the end of the curve, comes first; t itself without a spread.
+    """t below and above each solution, (k, n) each, at which the result is `spread` (k, n) off, on the same branch.
 
     t : (k, n) solutions, padded with NaN
+
+    A rising result is sought at level - spread below the solution and at level + spread above it, a falling one the
+    other way round. NaN where the next solution, or the end of the curve, comes first; t itself without a spread.
     """
     low, high = np.where(spread == 0, t, np.nan), np.where(spread == 0, t, np.nan)
     place, number = np.nonzero(np.isfinite(t) & (spread > 0))
@@ -168,9 +174,9 @@ def ends(
 
 
 def _nearest(places: np.ndarray, at: np.ndarray, limit: np.ndarray) -> np.ndarray:
-    """The first of some places (k, m) behind `at` and not behind `limit`, (k,) each; NaN if there is none."""
-    there = (places > at[:, None]) & (places <= limit[:, None])
-    nearest = np.where(there, places, np.inf).min(axis=1)
+    """The first of the places (k, m) after `at` and up to `limit`, (k,) each; NaN if there is none."""
+    is_between = (places > at[:, None]) & (places <= limit[:, None])
+    nearest = np.where(is_between, places, np.inf).min(axis=1)
     return np.where(np.isfinite(nearest), nearest, np.nan)
 
 

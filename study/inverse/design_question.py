@@ -1,4 +1,4 @@
-"""The question of a design, read and checked: the wanted result, and the input that is looked for with its bounds."""
+"""The question of a design, read and checked: the wanted result, and the input to determine with its bounds."""
 
 import math
 from typing import Any
@@ -15,7 +15,7 @@ from ..specimen.quantities import has_unit
 from ..terminal import shown
 from .design_cases import Wanted
 
-#: Results that can be wanted: those with derivatives, and the load at pull-off, which has none.
+#: Possible targets: the results with derivatives, and the load at pull-off, which has no derivatives.
 TARGETS = (*QUANTITIES, "P_off")
 _EXAMPLE = 'such as {"p_max": "180 MPa"}'
 _BOUNDS = 'such as by={"h": ("1 um", "1 mm")}'
@@ -24,10 +24,10 @@ _BOUNDS = 'such as by={"h": ("1 um", "1 mm")}'
 def read_wanted(
     targets: Any, by: Any, parameters: dict, rows: list[dict], same_piece: Any, correlations: Any
 ) -> Wanted:
-    """The design that a call asks for. Raises StudyError for what it cannot have, before anything is computed."""
+    """The design of a call. Raises StudyError for wrong arguments, before anything is computed."""
     target, value = _target(targets)
     written, bounds = _looked_for(by, (parameters, *rows))
-    name = short(written)  # as results have it: "h" of "layers.1.h"
+    name = short(written)  # as in results: "h" for "layers.1.h"
     rest = {key: entry for key, entry in parameters.items() if entry is not None}
     twice = any({name, written} & {*table} for table in (rest, *rows))
     wrong = [f"{written} is given, and looked for (by): leave one of them out"] * twice

@@ -22,7 +22,8 @@ from .design_curves import EDGE, Curves, crossings, ends, scanned
 
 STATUSES = ("found", "several", "none_below", "none_above", "at_edge", "unsolved")
 """Meanings of `design_status` 0, 1, ...; NOT_RUN is "not_run"."""
-#: Cases that are searched, and contacts that are solved with their derivatives, at a time. Larger ones take as long.
+#: Number of cases that are searched at a time, and of contacts that are solved with their derivatives. More at a time
+#: would not be faster.
 CHUNK, BLOCK = 100, 1000
 
 Piece = tuple[np.ndarray, Curves, np.ndarray]
@@ -30,10 +31,11 @@ Piece = tuple[np.ndarray, Curves, np.ndarray]
 
 
 class Change(NamedTuple):
-    """How the wanted result changes, over the cases and their solutions.
+    """Changes of the wanted result, over the cases and their solutions.
 
-    spread : its standard deviation, NaN of a result without derivatives; by_input : |d ln result/d ln input|
-    shares : input with a spread -> part of the variance that it makes; {} where they are correlated
+    spread : standard deviation of the result; NaN for a result without derivatives
+    by_input : |d ln result/d ln input|
+    shares : input with a spread -> its share of the variance; {} where inputs are correlated
     """
 
     spread: np.ndarray
@@ -45,8 +47,9 @@ class Change(NamedTuple):
 class Outcome:
     """The solutions of the cases.
 
-    t, low, high : (B, n) solutions, and where the result is a spread off
-    status : (B,); reach : (B, 4), least result and its t, largest result and its t; NaN of cases not searched
+    t, low, high : (B, n) solutions, and the t below and above at which the result is a spread off
+    status : (B,)
+    reach : (B, 4), least result and its t, largest result and its t; NaN for cases that were not searched
     """
 
     t: np.ndarray
@@ -92,7 +95,7 @@ def _rtol(want: Wanted) -> float:
 
 
 def solutions(want: Wanted, pieces: list[Piece]) -> np.ndarray:
-    """The solutions t (B, n) of all cases, padded with NaN; n is 1 at least."""
+    """The solutions t (B, n) of all cases, padded with NaN; n is at least 1."""
     t = np.full((want.size, max(t_of_piece.shape[1] for _, _, t_of_piece in pieces)), np.nan)
     for rows, _, t_of_piece in pieces:
         t[rows, : t_of_piece.shape[1]] = t_of_piece
@@ -100,13 +103,13 @@ def solutions(want: Wanted, pieces: list[Piece]) -> np.ndarray:
 
 
 def solved(want: Wanted, t: np.ndarray, stream: TextIO | None = None) -> tuple[xr.Dataset, Change]:
-    """The contacts at t (B, n), NaN where that is NaN, and how the wanted result changes there."""
+    """The contacts at t (B, n), with NaN where t is NaN, and the changes of the wanted result."""
     definition = want.at(t)
     arrays, index = not_run(definition, t.size), np.flatnonzero(np.isfinite(t))
     blocks = np.array_split(index, -(-len(index) // BLOCK)) if len(index) else []
     _each(f"solving {counted(len(index), 'contact')}", blocks, lambda i: solve_into(arrays, definition, i), stream)
     results = parts(definition, arrays, "study.design")
-    contacts, scene = dataset_of(definition, results.settings_apart()), definition.scene
+    contacts, scene = dataset_of(definition, results.settings_as_attributes()), definition.scene
     if want.target not in QUANTITIES:
         unknown = np.full(t.shape, np.nan)
         return contacts, Change(unknown, unknown, {})
@@ -115,7 +118,7 @@ def solved(want: Wanted, t: np.ndarray, stream: TextIO | None = None) -> tuple[x
         return contacts, Change(still, still, {})
 
     def alone(name: str, size: Any) -> np.ndarray:
-        """The spread of the result, dimensionless, that an input makes alone."""
+        """The dimensionless spread of the result that follows from a single input."""
         only = replace(definition, scene=replace(scene, spreads={name: size}, correlations={}))
         return spreads_of(only, results)[want.target].reshape(t.shape)
 
@@ -127,7 +130,7 @@ def solved(want: Wanted, t: np.ndarray, stream: TextIO | None = None) -> tuple[x
 
 
 def answered(want: Wanted, pieces: list[Piece], t: np.ndarray, change: Change, stream: TextIO | None) -> Outcome:
-    """The answer: with the ends of each solution, its status and what is reached."""
+    """The answer, with the ends of each solution, its status and the range that is reached."""
     low, high = np.where(change.spread == 0, t, np.nan), np.where(change.spread == 0, t, np.nan)
     status, reach = np.full(want.size, NOT_RUN, np.int8), np.full((want.size, 4), np.nan)
     curves_of = {int(rows[0]): curves for rows, curves, _ in pieces}
@@ -145,7 +148,7 @@ def answered(want: Wanted, pieces: list[Piece], t: np.ndarray, change: Change, s
 
 
 def _status(want: Wanted, t: np.ndarray, reach: np.ndarray) -> np.ndarray:
-    """(k,) int8: the place in STATUSES."""
+    """(k,) int8: the index of the status in STATUSES."""
     count = np.isfinite(t).sum(axis=1)
     bounds = np.array([want.t_of(want.low), want.t_of(want.high)])
     at_edge = (np.abs(t[..., None] - bounds) <= EDGE * want.width).any(axis=(1, 2))

@@ -28,9 +28,9 @@ from .fits.tables.branch import planned
 from .fits.tasks import Task, fit_task, forget
 from .no_pull import OF_ADHESION, joined, without
 
-#: Curves in a block, and the multiple to which their points are filled up.
+#: Number of curves in a block, and the multiple to which the number of their points is padded.
 _BLOCK, _PART = 64, 64
-#: Fits that look for the contact point of a part of the depth.
+#: Largest number of fits in the search for the contact point of a part of the depth.
 _ROUNDS = 5
 _calls = count()
 _ENDS = ((np.min, np.inf), (np.max, -np.inf))
@@ -56,28 +56,28 @@ def fit(
 ) -> xr.Dataset:
     """Fit inputs of a contact to measured curves: y = F(x - D0) + P0 + tilt x, F the solved contact (docs/fit.md).
 
-    Inputs without ± are exact. Those in `free` are fitted. So is an input with ± in the call ("1.5 ± 0.1 um"): its
-    logarithm has this as a Gaussian prior. The spreads of R, of Poisson ratios and of named materials make the answer
-    less sure. At most three inputs are unknown.
+    Inputs without ± are exact. Those in `free` are fitted. So is an input with ± in the call ("1.5 ± 0.1 um"): the ±
+    becomes a Gaussian prior of its logarithm. The spreads of R, of Poisson ratios and of named materials widen the
+    intervals. At most three inputs are unknown.
 
     Parameters
     ----------
-    curves : what `curves` takes
-    free : names of inputs, or {name: (low, high)}. Without bounds a modulus lies between 1e-3 and 1e3 times what
-        Hertz's formula gives for the deepest point, another input up to a decade from its value in the call
+    curves : a source that `curves` takes
+    free : names of inputs, or {name: (low, high)}. Without bounds a modulus lies between 1e-3 and 1e3 times the value
+        by Hertz's formula for the deepest point, another input up to a decade from its value in the call
     contact_point, baseline, tilt : whether D0, P0, and a slope of the baseline are fitted, if x is the depth
-    x, y : what is fitted over what: "D", "P"; or "P", "a"; or "a", "dP_dD"
+    x, y : the abscissa and the fitted ordinate: "D", "P"; or "P", "a"; or "a", "dP_dD"
     sigma : standard deviation of a point of y: a number or an array in SI, or a text with its unit; None: from the
         residuals
-    loss : "linear", least squares; "huber", under which points that are far off count less
+    loss : "linear", least squares; "huber", under which outliers count less
     intervals : "profile" of the likelihood; "fisher", from the curvature at the minimum; None: no NAME_low, NAME_high.
-        Under "huber" they are from the curvature
+        Under "huber" they come from the curvature
     level : of the intervals
-    depth : (low, high) of x below the contact point, lengths with units or numbers in SI: points in contact outside are
-        left out, and with a low end below 0 points further before the contact too; None: all points count
-    plan : whether to say only how sure a fit would be: of `curves` x is taken alone, the call has the assumed values
-    progress : whether to show how far it is; None: where the terminal or a notebook can
-    parameters : those of `study.solve` with units, without P, a and D
+    depth : (low, high) of x below the contact point, lengths with units or numbers in SI. Points in contact outside are
+        left out; with a low end below 0, so are points further before the contact. None: all points count
+    plan : whether to compute only the uncertainty of a future fit: from x in `curves`, with assumed values in the call
+    progress : whether to show the progress; None: where the terminal or a notebook can
+    parameters : of `study.solve` with units, except P, a and D
 
     Returns
     -------
@@ -85,15 +85,15 @@ def fit(
         in SI (the spread of an input is that of its logarithm, times the input); their `covariance` over (curve, cov_i,
         cov_j); the fit of y (P_fit, say) and `residual` = y - fit over (curve, point); `fit_status`; `validity` of the
         contact at the deepest point, and D_valid (or P_valid, a_valid), up to which no assumption is violated. A curve
-        that cannot be fitted has a status and NaN. The attributes `given` and `assumed` say what the call has
+        that cannot be fitted has a status and NaN. The attributes `given` and `assumed` state the inputs of the call
 
     Raises
     ------
-    StudyError : a call that cannot be used, before a curve is read; a file or array that holds no curve
+    StudyError : a call that cannot be used, before a curve is read; a file or array without a curve
 
     Notes
     -----
-    An interrupt ends the fit. Curves that are fitted are returned; the others have the status 127, `not_run`.
+    An interrupt ends the fit. Curves that were fitted before are returned; the others have the status 127, `not_run`.
 
     Examples
     --------
@@ -114,34 +114,41 @@ def fit(
     X, Y, S = _arrays(data, question.model, sigma)
     if plan:
         Y = _planned(question, X)
-    there = np.isfinite(X) & np.isfinite(Y)
+    counts = np.isfinite(X) & np.isfinite(Y)
     if limits:
-        there = _within(question, (X, Y, S), there, limits)
-    rows, status = _every(question, (X, Y, S), there, screen_of(progress))
-    fitted = fit_dataset(question, rows, status, X, Y, there, plan)
+        counts = _within(question, (X, Y, S), counts, limits)
+    rows, status = _fits_of_curves(question, (X, Y, S), counts, screen_of(progress))
+    fitted = fit_dataset(question, rows, status, X, Y, counts, plan)
     fitted = fitted.assign_coords({name: data[name] for name in data.coords})
     fitted = fitted.assign_attrs({"depth": list(limits)} if limits else {})
-    beside = {*question.free} - {*OF_ADHESION}
-    if "w_adhesion" in question.bounds and "w_adhesion" not in question.priors and beside and not plan:
+    other_free_inputs = {*question.free} - {*OF_ADHESION}
+    if "w_adhesion" in question.bounds and "w_adhesion" not in question.priors and other_free_inputs and not plan:
         options |= {"depth": limits, "x": x, "y": y, "progress": progress}
         fitted = _with_and_without(fitted, (X, Y, S), (free, options, parameters), question.bounds["w_adhesion"][0])
     return _as_called(fitted.assign_attrs(words_of(question, fitted)), question.called)
 
 
-def _within(question: Question, arrays: tuple, there: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
-    """The points that count where only a part of the depth does. The contact point from which it counts is that of a
-    fit of all points, then that of the points that count, until these stay."""
-    first, every = replace(question, intervals=None), there
+def _within(question: Question, arrays: tuple, counts: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
+    """The points that count if only a part of the depth does.
+
+    The depth is counted from the contact point of a fit of all points, then from that of a fit of the points that
+    count, until these no longer change.
+    """
+    first, every = replace(question, intervals=None), counts
     for _ in range(_ROUNDS if "D0" in question.shifts else 1):
-        begin = _contact_points(question, _every(first, arrays, there, None)[0]) if "D0" in question.shifts else {}
-        before, there = there, every & inside(arrays[0], begin, limits)
-        if np.array_equal(before, there):
+        begin = (
+            _contact_points(question, _fits_of_curves(first, arrays, counts, None)[0])
+            if "D0" in question.shifts
+            else {}
+        )
+        before, counts = counts, every & inside(arrays[0], begin, limits)
+        if np.array_equal(before, counts):
             break
-    return there
+    return counts
 
 
 def _as_called(fitted: xr.Dataset, called: dict[str, str]) -> xr.Dataset:
-    """The fits with the names that the call has: layers.1.E1 of E1."""
+    """The fits with the names in the call: layers.1.E1 for E1."""
     called = {name: text for name, text in called.items() if text != name and name in fitted["cov_i"].values}
     ends = ("", "_low", "_high", "_spread", "_over_depth", "_from_prior")
     names = {f"{name}{end}": f"{text}{end}" for name, text in called.items() for end in ends}
@@ -152,24 +159,26 @@ def _as_called(fitted: xr.Dataset, called: dict[str, str]) -> xr.Dataset:
 
 
 def _with_and_without(fitted: xr.Dataset, arrays: tuple, call: tuple, low: float) -> xr.Dataset:
-    """The fits, and in place of those of curves without a pull the fits of the same call without adhesion."""
+    """The fits; for curves without a pull, those of the same call without adhesion."""
     (X, Y, S), (free, options, parameters) = arrays, call
     rest, bare = without(free, parameters)
     plain = fit({"D": (X, "m"), "P": (Y, "N")}, free=rest, **options | {"sigma": S}, **bare)
     return joined(fitted, plain, low)
 
 
-def _every(question: Question, arrays: tuple, there: np.ndarray, screen: Any) -> tuple[dict[int, tuple], np.ndarray]:
-    """For each curve that is fitted the fits of its block and its place among them; and the status of the others, or
-    -1."""
+def _fits_of_curves(
+    question: Question, arrays: tuple, counts: np.ndarray, screen: Any
+) -> tuple[dict[int, tuple], np.ndarray]:
+    """Fitted curve -> the fits of its block and its place in them; and the status of the other curves, -1 for fitted
+    ones."""
     X, Y, _ = arrays
     unknowns = len(question.model.unknowns) + len(question.shifts)
-    status = np.where(_usable(X, Y, there, unknowns, "D0" in question.shifts), -1, FitStatus.INVALID_INPUT)
+    status = np.where(_usable(X, Y, counts, unknowns, "D0" in question.shifts), -1, FitStatus.INVALID_INPUT)
     rows: dict[int, tuple] = {}
-    blocks = list(_blocks(there, status < 0, _stiffness(X, Y, question) if X.size else np.zeros(len(X))))
+    blocks = list(_blocks(counts, status < 0, _stiffness(X, Y, question) if X.size else np.zeros(len(X))))
     with Progress("fit", int((status < 0).sum()), screen, passing=True) as progress:
         try:
-            for index, fits in _fits(question, blocks, arrays, there):
+            for index, fits in _fits(question, blocks, arrays, counts):
                 rows |= {int(curve): (fits, i) for i, curve in enumerate(index)}
                 progress.update(len(index), 0)
         except KeyboardInterrupt:
@@ -180,17 +189,17 @@ def _every(question: Question, arrays: tuple, there: np.ndarray, screen: Any) ->
 
 
 def _contact_points(question: Question, rows: dict[int, tuple]) -> dict[int, float]:
-    """The contact point in m of each curve that has one."""
+    """Curve -> its contact point in m, for curves that have one."""
     place = len(question.model.unknowns)
     lost = (FitStatus.INVALID_INPUT, FitStatus.NO_CONTACT)
     return {c: fits["p"][i, place] * fits["wide"][i] for c, (fits, i) in rows.items() if fits["status"][i] not in lost}
 
 
-def _fits(question: Question, blocks: list, arrays: tuple, there: np.ndarray) -> Iterator[tuple[np.ndarray, dict]]:
+def _fits(question: Question, blocks: list, arrays: tuple, counts: np.ndarray) -> Iterator[tuple[np.ndarray, dict]]:
     """The curves of each block and their fits, by the processors that may be used."""
     call = f"{os.getpid()} {next(_calls)}"
     tasks = [
-        Task(call, question, *(None if A is None else _packed(A, there, filled, points) for A in arrays))
+        Task(call, question, *(None if A is None else _packed(A, counts, filled, points) for A in arrays))
         for _, filled, points in blocks
     ]
     scene = question.model.scene
@@ -198,14 +207,14 @@ def _fits(question: Question, blocks: list, arrays: tuple, there: np.ndarray) ->
     try:
         with closing(computed_tasks(fit_task, tasks, can_leave=not of_users)) as results:
             for number, fits in results:
-                # a process that was killed, or what it raised: then it is raised here
+                # if a process was killed, or raised, the error is raised here
                 yield blocks[number][0], fit_task(tasks[number]) if isinstance(fits, Failure) else fits
     finally:
         forget(call)
 
 
 def _columns(source: Any, model: CurveModel, plan: bool) -> xr.Dataset:
-    """The curves; for a plan their x alone."""
+    """The curves; for a plan only their x."""
     names = [model.x] if plan else [model.x, model.y]
     data = measured(source, len(names))
     lacking = [name for name in names if name not in data]
@@ -217,7 +226,7 @@ def _columns(source: Any, model: CurveModel, plan: bool) -> xr.Dataset:
 
 
 def _arrays(data: xr.Dataset, model: CurveModel, sigma: Any) -> tuple:
-    """x, y and the standard deviations of y over (curve, point); NaN for y of a plan."""
+    """x, y and the standard deviations of y over (curve, point); for a plan y is NaN."""
     X = data[model.x].values
     Y = data[model.y].values if model.y in data else np.full(X.shape, np.nan)
     if sigma is None:
@@ -250,27 +259,31 @@ def _planned(question: Question, X: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(X), y.reshape(X.shape), np.nan)
 
 
-def _usable(X: np.ndarray, Y: np.ndarray, there: np.ndarray, unknowns: int, anywhere: bool) -> np.ndarray:
-    """Which curves can be fitted: more points than unknowns, not all at one x, not all of one y. Without a contact
-    point the contact begins at 0, and some x must be above it (`anywhere`: it need not)."""
-    enough = there.sum(axis=1) > unknowns
-    ends = [[limit(np.where(there, A, out), axis=1, initial=out) for limit, out in _ENDS] for A in (X, Y)]
+def _usable(X: np.ndarray, Y: np.ndarray, counts: np.ndarray, unknowns: int, anywhere: bool) -> np.ndarray:
+    """Whether curves can be fitted: they have more points than unknowns, several x and several y.
+
+    anywhere : whether the contact point is fitted; otherwise the contact begins at 0, and some x must be above it
+    """
+    enough = counts.sum(axis=1) > unknowns
+    ends = [[limit(np.where(counts, A, out), axis=1, initial=out) for limit, out in _ENDS] for A in (X, Y)]
     spread = [high - low > 0 for low, high in ends]
     return enough & spread[0] & spread[1] & ((ends[0][1] > 0) | anywhere)
 
 
 def _stiffness(X: np.ndarray, Y: np.ndarray, question: Question) -> np.ndarray:
-    """A rough modulus of each curve, in any unit: curves that are alike in it share the tiles of a table."""
+    """A rough modulus of each curve, in any unit. Curves with similar moduli share the tiles of a table."""
     q, e, _ = HERTZ[question.model.x, question.model.y][0]
     with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore")  # of curves without points
+        warnings.simplefilter("ignore")  # for curves without points
         return (np.nanmax(Y, axis=1) - np.nanmin(Y, axis=1)) ** (1 / e) / np.nanmax(np.abs(X), axis=1) ** (q / e)
 
 
-def _blocks(there: np.ndarray, usable: np.ndarray, stiffness: np.ndarray) -> Iterator[tuple]:
-    """For each block its curves, the same filled up to a multiple of AT_LEAST by the last one, and its number of
-    points. Curves that are alike come together: they share tiles."""
-    size = -(-there.sum(axis=1) // _PART) * _PART
+def _blocks(counts: np.ndarray, usable: np.ndarray, stiffness: np.ndarray) -> Iterator[tuple]:
+    """For each block its curves, the same padded to a multiple of AT_LEAST with the last one, and the number of points.
+
+    Similar curves come together, since they share tiles.
+    """
+    size = -(-counts.sum(axis=1) // _PART) * _PART
     for points in np.unique(size[usable]):
         same = np.flatnonzero((size == points) & usable)
         same = same[np.argsort(stiffness[same], kind="stable")]
@@ -279,10 +292,10 @@ def _blocks(there: np.ndarray, usable: np.ndarray, stiffness: np.ndarray) -> Ite
             yield index, np.concatenate([index, np.repeat(index[-1:], -len(index) % AT_LEAST)]), points
 
 
-def _packed(A: np.ndarray, there: np.ndarray, index: np.ndarray, points: int) -> np.ndarray:
-    """The points of some curves, without the gaps between them, filled up with NaN."""
+def _packed(A: np.ndarray, counts: np.ndarray, index: np.ndarray, points: int) -> np.ndarray:
+    """The points of some curves, without the gaps between them, padded with NaN."""
     packed = np.full((len(index), points), np.nan)
     for row, curve in zip(packed, index, strict=True):
-        values = A[curve][there[curve]]
+        values = A[curve][counts[curve]]
         row[: len(values)] = values
     return packed

@@ -14,18 +14,18 @@ from ..specimen.quantities import quantity
 from ..terminal import shown
 
 ENDINGS = (".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series", ".ibw", ".tab", ".h5", ".zip")
-"""Of files that only afmformats reads."""
+"""Endings of files that only afmformats reads."""
 PARTS = {"approach": "appr", "retraction": "retr"}
 """Part of a curve -> its name in afmformats."""
-_UNITS = {"spring_constant": ("N/m",), "sensitivity": ("m/V", "m/A")}  # of NT-MDT the detector's signal is a current
-_HEAD = 4096  # bytes in which a text says that an instrument has written it
-_BACK = 0.1  # a curve has a retraction where the tip goes back by this part of its way
+_UNITS = {"spring_constant": ("N/m",), "sensitivity": ("m/V", "m/A")}  # the detector's signal of NT-MDT is a current
+_HEAD = 4096  # number of bytes in which a text shows that an instrument has written it
+_BACK = 0.1  # a curve has a retraction if the tip goes back by at least this share of its way
 _INTERRUPTS = (KeyboardInterrupt, SystemExit, GeneratorExit, MemoryError)
 
 
 class Reading(NamedTuple):
-    """How the files of instruments are read: `part` of each curve, number of the `curve` or None for all, and what is
-    known of the cantilever, in N/m and m/V, or None for what the file says."""
+    """Options for the files of instruments: `part` of each curve, number of the `curve` or None for all, and constants
+    of the cantilever, in N/m and m/V, or None for those in the file."""
 
     part: str = "approach"
     curve: int | None = None
@@ -68,10 +68,10 @@ def is_of_instrument(path: Path, reading: Reading) -> bool:
     try:
         with opened(path) as file:
             head = file.read(_HEAD).decode("latin-1")
-    except (OSError, ValueError):  # the reader of text says it
+    except (OSError, ValueError):  # the reader of text reports it
         return False
     if ending == ".csv":
-        return "Force-Distance Curve" in head  # of AFM Workshop
+        return "Force-Distance Curve" in head  # AFM Workshop
     first = next((line.split() for line in head.splitlines() if line.strip()), [])
     bare = len(first) == 3 and all(_is_number(cell.replace(",", ".")) for cell in first)  # of NT-MDT
     return "Device:\tChiaro" in head or (bare and {reading.spring_constant, reading.sensitivity} != {None})
@@ -88,7 +88,7 @@ def _is_number(cell: str) -> bool:
 def read(path: Path, reading: Reading) -> dict[str, tuple[np.ndarray, str]]:
     """Columns D (m) and P (N) over (curve, point), of one part; D grows into the sample, from any origin.
 
-    Raises StudyError: afmformats is not there, or cannot read the file; no curve in it has two points.
+    Raises StudyError: afmformats is not installed, or cannot read the file; no curve in it has two points.
     """
     where = path.as_posix()
     if not path.exists():
@@ -106,28 +106,28 @@ def read(path: Path, reading: Reading) -> dict[str, tuple[np.ndarray, str]]:
     except ImportError:
         raise StudyError([f"{where}: needs the package afmformats: pip install 'roughcoat[afm]'"]) from None
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of columns that are not complete: they are said where they are needed
+        warnings.simplefilter("ignore")  # on incomplete columns, which are reported where they are needed
         try:
             return _columns(_loaded(afmformats, path, reading), reading, where)
         except (StudyError, MemoryError, *_INTERRUPTS):
             raise
-        except BaseException as error:  # those of afmformats are no Exceptions
-            raise StudyError([f"{where}: {_said(error)}"]) from None
+        except BaseException as error:  # errors of afmformats are not Exceptions
+            raise StudyError([f"{where}: {_in_words(error)}"]) from None
 
 
-def _said(error: BaseException) -> str:
-    """One line of what afmformats says."""
+def _in_words(error: BaseException) -> str:
+    """An error of afmformats in one line."""
     if lacking := [key.replace(" ", "_") for key in getattr(error, "meta_keys", ())]:
         such = {"spring_constant": 'spring_constant="0.05 N/m"', "sensitivity": 'sensitivity="45 nm/V"'}
         return f"the file has no {' and no '.join(lacking)}: give {', '.join(such.get(key, key) for key in lacking)}"
     first = next(iter(str(error).strip().splitlines()), "")
-    if isinstance(error, (AssertionError, KeyError, IndexError)) or not first:  # they say nothing by themselves
+    if isinstance(error, (AssertionError, KeyError, IndexError)) or not first:  # their messages alone say nothing
         first = f"{type(error).__name__} {first}".strip()
     return f"afmformats cannot read it: {first}"
 
 
 class ForceCurve(NamedTuple):
-    """A curve of afmformats, the factor of its force, and the spring constant (N/m), None if nobody knows it."""
+    """A curve of afmformats, the factor of its force, and the spring constant (N/m), None if it is not known."""
 
     data: Any
     factor: float
@@ -135,12 +135,12 @@ class ForceCurve(NamedTuple):
 
 
 def _loaded(afmformats: Any, path: Path, reading: Reading) -> list[ForceCurve]:
-    """The curves, with the cantilever of the call."""
+    """The curves, with the constants of the cantilever in the call."""
     overrides = {"spring constant": reading.spring_constant, "sensitivity": reading.sensitivity}
     overrides = {key: value for key, value in overrides.items() if value is not None}
     try:
         loaded, factors = afmformats.load_data(path, meta_override=overrides or None), ()
-    except NotImplementedError:  # of .ibw, .h5 and .tab, in which the force is made: it is proportional to both
+    except NotImplementedError:  # .ibw, .h5 and .tab hold a computed force, which is proportional to both constants
         loaded, factors = afmformats.load_data(path), tuple(overrides)
     curves = []
     for data in loaded:
@@ -153,7 +153,7 @@ def _loaded(afmformats: Any, path: Path, reading: Reading) -> list[ForceCurve]:
 
 
 def _columns(loaded: list[ForceCurve], reading: Reading, where: str) -> dict[str, tuple[np.ndarray, str]]:
-    """The chosen curves, filled up with NaN to the longest. Raises StudyError."""
+    """The chosen curves, padded with NaN to the longest. Raises StudyError."""
     if not loaded:
         raise StudyError([f"{where}: has no force curve"])
     if reading.curve is not None:
@@ -171,7 +171,7 @@ def _columns(loaded: list[ForceCurve], reading: Reading, where: str) -> dict[str
 
 
 def place(curve: Any, curves: int, where: str) -> int:
-    """The number of a curve, counted from 0, or from the end where it is negative. Raises StudyError for none."""
+    """The number of a curve, counted from 0, or from the end if it is negative. Raises StudyError for any other."""
     if isinstance(curve, bool) or not isinstance(curve, (int, np.integer)) or not -curves <= curve < curves:
         there = f"{curves} curves, 0 to {curves - 1}" if curves > 1 else "one curve, 0"
         raise StudyError([f"{where}: curve = {shown(curve)}: the file has {there}"])
@@ -182,7 +182,7 @@ def _of_curve(curve: ForceCurve, part: str) -> tuple[np.ndarray, np.ndarray]:
     """Depth and load of one part of one curve."""
     data, factor, spring_constant = curve
     names = [name for name in ("tip position", "height (measured)", "height (piezo)") if name in data.columns]
-    if factor != 1.0:  # a tip position was made with the force of the file
+    if factor != 1.0:  # the tip position was computed with the force of the file
         names = [name for name in names if name != "tip position"]
     if "force" not in data.columns or not names:
         raise ValueError(f"a curve has no complete column of the {'height' if 'force' in data.columns else 'force'}")
@@ -194,22 +194,22 @@ def _of_curve(curve: ForceCurve, part: str) -> tuple[np.ndarray, np.ndarray]:
     force = force * factor
     if names[0] == "tip position":
         return -height, force
-    return -height - force / spring_constant, force  # the piezo less what the cantilever gives way
+    return -height - force / spring_constant, force  # the position of the piezo less the deflection of the cantilever
 
 
 def _half(height: np.ndarray, force: np.ndarray, part: str) -> tuple[np.ndarray, np.ndarray]:
-    """One part of a curve whose file does not tell them apart (.ibw): the points before the deepest one, and
-    it, or what comes after it. Where the tip does not go back, all of it is the approach."""
+    """One part of a curve whose file does not separate them (.ibw): the points up to the deepest one, or the points
+    after it. If the tip does not go back, the whole curve is the approach."""
     turn = int(np.nanargmin(height)) + 1 if np.isfinite(height).any() else len(height)
     back = np.ptp(height[turn - 1 :]) if turn < len(height) else 0.0
     if not back > _BACK * np.ptp(height):
         turn = len(height)
-    kept = slice(0, turn) if part == "approach" else slice(turn, None)
-    return height[kept], force[kept]
+    points = slice(0, turn) if part == "approach" else slice(turn, None)
+    return height[points], force[points]
 
 
-#: Of P/S, the part by which the surface sinks at the edge of the contact: of a paraboloid and of a worn pyramid (Oliver
-#: and Pharr, J. Mater. Res. 7 (1992) 1564).
+#: Depth over P/S by which the surface sinks at the edge of the contact, for a paraboloid and a worn pyramid (Oliver and
+#: Pharr, J. Mater. Res. 7 (1992) 1564).
 SINK = 0.75
 _OF_INDENTS = {"h": ("m", "nm"), "P": ("N", "mN"), "S": ("N/m", "mN/nm"), "A": ("m^2", "nm^2")}
 _NM = 1e-9
@@ -217,7 +217,7 @@ _Columns = dict[str, tuple[Any, str]]
 
 
 def without_indents(columns: _Columns, area: Any, where: str) -> _Columns:
-    """The columns a and dP_dD of a table with the column S; all others as they are. A point without contact is NaN.
+    """The columns a and dP_dD of a table with the column S; other tables as they are. A point without contact is NaN.
 
     Raises StudyError: a column is missing, or has another unit, or there is no area function.
     """
@@ -254,7 +254,7 @@ def _in_si(name: str, values: Any, unit: str, where: str) -> np.ndarray:
 
 
 def _area(area: Any, hc: np.ndarray, where: str) -> np.ndarray:
-    """A(hc), m². A depth hc that is not above 0 has none."""
+    """A(hc), m²; NaN for a depth hc that is not above 0."""
     hc = np.where(hc > 0, hc, np.nan)
     if callable(area):
         return np.asarray(area(hc), float)

@@ -1,7 +1,7 @@
 """A model file of nanite (`nanite.model.load_model_from_file`): a bead on a layer that is bonded to a rigid base.
 
-The force is exact for any thickness, by roughcoat: F = 4/3 E/(1 - nu²) sqrt(R) d^(3/2) g(d R/h², nu), the depth d =
-contact_point - tip position. g is a table that is made when a Poisson ratio is first met (docs/afm.md).
+The force is exact for any thickness, by roughcoat: F = 4/3 E/(1 - nu²) sqrt(R) d^(3/2) g(d R/h², nu), with the depth d
+= contact_point - tip position. g is a table that is computed at the first use of a Poisson ratio (docs/afm.md).
 """
 
 from functools import lru_cache
@@ -9,11 +9,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import Chebyshev
 
-import roughcoat  # noqa: F401  (so that `solver` is its own, whatever lies beside the data)
+import roughcoat  # noqa: F401  (so that `solver` is that of roughcoat, whatever lies beside the data)
 from solver import Problem, solve
 
-_LOW, _HIGH, _NODES = np.log(1e-6), np.log(1e4), 80  # of ln(d R/h²), a/h from 0.001 to some 100: within 1e-6
-_THIN = 1e-3  # h/R of the solved contacts; only d R/h² counts
+_LOW, _HIGH, _NODES = np.log(1e-6), np.log(1e4), 80  # range of ln(d R/h²), a/h from 0.001 to some 100; right to 1e-6
+_THIN = 1e-3  # h/R of the solved contacts; only d R/h² matters
 
 
 @lru_cache(maxsize=64)

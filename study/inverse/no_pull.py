@@ -1,4 +1,4 @@
-"""Curves without a pull: their work of adhesion is 0, and the other unknowns are those of a fit without adhesion."""
+"""Curves without a pull: their work of adhesion is 0, and their other unknowns come from a fit without adhesion."""
 
 from typing import Any
 
@@ -6,21 +6,21 @@ import numpy as np
 import xarray as xr
 from scipy import special
 
-#: A pull is a load below the baseline by so many standard deviations of a point, on an average of so many neighbours:
-#: with 10,000 points of white noise some 1e-4 of curves have one.
+#: A pull is a load below the baseline by so many standard deviations of a point, on an average of so many neighbours.
+#: With 10,000 points of white noise, some 1e-4 of curves have a pull.
 _PULL, _AVERAGE = 2.5, 5
-#: Level at which adhesion lowers the sum of squares, by the work, the point from which on others stick, and what the
-#: best of several searches gains by chance.
+#: Level of the test that adhesion reduces the sum of squares, and its number of further unknowns: the work, the point
+#: from which on others adhere, and one for the chance gain of the best of several searches.
 _SURE, _MORE = 0.95, 3
-#: Parameters that mean nothing without adhesion.
+#: Parameters without a meaning if there is no adhesion.
 OF_ADHESION = ("w_adhesion", "adhesion", "sigma0", "z0", "branch", "k_machine")
-#: End of a name -> what holds the intervals of two fits.
+#: Ending of a name -> function that combines the intervals of two fits.
 _BOTH = {"low": np.fmin, "high": np.fmax, "spread": np.fmax}
 _LOST = (5, 6, 127)  # statuses without numbers
 
 
 def without(free: Any, parameters: dict) -> tuple[Any, dict]:
-    """`free` and the parameters of the same fit without adhesion."""
+    """`free` and the parameters for the same fit without adhesion."""
     names = [name for name in free if name not in OF_ADHESION]
     rest = {name: free[name] for name in names} if isinstance(free, dict) else names
     return rest, {name: value for name, value in parameters.items() if name not in OF_ADHESION}
@@ -29,16 +29,18 @@ def without(free: Any, parameters: dict) -> tuple[Any, dict]:
 def _is_quiet(plain: xr.Dataset) -> bool:
     """Whether the load of a curve is nowhere below the baseline by more than its noise.
 
-    plain : its fit without adhesion. The noise is that of the shallower half of the points before its contact point
+    plain : fit of the curve without adhesion
+
+    The noise is that of the shallower half of the points before the contact point.
     """
     x, y, residual = (plain[name].values for name in ("D", "P", "residual"))
-    there = np.flatnonzero(np.isfinite(residual))
-    there = there[np.argsort(x[there], kind="stable")]
+    points = np.flatnonzero(np.isfinite(residual))
+    points = points[np.argsort(x[points], kind="stable")]
     base = float(plain["P0"]) if "P0" in plain else 0.0
-    base = base + (float(plain["tilt"]) * x[there] if "tilt" in plain else 0.0)
-    loads, before = y[there] - base, x[there] < (float(plain["D0"]) if "D0" in plain else 0.0)
+    base = base + (float(plain["tilt"]) * x[points] if "tilt" in plain else 0.0)
+    loads, before = y[points] - base, x[points] < (float(plain["D0"]) if "D0" in plain else 0.0)
     shallow = np.flatnonzero(before)[: before.sum() // 2]
-    noise = np.sqrt(np.mean(residual[there] ** 2))
+    noise = np.sqrt(np.mean(residual[points] ** 2))
     if len(shallow) >= 2 * _AVERAGE:
         loads, noise = loads - np.median(loads[shallow]), np.std(loads[shallow])
     means = np.convolve(loads, np.full(_AVERAGE, 1 / _AVERAGE), "valid")
@@ -46,10 +48,13 @@ def _is_quiet(plain: xr.Dataset) -> bool:
 
 
 def joined(fitted: xr.Dataset, plain: xr.Dataset, low: float) -> xr.Dataset:
-    """Fits with adhesion, and in place of those of curves without a pull those without it, `plain`, if adhesion is at
-    its low bound or lowers the sum of squares by no more than chance would. `no_pull` says where.
+    """Fits with adhesion, except that curves without a pull have the fits without adhesion; `no_pull` marks them.
 
+    plain : fits without adhesion
     low : the low bound of w_adhesion
+
+    A curve has no pull only if w_adhesion is at its low bound, or reduces the sum of squares by no more than chance
+    would.
     """
     fitted, no_pull = fitted.copy(deep=True), np.zeros(fitted.sizes["curve"], bool)
     for i in np.flatnonzero(~plain["fit_status"].isin(_LOST).values & ~fitted["fit_status"].isin(_LOST).values):
@@ -65,8 +70,10 @@ def joined(fitted: xr.Dataset, plain: xr.Dataset, low: float) -> xr.Dataset:
 
 
 def _put(fitted: xr.Dataset, plain: xr.Dataset, curve: int, better: bool) -> None:
-    """The numbers of a curve of `plain` in place of those of `fitted`. Where some adhesion is `better`, by no more than
-    chance, the intervals hold those of both."""
+    """Put the numbers of a curve in `plain` in the place of those in `fitted`.
+
+    better : whether some adhesion fits better, by no more than chance; then the intervals cover those of both fits
+    """
     before = fitted.isel(curve=curve).copy(deep=True)
     for name in plain.data_vars:
         if name in fitted and name != "covariance":

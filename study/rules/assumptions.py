@@ -1,4 +1,4 @@
-"""The assumptions of the model: limits, and the rules with a mask that say where a contact is beyond them."""
+"""The assumptions of the model: limits, and the rules with a mask that say where a contact exceeds them."""
 
 import numpy as np
 
@@ -10,34 +10,36 @@ from ..terminal import rounded
 from .rule import have, rule
 
 FEW_SPOTS = 100.0
-"""Fewest asperities in touch: the model spreads them evenly, so they must be many. Of equal heights N̄πa² touch."""
+"""Least number of asperities in touch: the model spreads them evenly, so there must be many. With equal heights N̄πa²
+of them touch."""
 SPOT_OVER_LAYER = 0.1
 """On a half-space of the layer's material the central spot must be small against the layer, b <= 0.1 h."""
 PITCH_OVER_LAYER = 2.0
-"""A layer bends between asperities whose pitch 1/sqrt(N̄) is larger than this times h. On a half-space of its material
-A[p] then errs: by up to 2.4 % at a pitch of 2 h, by up to 11 % at 3 h (`make validate`, docs/validate.md)."""
-NOT_THIN = 0.1  # largest model error of a thin layer: `make validity` prints and draws where it reaches these 10 %
+"""A layer bends between asperities whose pitch 1/sqrt(N̄) exceeds this times h. With a half-space of its material A[p]
+then errs: by up to 2.4 % at a pitch of 2 h, by up to 11 % at 3 h (`make validate`, docs/validate.md)."""
+NOT_THIN = 0.1  # largest model error of a thin layer: `make validity` prints and draws where it reaches 10 %
 MERGING = 0.4
-"""Largest λ(0) of spots that do not merge: the disc cell then overestimates A[p] by 10 % against a square lattice of
-asperities and by 11 % against a hexagonal one, λ and p_max err by 3 % (tests/laws/lattice/test_micro_lattice.py)."""
+"""Largest λ(0) of spots that do not merge. At this λ(0) the disc cell overestimates A[p] by 10 % against a square
+lattice of asperities and by 11 % against a hexagonal one; λ and p_max err by 3 %
+(tests/laws/lattice/test_micro_lattice.py)."""
 STEEP = 0.2
-"""Largest a/R: Tabor's representative strain 0.2 a/R (The Hardness of Metals, 1951) is then 4 %, and the sphere is at
-r = a by (a/R)²/4 = 1 % deeper than the paraboloid r²/2R. Of two bodies of known radii R1 and R2 it is also the largest
-a over the smaller of them: in a close cup R is far larger than both."""
+"""Largest a/R: Tabor's representative strain 0.2 a/R (The Hardness of Metals, 1951) is then 4 %, and at r = a the
+sphere is (a/R)²/4 = 1 % deeper than the paraboloid r²/2R. For two bodies with known radii R1 and R2 it is also the
+largest a over the smaller radius: in a close cup R is far larger than both."""
 COMPRESSED = 0.1
-"""Largest compressive strain of the layer; linear elasticity errs by about as much. A layer that gives way itself has
-the strain D/h. If rather the body below gives way, the strain of the layer is at most p(0)/E1*."""
+"""Largest compressive strain of the layer; linear elasticity errs by about as much. If the layer gives way, its strain
+is D/h. If the body below gives way instead, the strain of the layer is at most p(0)/E1*."""
 STRETCHED = 0.1
 """A layer bent to the sphere is under tension, which bears a part of the pressure. Linear elasticity leaves that out.
-This is the largest part of p(0) that it may bear. With a free edge at r = a it bears E1* h a²/(8 R³) if h < a (Föppl's
-equations; tests/data/test_validity_stretched.py). Of another shape f(r) it is E1* h f'(a)³/(8 a)."""
+This is the largest share of p(0) that the tension may bear. With a free edge at r = a it bears E1* h a²/(8 R³) if h < a
+(Föppl's equations; tests/data/test_validity_stretched.py), and E1* h f'(a)³/(8 a) under another shape f(r)."""
 STEEP_SPOT = 0.5
 """Largest b(0)/Ra: the strain under an asperity, 0.2 b/Ra, is then 10 %, the sphere is 6 % deeper than the paraboloid,
 and p_max = 0.32 E1* is above the hardness of any metal."""
 OTHERWISE = 'asperities_on = "auto", on an exact base, has the coated body itself'
 """The way out for asperities that press on a half-space."""
-#: Pitch over h -> largest error in % of A and of p_max in the resolved cells of docs/validate.md, of n from 0.2 to
-#: HARDEST. By its first-order sums a harder layer errs more.
+#: Pitch over h -> largest error in % of A and of p_max in the resolved cells of docs/validate.md, for n from 0.2 to
+#: HARDEST. By the first-order sums there, a harder layer errs more.
 HARDEST = 20
 SEEN = {
     1: (0.02, 0.03),
@@ -52,9 +54,9 @@ SEEN = {
 
 
 def by_pitch(v, where: np.ndarray) -> str:
-    """How large the error of the asperities' part is, in the worst case: the pitch over h decides."""
+    """A sentence on the error of the asperities' part in the worst case, which follows from the pitch over h."""
     if any(name not in v or v[name].attrs.get("units", ROWS[name].unit) != ROWS[name].unit for name in ("Nbar", "h")):
-        return ""  # of study.readable, or a mean
+        return ""  # from study.readable, or a mean
     pitch = (0.0 * v["validity"] + 1 / (np.sqrt(v["Nbar"]) * v["h"])).values[where].max()
     worst = f" {'The largest' if where.sum() > 1 else 'Here the'} pitch 1/sqrt(Nbar) is {rounded(pitch)} h"
     if not pitch > min(SEEN):
@@ -118,8 +120,8 @@ def asperity_strain_not_small(v, times):
     """The strain under the asperities is not small (b > {STEEP_SPOT:g} Ra, or pmax as of such a spot): most materials
     yield before that, and pmax is larger than any real pressure."""
     E = np.where(v["layered"], v["E1*"], 1.0) / (1 + v["m"])  # of layer and punch in series
-    # By (13) this is at most b/Ra of the central spot. It also serves laws whose b(0) is a mean, and those without Ra.
-    with np.errstate(invalid="ignore"):  # of sharp tips both are infinite
+    # By (13) this is at most b/Ra of the central spot. It also serves laws whose b(0) is a mean, and laws without Ra.
+    with np.errstate(invalid="ignore"):  # both pressures are infinite under sharp tips
         steep = np.pi / 2 * (v["p_max"] - v["p0"]) / E
     return v["rough"] & ((v["b"] > times * STEEP_SPOT * v["Ra"]) | (steep > times * STEEP_SPOT))
 

@@ -1,4 +1,4 @@
-"""The table of rules, the flags `validity` of those with a mask, and what is said of contacts that violate some."""
+"""The table of rules, the flags `validity` of rules with a mask, and sentences about contacts that violate rules."""
 
 from __future__ import annotations
 
@@ -23,20 +23,21 @@ from ..inputs.vocabulary import ROWS, attributes
 class Rule(NamedTuple):
     """A row of the table: a condition with the decorator `rule`.
 
-    With a mask it is a function (v, times) of `numbers` -> bool over the cases: where the rule is violated by more than
-    `times` its limit. Without, one of the variables of a dataset, of which any may be missing -> sentences.
+    A condition with a mask is a function (v, times) of `numbers`. It returns bool over the cases: whether a case
+    exceeds `times` the limit of the rule. A condition without a mask is a function of the variables of a dataset, any
+    of which may be missing. It returns sentences.
     """
 
     condition: Callable
     mask: int  # in `validity`; 0: none
     text: str  # in a figure, in mathtext
-    grey: str  # of its band there
-    size: Callable | None  # the variables, where it is violated -> a sentence on how large the error is
-    sentence: str  # what is said where it is violated: the docstring, in which {NAME} is a constant of the module
+    grey: str  # of the rule's band in a figure
+    size: Callable | None  # size(variables, where the rule is violated) -> a sentence on the size of the error
+    sentence: str  # for cases that violate the rule: the docstring, in which {NAME} is a constant of the module
 
 
 RULES: dict[str, Rule] = {}
-"""The table: name -> rule. What is said of a contact is said in this order."""
+"""The table: name -> rule. The sentences about a contact follow this order."""
 ASSUMPTIONS: dict[int, str] = {}
 """Mask -> name of its rule."""
 
@@ -45,7 +46,7 @@ WORDS: dict[str, Callable] = {}
 
 
 def rule(mask=0, text="", grey="0.85", *, size=None) -> Callable:
-    """Decorator of a condition: puts a `Rule` into the table. Raises ValueError for a mask or name that is taken."""
+    """Decorator of a condition: adds a `Rule` to the table. Raises ValueError for a mask or name that is in use."""
 
     def register(condition: Callable) -> Callable:
         name, words = condition.__name__, " ".join((condition.__doc__ or "").split())
@@ -60,30 +61,31 @@ def rule(mask=0, text="", grey="0.85", *, size=None) -> Callable:
 
 
 def sentences(v: Mapping) -> list[str]:
-    """What the rules say of contacts, the variables of a dataset: those of its flags, then those without a mask.
+    """The sentences of all rules about contacts: first by the flags in the dataset, then by the rules without a mask.
 
-    Before contacts are solved their inputs alone are judged.
+    v : the variables of a dataset; before contacts are solved, it has only their inputs
     """
-    said = []
+    lines = []
     for name, where in (broken(v["validity"]) if "validity" in v else {}).items():
         row = RULES.get(name)  # results may come from a program that had more rules
         if where.any():
             words = row.sentence if row else f"{name}: a rule that is not known here."
-            said.append(of_cases(where) + words + (row.size(v, where) if row and row.size else ""))
-    return said + [text for row in RULES.values() if not row.mask for text in row.condition(v)]
+
+            lines.append(of_cases(where) + words + (row.size(v, where) if row and row.size else ""))
+    return lines + [text for row in RULES.values() if not row.mask for text in row.condition(v)]
 
 
 def of_cases(where: np.ndarray) -> str:
-    """ "2 of 5 cases: ", the beginning of a sentence about several."""
+    """The beginning of a sentence about several cases, "2 of 5 cases: "."""
     return f"{where.sum()} of {where.size} cases: " if where.size > 1 else ""
 
 
 def validity(dataset: xr.Dataset) -> xr.DataArray:
     """Assumptions that each case violates, a sum of the masks of ASSUMPTIONS; 0: all hold. docs/model.md explains them.
 
-    A case without numbers (see `status`) only gets the masks that need none. int32 over the dimensions of `status`.
+    A case without numbers (see `status`) gets only the masks that need none. int32 over the dimensions of `status`.
 
-    Raises ValueError for results with units, which hold it already: the masks compare with R = 1 and E2* = 1.
+    Raises ValueError for results with units, which already have `validity`: the masks assume R = 1 and E2* = 1.
     """
     if has_units(dataset):
         raise ValueError("validity follows from results without units; those with units hold it: dataset.validity")
@@ -91,9 +93,9 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
 
 
 def validity_of(variables: Mapping, times: float = 1.0) -> Labelled:
-    """`validity` of the variables of a dataset, dimensionless; with R1 and R2, in R, where both radii are known.
+    """`validity` of the dimensionless variables of a dataset, with R1 and R2, in R, where both radii are known.
 
-    times : how many times beyond its limit an assumption counts as violated
+    times : an assumption counts as violated from so many times its limit on
     """
     status, v = variables["status"], numbers(variables)
     violated = (np.int32(mask) * RULES[name].condition(v, times) for mask, name in ASSUMPTIONS.items())
@@ -106,13 +108,14 @@ def validity_of(variables: Mapping, times: float = 1.0) -> Labelled:
 
 
 def numbers(variables: Mapping) -> Mapping:
-    """Name -> array over the dimensions of `status`, of length 1 along some; NaN of a name that is not there. They are
-    arrays, since DataArrays take as long as a contact.
+    """Name -> array over the dimensions of `status`, perhaps of length 1 along some; NaN for a missing name.
 
-    Beside the variables: layered, rough, thin (bool: a thin layer was used), on_half_space (bool: asperities press on
-    one, whatever their pitch), E1* (reduced modulus of the layer), spots (how many touch), b (radius of the central
-    one), slope (f'(a) of the shape of the punch), pressure (p(0), and where that is not finite the mean), known (what
-    the words of `micro` and `shape` stand for).
+    They are arrays, since computing with DataArrays takes as long as solving a contact.
+
+    In addition to the variables it has: layered, rough, thin (bool: a thin layer was used), on_half_space (bool:
+    asperities press on a half-space, whatever their pitch), E1* (reduced modulus of the layer), spots (number of
+    asperities that touch), b (radius of the central spot), slope (f'(a) of the shape of the punch), pressure (p(0), or
+    the mean where p(0) is not finite), known (laws and shapes for the words of `micro` and `shape`).
     """
     dims, used = variables["status"].dims, variables["model_used"].attrs
     arrays = {name: along(dims, array) for name, array in variables.items() if set(array.dims) <= set(dims)}
@@ -131,7 +134,7 @@ def numbers(variables: Mapping) -> Mapping:
 
 
 def slope(v):
-    """f'(a) of the shapes of the punches; NaN of a shape that is not known."""
+    """f'(a) of the shapes of the punches; NaN for an unknown shape."""
     if "shape" not in v:
         return v["a"]
     slopes = np.full(np.broadcast(v["a"], v["shape"]).shape, np.nan)
@@ -140,25 +143,25 @@ def slope(v):
             arrays = np.broadcast_arrays(*(v[name] for name in ("a", *kind.parameters)), slopes)
             a, *numbers = (array.ravel() for array in arrays[:-1])
             shape = kind.of(**dict(zip(kind.parameters, numbers, strict=True)), size=len(a))
-            with np.errstate(all="ignore"):  # of cases without numbers
+            with np.errstate(all="ignore"):  # for cases without numbers
                 at_edge = shape.slope(a[:, None])[:, 0].reshape(arrays[0].shape)
             slopes = np.where(v["shape"] == kind.name, at_edge, slopes)
     return slopes
 
 
 def _pressure(v):
-    """p(0), and where it is not finite, as under a sharp tip, the mean pressure."""
+    """p(0), or the mean pressure where p(0) is not finite, as under a sharp tip."""
     with np.errstate(all="ignore"):
         return np.where(np.isfinite(v["p0"]), v["p0"], v["P"] / (np.pi * v["a"] ** 2)) if "shape" in v else v["p0"]
 
 
 def have(feature: str, micro, known: Known):
-    """Whether the law of each case has a feature, such as "rough". A law that is not known is taken to have it."""
+    """Whether the law of each case has a feature, such as "rough". An unknown law is assumed to have it."""
     return sum(micro == name for name, law in known.laws.items() if not getattr(law, feature)) == 0
 
 
 def _touching(values):
-    """Share of the summits in the centre that touch: 1 of equal heights."""
+    """Share of the summits in the centre that touch: 1 for equal heights."""
     share = np.ones(())
     for law in [law for name, law in values["known"].laws.items() if law.touching and np.any(values["micro"] == name)]:
         touch = law.touching(values["A0"], **{name: values.get(name, np.nan) for name in law.parameters})
@@ -181,7 +184,7 @@ def validity_attributes() -> dict:
 
 
 def broken(validity: xr.DataArray | xr.Variable | Labelled) -> dict[str, np.ndarray]:
-    """Name of each assumption -> where it is violated, of the shape of the flags; in the order of the masks."""
+    """Name of each assumption -> whether it is violated, in the shape of the flags; in the order of the masks."""
     attributes = validity.attrs
     masks = zip(np.atleast_1d(attributes["flag_masks"]).tolist(), attributes["flag_meanings"].split(), strict=True)
     values = whole(validity.values, attributes)
@@ -189,9 +192,9 @@ def broken(validity: xr.DataArray | xr.Variable | Labelled) -> dict[str, np.ndar
 
 
 def whole(flags: np.ndarray, attributes: dict) -> np.ndarray:
-    """Flags as whole numbers. `where`, `reindex` and `interp` of xarray make them floats, NaN where no case is left.
+    """Flags as whole numbers. `where`, `reindex` and `interp` of xarray make them floats, with NaN for absent cases.
 
-    For NaN the status is "not run", and other flags are 0. Raises ValueError for numbers that are flags of no case.
+    For NaN the status is "not run", and other flags are 0. Raises ValueError for numbers that cannot be flags.
     """
     if flags.dtype.kind in "iu":
         return flags
@@ -203,11 +206,11 @@ def whole(flags: np.ndarray, attributes: dict) -> np.ndarray:
 
 
 def has_units(dataset: xr.Dataset) -> bool:
-    """Whether the numbers are in SI units, also of a dataset without the coordinates that say it."""
+    """Whether the numbers are in SI units, even if the dataset has lost the coordinates that say so."""
     rows = lexicon_in(dataset).rows
-    return any(own.attrs.get("units", "1") != "1" for name, own in dataset.variables.items() if name in rows)
+    return any(variable.attrs.get("units", "1") != "1" for name, variable in dataset.variables.items() if name in rows)
 
 
 def in_si(v: Mapping, name: str) -> bool:
-    """Whether an input is there and in its SI unit; it is in another one in a dataset of `study.readable`."""
+    """Whether an input exists and is in its SI unit; in a dataset of `study.readable` it has another unit."""
     return name in v and v[name].attrs.get("units") == ROWS[name].unit

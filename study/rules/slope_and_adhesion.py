@@ -1,4 +1,4 @@
-"""Rules about the shape of the punch and about contacts that stick."""
+"""Rules about the shape of the punch and about contacts with adhesion."""
 
 import numpy as np
 
@@ -13,8 +13,8 @@ SLOPE = 0.4
 sphere exceeds it at a = 0.37 R, cones sharper than 68 degrees everywhere. A judgement, not a computation."""
 ZONE = 0.1
 """Largest width of the ring in which the surfaces still attract each other, over a and over the thickness of the layer:
-the model of Johnson, Kendall and Roberts takes it for nothing. A judgement, not a computation."""
-#: Radii r/a at which the pressure is looked at; at the edge itself it is infinite.
+the model of Johnson, Kendall and Roberts neglects this ring. A judgement, not a computation."""
+#: Radii r/a at which the pressure is examined; at the edge itself it is infinite.
 _RADII = np.linspace(0.0, 1.0, 65)[:-1]
 #: The stress of adhesion is w/(0.97 z0) where the range z0 is given: Maugis' step with the work of Lennard-Jones.
 STEP = 0.97
@@ -30,7 +30,7 @@ def slope_not_small(v, times):
 
 
 def stress_of_adhesion(v):
-    """sigma0, from z0 where that is given; NaN where neither is."""
+    """sigma0, by z0 where only z0 is given; NaN where neither is."""
     return np.where(np.isnan(v["sigma0"]), v["w_adhesion"] / (STEP * v["z0"]), v["sigma0"])
 
 
@@ -54,14 +54,14 @@ def interior_tension(v, times):
         return np.False_
     shape = v["status"].shape
     index = np.flatnonzero(np.broadcast_to((v["w_adhesion"] > 0) & (v["status"] == 0), shape))
-    found = np.zeros(shape, bool)
+    has_tension = np.zeros(shape, bool)
     if len(index):
         _, solution = solved(v, index, _RADII)
-        found.flat[index] = rises_from_tension(solution.p)
-    return found
+        has_tension.flat[index] = rises_from_tension(solution.p)
+    return has_tension
 
 
 def rises_from_tension(p):
-    """(B,) bool: the pressure (B, m) is negative at a radius, and higher at a larger one."""
-    beyond = np.maximum.accumulate(p[:, ::-1], axis=1)[:, ::-1]  # the highest from each radius on
-    return ((p[:, :-1] < 0) & (beyond[:, 1:] > p[:, :-1])).any(axis=1)
+    """(B,) bool: the pressure (B, m) is negative at some radius, and higher at a larger radius."""
+    highest = np.maximum.accumulate(p[:, ::-1], axis=1)[:, ::-1]  # the highest at or outside each radius
+    return ((p[:, :-1] < 0) & (highest[:, 1:] > p[:, :-1])).any(axis=1)

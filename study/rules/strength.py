@@ -18,10 +18,11 @@ from . import yield_bounds
 from .rule import WORDS, have, rule
 
 _BODIES = {"Y1": "mises1", "Y2": "mises2"}
-#: The coarse grid misses at most this part of a stress, and has at most so much more: between, the stress is computed.
+#: The coarse grid underestimates a stress by at most this share, and overestimates it by at most _MORE. If the limit is
+#: between these bounds, the stress is computed.
 _MISSED, _MORE = 0.15, 1e-3
 OF_MATERIAL, FROM_HARDNESS = "_of_material", "_from_hardness"
-"""Y1, Y2 and Y_punch with these ends: of the material that is named, and whether that is its hardness over 2.84."""
+"""Endings of Y1, Y2 and Y_punch: the strength of the named material, and whether it is the hardness over 2.84."""
 _OF_ASPERITIES = {"yield_strength", "hardness", *(f"{name}{OF_MATERIAL}" for name in ("Y1", "Y2", "Y_punch"))}
 _SOURCES = ("call", "material", "hardness")
 
@@ -33,20 +34,20 @@ def body_yields(v, times):
     limits = {name: _limit(v, times * of_body(v, name)[0]) for name in _BODIES if {*v} & {name, f"{name}{OF_MATERIAL}"}}
     limits = {_BODIES[name]: limit for name, limit in limits.items() if np.isfinite(limit).any()}
     bounds = yield_bounds.of_bodies(v) if {*limits} - {*v} else {}
-    found = np.False_
+    yields = np.False_
     for extreme, limit in limits.items():
         if extreme in v:
-            found = found | (v[extreme] > limit)
+            yields = yields | (v[extreme] > limit)
             continue
         low, high = bounds[extreme]
         body = "layer" if extreme == "mises1" else "body"
-        found = found | _exceeded(limit, low, high, lambda index, limit, body=body: _stress(v, body, 0, index, limit))
+        yields = yields | _exceeded(limit, low, high, lambda index, limit, body=body: _stress(v, body, 0, index, limit))
     for layer in range(1, numbers_of(v)):
         limit = _limit(v, times * of_body(v, full_name(layer + 1, "Y"))[0])
         if np.isfinite(limit).any():
             low, high = yield_bounds.of_stacks(v)
-            found = found | _exceeded(limit, low, high, partial(_stress, v, "layer", layer))
-    return found
+            yields = yields | _exceeded(limit, low, high, partial(_stress, v, "layer", layer))
+    return yields
 
 
 @rule(1024, "asperities would yield", "0.65")
@@ -71,21 +72,24 @@ def spot_lifts_off(v, times):
 
 
 def of_body(v, name):
-    """Yield strength of a body by its input, "Y1" of the layer and so on, in E2*: the value, NaN where it is not known,
-    and its source, a place in `_SOURCES`; v : `numbers` of a dataset, with those of named materials."""
+    """Yield strength of a body in E2*, NaN where it is not known, and its source, an index of `_SOURCES`.
+
+    v : `numbers` of a dataset, with the strengths of named materials
+    name : of the input, "Y1" for the layer and so on
+    """
     value, source = first([v.get(name, np.nan), 0], _of_material(v, name))
     return np.where(True if name == "Y2" else v["layered"], value, np.nan), source
 
 
 def of_asperities(v):
-    """The same of asperities that are elastic: given in the call, or that of the softer of the two surfaces."""
+    """Yield strength of elastic asperities in E2*, and its source: from the call, or of the softer surface."""
     if not {*v} & _OF_ASPERITIES:
         return np.array(np.nan), np.array(0)
     yielding = [name for name, law in v["known"].laws.items() if law.yielded]
     elastic = have("rough", v["micro"], v["known"]) & ~one_of(v["micro"], yielding)
     named = [_of_material(v, name) for name in ("Y1", "Y2", "Y_punch")]
     call = first([v.get("yield_strength", np.nan), 0], [v.get("hardness", np.nan) / TABOR, 0])
-    # of one surface whose strength is not known the other's serves: what exceeds that exceeds the lower of both
+    # if one strength is not known, the other serves: a stress that exceeds it exceeds the lower of both
     named[2] = first(named[2], [np.where(v["m"] > 0, np.inf, np.nan), 0])
     named[:2] = [first(strength, [np.inf, 0]) for strength in named[:2]]
     value, source = first(call, softer(*named, ~v["layered"], v["m"] > 0))
@@ -94,21 +98,23 @@ def of_asperities(v):
 
 
 def softer(layer, body, punch, bare, elastic_punch):
-    """Of two surfaces the one with the lower strength: the layer, or a bare body, and an elastic punch; NaN where one
-    of both is not known. Each is a sequence of the strength and of whatever goes with it; so is the result."""
+    """The softer of two surfaces: the layer or a bare body, and an elastic punch; NaN where one strength is not known.
+
+    Each argument, and the result, is a sequence of the strength and of values that belong to it.
+    """
     touched = [np.where(bare, *pair) for pair in zip(body, layer, strict=True)]
     by_punch = elastic_punch & ((punch[0] < touched[0]) | np.isnan(punch[0]))
     return [np.where(by_punch, *pair) for pair in zip(punch, touched, strict=True)]
 
 
 def first(values, fallback):
-    """A strength and what goes with it, or the fallback where the strength is NaN."""
+    """A strength and the values that belong to it, or the fallback where the strength is NaN."""
     return [np.where(np.isnan(values[0]), other, part) for part, other in zip(values, fallback, strict=True)]
 
 
 def strength_from(v) -> str:
-    """Where the strengths are from with which the masks compare: "call", "material" or "hardness", of a material of
-    which no yield strength is known; "layer: call, asperities: hardness" where they differ, "" where none is known."""
+    """The source of the strengths in the masks: "call", "material" or "hardness" (of a material without a known yield
+    strength); "layer: call, asperities: hardness" where the sources differ, "" without strengths."""
     words = {}
     of_layers = {full_name(number, "Y") for number in range(2, numbers_of(v) + 1)}
     if not {*v} & {*_BODIES, *_OF_ASPERITIES, *of_layers, *(f"{name}{OF_MATERIAL}" for name in of_layers)}:
@@ -116,34 +122,34 @@ def strength_from(v) -> str:
     strengths = {"layer": of_body(v, "Y1"), "body": of_body(v, "Y2"), "asperities": of_asperities(v)}
     for number in range(2, numbers_of(v) + 1):
         strengths[f"layer {number}"] = of_body(v, full_name(number, "Y"))
-    for who, (value, source) in strengths.items():
+    for part, (value, source) in strengths.items():
         some = np.unique(np.broadcast_to(source, np.shape(value))[np.isfinite(value)])
         if len(some):
-            words[who] = " and ".join(_SOURCES[i] for i in some.tolist())
+            words[part] = " and ".join(_SOURCES[i] for i in some.tolist())
     alike = {*words.values()}
-    return alike.pop() if len(alike) == 1 else ", ".join(f"{who}: {word}" for who, word in words.items())
+    return alike.pop() if len(alike) == 1 else ", ".join(f"{part}: {word}" for part, word in words.items())
 
 
 WORDS["strength_from"] = strength_from
 
 
 def _of_material(v, name):
-    """The strength of the material of a body and its source; NaN where none is known."""
+    """The strength of the material of a body and its source; NaN where it is not known."""
     return v.get(f"{name}{OF_MATERIAL}", np.nan), np.where(v.get(f"{name}{FROM_HARDNESS}", False), 2, 1)
 
 
 def _limit(v, strength):
-    """The strength of the cases that are solved, NaN of others, over all of them."""
+    """The strength for solved cases, NaN for others, over all cases."""
     return np.where(v["status"] == Status.CONVERGED, np.broadcast_to(strength, v["status"].shape), np.nan)
 
 
 def _exceeded(limit, low, high, stress):
-    """bool: the stress is above the limit, by its bounds; between these it is computed.
+    """Whether the stress exceeds the limit, by its bounds; if the limit is between these, the stress is computed.
 
-    stress : of the cases `index` with their limits, (index, limits) -> their stresses; NaN: not known
+    stress : stress(index, limits) computes the stresses of the cases `index`; NaN: not known
     """
     known = np.isfinite(limit)
-    exceeded = np.array(known & (low > limit))  # of one case an array, too
+    exceeded = np.array(known & (low > limit))  # an array even for one case
     index = np.flatnonzero(known & ~exceeded & ~(high <= limit))
     if len(index):
         exceeded.flat[index] = stress(index, limit.flat[index]) > limit.flat[index]
@@ -151,8 +157,10 @@ def _exceeded(limit, low, high, stress):
 
 
 def _stress(v, body, layer, index, limit):
-    """The largest stress of the "body" or of a "layer", its number from 0, where it is near the limit; elsewhere that
-    of the coarse grid."""
+    """The largest stress of the "body" or of a "layer", by a coarse grid, and precisely where that is near the limit.
+
+    layer : number of the layer, from 0
+    """
     problem, solution = solved(v, index)
     none = np.zeros((len(index), max(1, numbers_of(problem.parameters))))
     value = mises_in(problem, solution, body, layer, 0.0, none, coarse=True)[0]
@@ -163,7 +171,7 @@ def _stress(v, body, layer, index, limit):
 
 
 def _stress_of_spots(v, index):
-    """The stress on the axis of spots; where it is not computed, as of a law of one's own, that of the spot alone."""
+    """The stress on the axis of spots, or that of the spot alone where it is not computed, as for a user's law."""
     shape = v["status"].shape
     alone = np.broadcast_to(yield_bounds.spot_alone(v), shape).flat[index]
     least = np.broadcast_to(yield_bounds.one_asperity(v), shape).flat[index]
@@ -173,7 +181,7 @@ def _stress_of_spots(v, index):
 
 
 def problem_of(v, index):
-    """The problem of some of the cases, given by their radii."""
+    """The problem of some of the cases, with their radii as the control."""
     shape = v["status"].shape
     lexicon = lexicon_of(v["known"])
     names = [name for name in lexicon.parameters_of(v) if name in v and name not in (*NUMERICS, *CONTROLS)]
@@ -181,8 +189,8 @@ def problem_of(v, index):
 
 
 def solved(v, index, x=(0.0, 1.0)):
-    """The problem of some of the cases, given by their radii, and what it was solved with; profiles at the radii x."""
+    """The problem of some of the cases, with their radii as the control, and its solution; profiles at the radii x."""
     problem = problem_of(v, index)
-    solution, there = solve(problem, x), v["status"].ravel()[index] == Status.CONVERGED
-    solution.status[~there] = Status.INVALID_INPUT
+    solution, converged = solve(problem, x), v["status"].ravel()[index] == Status.CONVERGED
+    solution.status[~converged] = Status.INVALID_INPUT
     return problem, solution

@@ -1,4 +1,4 @@
-"""Data to try: a scan and a force curve, both made, of which the right answers are known.
+"""Data to try: a scan and a force curve. Both are synthetic, so that the right answers are known.
 
 Examples
 --------
@@ -16,7 +16,7 @@ _FOLDER = Path(__file__).parent
 
 
 def scan() -> Path:
-    """A made scan of a rough surface, which `roughcoat scan` reads without an option.
+    """A synthetic scan of a rough surface, which `roughcoat scan` reads without an option.
 
     It is a map of 96 by 96 heights every 0.25 µm in the text format of ISO 25178-71, one period of a random surface
     with normal heights, waves of 2 µm and longer, a standard deviation of the heights of 50 nm, and a root mean
@@ -30,7 +30,7 @@ def scan() -> Path:
 
 
 def curve() -> Path:
-    """A made force curve of a rigid bead on a gel that is bonded to glass, for `roughcoat fit` and `study.fit`.
+    """A synthetic force curve of a rigid bead on a gel bonded to glass, for `roughcoat fit` and `study.fit`.
 
     The bead has R = 5 µm. The gel has h = 1.5 µm, nu1 = 0.49 and E1 = 5 kPa, the glass E2 = 70 GPa and nu2 = 0.2. The
     noise of the load has a standard deviation of 3 pN; contact point and baseline are 0.

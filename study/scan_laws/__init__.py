@@ -1,1 +1,1 @@
-"""The micro law of a scan itself, without asperities between: docs/roughness.md."""
+"""The micro law of a scan itself, without a model of asperities: docs/roughness.md."""

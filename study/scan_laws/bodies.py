@@ -1,4 +1,4 @@
-"""The coated body that a scan presses on, of the inputs of a contact."""
+"""The coated body under a scan, from the inputs of a contact."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -13,20 +13,20 @@ from solver.scaling import dimensionless
 from ..inputs.definition import StudyError
 from ..inputs.reading import from_call
 
-#: Inputs of a contact which do not count here, and the modulus of a body of which ratios alone are given.
+#: Inputs of a contact that do not matter here, and the modulus of a body for which only ratios are given.
 _USUAL = {"R": "1 um", "P": "1 uN", "micro": "smooth"}
 _MODULUS = "1 GPa"
 
 
 @dataclass(frozen=True)
 class PressedBody:
-    """What a scan presses on.
+    """The body under a scan.
 
     Attributes
     ----------
-    kernel : function of k (W,) in 1/m that gives (L + m)/(1 + m); None: 1
-    m : E1*/E_punch*; the modulus that is felt is E1*/(1 + m)
-    inputs : parameter -> number or word, lengths in m: what tells it from other bodies; None of a half-space
+    kernel : (L + m)/(1 + m) as a function of k (W,) in 1/m; None: 1
+    m : E1*/E_punch*; the modulus of body and punch in series is E1*/(1 + m)
+    inputs : parameter -> number or word, lengths in m, by which the body is recognised; None for a half-space
     """
 
     kernel: Callable | None = None
@@ -35,7 +35,7 @@ class PressedBody:
 
 
 def body_of(on: Mapping[str, Any] | None, caller: str) -> PressedBody:
-    """The body of inputs of a layer, as `study.solve` takes them; None: a half-space of E1*. Raises StudyError."""
+    """The body with these inputs of `study.solve`; None: a half-space of E1*. Raises StudyError."""
     if on is None:
         return PressedBody()
     if not isinstance(on, Mapping):
@@ -64,13 +64,13 @@ def body_of(on: Mapping[str, Any] | None, caller: str) -> PressedBody:
         raise StudyError([f'{caller}: on: base = "{problem.base[0]}" has no kernel: take "layered" or "stack"'])
     h, m = float(solid.h[0]) * float(scene.R), float(solid.m[0])
     grid = {name: array.item() for name, (_, array) in definition.grid.values.items()}
-    told = {name: grid[name] for name in grid if _tells(name)}
-    lengths = [name for name in told if scene.lexicon.rows[name].powers == (0, 1)]
-    told |= {name: told[name] * float(scene.R) for name in lengths}
-    return PressedBody(lambda k: (solid.kernel.whole((k * h)[None])[0] + m) / (1 + m), m, told)
+    inputs_of_body = {name: grid[name] for name in grid if _describes_body(name)}
+    lengths = [name for name in inputs_of_body if scene.lexicon.rows[name].powers == (0, 1)]
+    inputs_of_body |= {name: inputs_of_body[name] * float(scene.R) for name in lengths}
+    return PressedBody(lambda k: (solid.kernel.whole((k * h)[None])[0] + m) / (1 + m), m, inputs_of_body)
 
 
-def _tells(name: str) -> bool:
-    """Whether a parameter says what a body is."""
+def _describes_body(name: str) -> bool:
+    """Whether a parameter belongs to the description of a body."""
     of_layers = name.startswith("layers.") and name.rpartition(".")[2] in LAYER
     return of_layers or name in ("h", "n", "m", "nu1", "nu2", "bonding")

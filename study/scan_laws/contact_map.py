@@ -1,4 +1,4 @@
-"""Where a scan touches: pressure and gap of one period of it."""
+"""The contact of a scan point by point: pressure and gap of one period of it."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ def contact_map(
     ----------
     scan : a map of heights without gaps
     p : nominal pressure, > 0: a number over E1*, or a text with a unit, "2 MPa", which needs `E1`
-    E1 : reduced modulus E1* = E/(1 - ν²) of what lies at the surface, a text with its unit: the pressures are then in
-        Pa; None: they are over E1*
-    on, periodic, refine, form, cutoff : as of `law`
+    E1 : reduced modulus E1* = E/(1 - ν²) at the surface of the body, a text with its unit, for pressures in Pa; None:
+        pressures are over E1*
+    on, periodic, refine, form, cutoff : as in `law`
 
     Returns
     -------
     xarray.Dataset : `pressure` and `gap` (m) over y, x (m); attributes A (m), lam, and p_max in the unit of the
-        pressures. Where the period is a mirrored one it has the scan itself, without its images
+        pressures. A mirrored period is given without the mirror images
 
     Raises
     ------
-    ValueError : what `law` refuses, or a pressure that is none; StudyError, a ValueError too, of `on`
+    ValueError : arguments that `law` refuses, or a wrong pressure; for `on` a StudyError, a ValueError too
 
     Examples
     --------
@@ -65,12 +65,15 @@ def contact_map(
     patch = patch_of(scan, form, cutoff, periodic, refine, "contact_map")
     pressing = Pressing(patch, body.kernel)
     A, lam, p_max = pressing.at(float(load) * (1 + body.m), scan.name)
-    felt = unit / (1 + body.m)
+    modulus = unit / (1 + body.m)
     y, x = (np.arange(count) * step for count, step in zip(patch.z.shape, patch.steps, strict=True))
     pressure, of_gap = {"long_name": "pressure"}, {"long_name": "gap", "units": "m"}
     pressure |= {"units": "Pa"} if E1 is not None else {"long_name": "pressure, p/E1*"}
     return xr.Dataset(
-        {"pressure": (("y", "x"), pressing.pressures * felt, pressure), "gap": (("y", "x"), pressing.gap(A), of_gap)},
+        {
+            "pressure": (("y", "x"), pressing.pressures * modulus, pressure),
+            "gap": (("y", "x"), pressing.gap(A), of_gap),
+        },
         {"y": ("y", y, {"units": "m"}), "x": ("x", x, {"units": "m"})},
-        {"A": A, "lam": lam, "p_max": p_max * felt, "scan": scan.name, "treatment": patch.treatment},
+        {"A": A, "lam": lam, "p_max": p_max * modulus, "scan": scan.name, "treatment": patch.treatment},
     )

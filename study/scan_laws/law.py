@@ -1,4 +1,4 @@
-"""The micro law of a scan: A, λ and p_max of one period of it, and how far two such periods differ."""
+"""The micro law of a scan: A, λ and p_max of one period of it, and the difference between two such periods."""
 
 import json
 import math
@@ -20,19 +20,22 @@ from .patch import Patch, Pressing, patch_of
 
 __all__ = ["ScanLaw", "law"]
 
-#: Without pressures the law goes from the first contact fraction to the second, from row to row by this factor of p.
-#: It begins where at least so many points touch: with fewer of them λ goes in steps that no smooth curve follows.
+#: By default the law goes from the first contact fraction to the second, and p grows by this factor from row to row. It
+#: begins where at least _POINTS points touch: with fewer, λ goes in steps that no smooth curve follows.
 _LEAST, _MOST, _FACTOR, _POINTS = 1e-3, 0.6, 1.38, 16
-#: λ over p/(E* h') where few points touch; the first row is sought in at most so many steps, to this factor.
+#: λ over p/(E* h') where few points touch; largest number of steps in the search for the first row, and its precision
+#: as a factor.
 _STIFF, _SEARCH, _NEAR = 2.0, 6, 1.3
-#: Most rows.
+#: Largest number of rows.
 _ROWS = 40
-#: Rows at which the patch is compared with its quarters and with half of its points, and the λ from which they count:
-#: below, a few spots carry all, and no other patch has the same ones.
+#: Number of rows at which the patch is compared with its quarters and with points at half the distance, and the least λ
+#: of these rows: below it a few spots carry the whole load, and another patch has other spots.
 _COMPARED, _COUNTS = 4, 0.01
-#: Fewest points, along a side, of a quarter that is compared; and the diameter in points below which a spot is coarse.
+#: Least number of points along a side of a quarter for the comparison, and the diameter in points below which a spot is
+#: coarse.
 _SMALLEST, _COARSE = 16, 4.0
-#: Most points along a side of the part of a quarter whose points are halved: spots are much smaller.
+#: Largest number of points along a side of the part of a quarter with points at half the distance: spots are much
+#: smaller.
 _HALVED = 96
 
 
@@ -46,9 +49,9 @@ class ScanLaw:
         largest pressure over E1*
     scale : m, the length that 1 in A stands for
     error : the largest relative error of λ, p_max and A that `errors` has
-    errors : "pixel": by how much points of half the distance change the answer; "patch": by how much the answer of
-        another patch of this size may differ, half of the scatter of its four quarters
-    body : parameter -> number or word (lengths in m) of what the scan was pressed on; None: a half-space
+    errors : "pixel": the change of the answer with points at half the distance; "patch": the difference that another
+        patch of this size may have, half of the scatter of the four quarters
+    body : parameter -> number or word (lengths in m) of the body under the scan; None: a half-space
     name : of the scan
     notes : sentences, also those of the reading
     m : E1*/E_punch* of the body
@@ -68,7 +71,8 @@ class ScanLaw:
 
     @property
     def text(self) -> str:
-        """The file: how the rows were computed, and the table. Its pressures are over the modulus that is felt."""
+        """The text of the file: notes on the computation, and the table. Its pressures are over the modulus of body and
+        punch in series."""
         stated = json.dumps({"error": self.error, "body": None if self.body is None else dict(self.body)})
         lines = [f"# Micro law of {_on_one_line(self.name)}", *(f"# {_on_one_line(note)}" for note in self.notes)]
         lines += [f"{own_table.STATED}{stated}", "p,A [m],lam,p_max"]
@@ -79,7 +83,7 @@ class ScanLaw:
 
     @property
     def law(self) -> Law:
-        """The law as the solver takes it.
+        """The law for the solver.
 
         Returns
         -------
@@ -104,7 +108,7 @@ class ScanLaw:
 
         Raises
         ------
-        OSError : it cannot be written
+        OSError : the file cannot be written
         """
         Path(path).write_text(self.text, encoding="utf-8")
 
@@ -135,20 +139,21 @@ def law(
     """The micro law of a scan itself: A, λ and p_max of one period of its heights, each point of them an asperity.
 
     The heights, less their form, make a period, which is pressed flat by conjugate gradients (Polonsky and Keer 1999)
-    on a body whose surface gives way by 2 L(kh)/k p(k) to a wave, without k = 0: `solver.laws.periodic_rows`.
+    on a body. A wave p(k) of pressure displaces its surface by 2 L(kh)/k p(k), without k = 0:
+    `solver.laws.periodic_rows`.
 
     Parameters
     ----------
-    scan : a map of heights without gaps, of `read`, `height_map` or `self_affine`
+    scan : a map of heights without gaps, made by `read`, `height_map` or `self_affine`
     pressures : (n,), n >= 5, nominal pressures over E1*, > 0; None: those with λ from 0.001, or 16 points, to 0.6
-    on : inputs of `study.solve` of what is pressed: h, n or E1 and E2, nu1, nu2, bonding, or `layers`; E_punch or m.
-        Lengths have units. Then contacts on another body are refused. None: a half-space of E1*
+    on : inputs of `study.solve` for the body: h, n or E1 and E2, nu1, nu2, bonding, or `layers`; E_punch or m. Lengths
+        have units. Contacts on another body are then refused. None: a half-space of E1*
     periodic : "mirror", the scan beside its mirror images; "taper", the scan with borders of an eighth that go to the
-        mean; "given", it is a period
+        mean; "given", the scan is a period
     refine : points per pixel along each side, 1 to 8, by the Fourier series of the period
-    form : what is taken off first, as of `measure`
-    cutoff : wavelength, m, of a Gaussian low-pass, as of `measure`
-    progress : whether to show how far it is; None: where the terminal or a notebook can
+    form : the form to subtract first, as in `measure`
+    cutoff : wavelength, m, of a Gaussian low-pass, as in `measure`
+    progress : whether to show the progress; None: where the terminal or a notebook can
 
     Returns
     -------
@@ -156,7 +161,7 @@ def law(
 
     Raises
     ------
-    ValueError : a profile, a map with gaps, or an argument that is not allowed; also StudyError, of `on`
+    ValueError : a profile, a map with gaps, or an argument that is not allowed; for `on` a StudyError, a ValueError too
 
     Examples
     --------
@@ -188,7 +193,7 @@ def law(
 
 
 def _wanted(pressures: Any) -> np.ndarray:
-    """The pressures in ascending order. Raises ValueError for what are none."""
+    """The pressures in ascending order. Raises ValueError for other values."""
     try:
         values = np.unique(np.asarray(pressures, dtype=float))
     except (TypeError, ValueError):
@@ -199,7 +204,7 @@ def _wanted(pressures: Any) -> np.ndarray:
 
 
 def _first(patch: Patch, body: PressedBody, name: str) -> float:
-    """The pressure at which about _LEAST of the points touch, over the modulus that is felt."""
+    """The pressure at which about _LEAST of the points touch, over the modulus of body and punch in series."""
     pressing = Pressing(patch, body.kernel)
     p, fewest = _LEAST * patch.slope / _STIFF, max(_LEAST, _POINTS / patch.z.size)
     for _ in range(_SEARCH):
@@ -211,7 +216,7 @@ def _first(patch: Patch, body: PressedBody, name: str) -> float:
 
 
 def _errors(patch: Patch, body: PressedBody, table: np.ndarray, name: str) -> dict[str, float]:
-    """What half the pixel and another patch would change, the largest over some rows with λ from _COUNTS on."""
+    """The largest changes by half the pixel and by another patch, over some rows with λ from _COUNTS on."""
     if min(patch.z.shape) < 2 * _SMALLEST:
         return {}
     counting = np.flatnonzero(table[2] >= _COUNTS)
@@ -220,12 +225,12 @@ def _errors(patch: Patch, body: PressedBody, table: np.ndarray, name: str) -> di
     quarters = patch.quarters()
     pressings = [Pressing(part, body.kernel) for part in quarters]
     part = quarters[0].within(_HALVED)
-    coarse, fine, pixel, apart = Pressing(part, body.kernel), Pressing(part.halved(), body.kernel), 0.0, 0.0
+    coarse, fine, pixel, scatter = Pressing(part, body.kernel), Pressing(part.halved(), body.kernel), 0.0, 0.0
     for p in table[0, chosen]:
         rows = np.array([pressing.at(p, name) for pressing in pressings])
         pixel = max(pixel, float(np.abs(np.log(np.divide(fine.at(p, name), coarse.at(p, name)))).max()))
-        apart = max(apart, float(np.log(rows[:, 1:]).std(axis=0, ddof=1).max()) / 2)
-    return {"pixel": math.expm1(pixel), "patch": math.expm1(apart)}
+        scatter = max(scatter, float(np.log(rows[:, 1:]).std(axis=0, ddof=1).max()) / 2)
+    return {"pixel": math.expm1(pixel), "patch": math.expm1(scatter)}
 
 
 def _diameter(pressures: np.ndarray | None) -> float:

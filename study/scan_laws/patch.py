@@ -1,4 +1,4 @@
-"""One period of heights made of a scan, and its contact under a nominal pressure."""
+"""One period of heights from a scan, and its contact under a nominal pressure."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,9 +13,9 @@ from ..specimen.heights import scan_peaks
 from ..specimen.heights.form import without_form
 from ..specimen.scan import FEWEST, Scan
 
-#: What makes a period of a scan.
+#: Ways to make a period of a scan.
 PERIODS = ("mirror", "taper", "given")
-#: A tapered scan goes to its mean within this part of each side.
+#: A tapered scan goes to its mean within this share of each side.
 _BORDER = 0.125
 
 
@@ -28,7 +28,7 @@ class Patch:
     z : heights (ny, nx), m
     steps : along y and x, m
     mirrored : whether the period is z beside its mirror images, so that z is a quarter of it
-    treatment : what has been done with the scan, in words
+    treatment : of the scan, in words
     """
 
     z: np.ndarray
@@ -38,31 +38,31 @@ class Patch:
 
     @property
     def slope(self) -> float:
-        """Root mean square of the gradient, of differences of neighbouring points."""
+        """Root mean square of the gradient, by differences of neighbouring points."""
         along = [np.diff(self.z, axis=axis) / step for axis, step in enumerate(self.steps)]
         return float(np.sqrt(sum(np.mean(slopes**2) for slopes in along)))
 
     def quarters(self) -> "list[Patch]":
-        """The four parts of the patch, each with its mirror images a period of its own."""
+        """The four quarters of the patch. Each makes a period with its mirror images."""
         (half_y, half_x), z = (count // 2 for count in self.z.shape), self.z
         parts = (z[:half_y, :half_x], z[:half_y, -half_x:], z[-half_y:, :half_x], z[-half_y:, -half_x:])
         return [Patch(part, self.steps, True) for part in parts]
 
     def within(self, most: int) -> "Patch":
-        """The corner of a mirrored patch with at most so many points along a side, a mirrored patch too."""
+        """The corner of a mirrored patch with at most `most` points along a side, as a mirrored patch."""
         return Patch(self.z[:most, :most], self.steps, True)
 
     def halved(self) -> "Patch":
-        """A mirrored patch with points of half the distance, by its Fourier series."""
+        """A mirrored patch with points at half the distance, by its Fourier series."""
         waves = np.pad(dctn(self.z, norm="forward"), [(0, count) for count in self.z.shape])
         fine = idctn(waves, norm="forward")
         return Patch(fine, (self.steps[0] / 2, self.steps[1] / 2), True)
 
 
 class Pressing:
-    """The contact of a patch on a body, at one pressure after the other.
+    """The contact of a patch on a body, at one pressure after another.
 
-    kernel : function of k (1/m) that gives L, or None
+    kernel : L as a function of k (1/m), or None
     """
 
     def __init__(self, patch: Patch, kernel: Callable | None):
@@ -71,10 +71,11 @@ class Pressing:
         self.pressures: np.ndarray | None = None
 
     def at(self, p: float, name: str = "the scan") -> tuple[float, float, float]:
-        """A in m, λ and p_max at a nominal pressure; the pressures stay for the next one. ValueError where the
-        iteration has not ended.
+        """A in m, λ and p_max at a nominal pressure. The pressures stay as the start of the next contact.
 
-        p : over the modulus that is felt
+        p : over the modulus of body and punch in series
+
+        Raises ValueError if the iteration has not ended.
         """
         start = np.ones_like(self.depths) if self.pressures is None else self.pressures
         field, A, ended = pressed(self.depths, self.response, p, start * (p / start.mean()), self.mirrored)
@@ -84,14 +85,14 @@ class Pressing:
         return float(A), np.count_nonzero(field) / field.size, float(field.max())
 
     def gap(self, A: float) -> np.ndarray:
-        """The gap (ny, nx), m, under the last pressures, whose approach is A; 0 where they press."""
+        """The gap (ny, nx), m, under the last pressures, whose approach is A; 0 at points in contact."""
         assert self.pressures is not None
         gap = waves_times(self.pressures, self.response, self.mirrored) + self.depths - A
         return np.where(self.pressures > 0, 0.0, np.maximum(gap, 0.0))
 
 
 def patch_of(scan: Any, form: Any, cutoff: float | None, periodic: str, refine: int, caller: str) -> Patch:
-    """The period of a scan, or of heights (ny, nx) in m. Raises ValueError for what is no map without gaps."""
+    """The period of a scan. Raises ValueError for a scan that is not a map without gaps, or a wrong argument."""
     if not isinstance(scan, Scan) or scan.z.ndim != 2:
         raise ValueError(f"{caller}: a map of heights is needed, of roughness.read or roughness.height_map")
     if np.isnan(scan.z).any():
@@ -130,13 +131,13 @@ def _filtered(scan: Scan, z: np.ndarray, cutoff: float) -> np.ndarray:
 
 
 def _window(count: int) -> np.ndarray:
-    """1 inside, and 0 at both ends, which a cosine joins."""
+    """A window that is 1 inside and 0 at both ends, with cosines between."""
     from_end = np.minimum(np.arange(count), np.arange(count)[::-1]) / (_BORDER * count)
     return 0.5 - 0.5 * np.cos(np.pi * np.minimum(from_end, 1.0))
 
 
 def _refined(z: np.ndarray, times: int) -> np.ndarray:
-    """The Fourier series of one period at `times` as many points along each side, those of z among them."""
+    """The Fourier series of one period at `times` as many points along each side; the points of z are among them."""
     waves = np.zeros([times * count for count in z.shape], dtype=complex)
     places = [np.fft.fftfreq(count, 1 / count).astype(int) % (times * count) for count in z.shape]
     waves[np.ix_(*places)] = np.fft.fft2(z)

@@ -1,4 +1,4 @@
-"""Roughness as people have it, and what it becomes: asperities of the model, or the micro law of a scan itself.
+"""From a roughness as people specify it to asperities of the model, or to the micro law of a scan itself.
 
 From a design: `square_lattice`, `hexagonal_lattice`, `area_fraction`, `cap_radius`. From a scan: `read` (a file),
 `profile`, `height_map` (arrays), `self_affine` (a random surface), then `measure`, or `law` and `contact_map`. `Ra` is

@@ -1,6 +1,6 @@
-"""Values as other packages hand them over: numpy, pandas, polars, dask, pint, pint-xarray, astropy, become plain ones.
+"""Values of other packages (numpy, pandas, polars, dask, pint, pint-xarray, astropy) become plain Python values.
 
-Of these packages only numpy is imported here: a value is told by the attributes that it has.
+Of these packages only numpy is imported here: a value is recognised by its attributes.
 """
 
 from typing import Any
@@ -11,10 +11,11 @@ _USUAL = {float, int, str}
 
 
 def plain(value: Any) -> Any:
-    """The plain number, text or list of a value of other packages; a DataArray of pint with the attribute `units`.
+    """A value of another package as a plain number, text or list.
 
-    An array becomes a list, one without dimensions a single value, and a quantity of astropy or unyt the text of a
-    number with a unit. All else is returned as it is.
+    An array becomes a list, and an array without dimensions a single value. A quantity of astropy or unyt becomes the
+    text of a number with its unit. A DataArray of pint gets the attribute `units`. Everything else is returned as it
+    is.
     """
     if type(value) in _USUAL:
         return value
@@ -27,8 +28,8 @@ def plain(value: Any) -> Any:
     if getattr(getattr(value, "dtype", None), "kind", "") in ("m", "M"):  # times, whose `tolist` may be numbers
         return np.asarray(value).astype(str).tolist()
     unit = getattr(value, "unit", getattr(value, "units", None))
-    if unit is not None and hasattr(value, "value") and hasattr(value, "to"):  # of astropy or unyt: with no `tolist`
-        return _with_unit(np.asarray(value.value).tolist(), str(unit))  # the unit would be lost
+    if unit is not None and hasattr(value, "value") and hasattr(value, "to"):  # of astropy or unyt
+        return _with_unit(np.asarray(value.value).tolist(), str(unit))  # their own `tolist` would lose the unit
     if hasattr(value, "tolist"):
         return value.tolist()
     if hasattr(value, "__array__") and hasattr(value, "shape"):  # of polars or dask
@@ -37,7 +38,7 @@ def plain(value: Any) -> Any:
 
 
 def _plain_array(array: Any) -> Any:
-    """A DataArray with plain numbers; quantities of pint, of its coordinates too, have the attribute `units`.
+    """A DataArray with plain numbers. Its units in pint, and those of its coordinates, become the attribute `units`.
 
     A Variable of xarray becomes a DataArray, and a Dataset is returned as it is.
     """
@@ -58,7 +59,7 @@ def _plain_array(array: Any) -> Any:
 
 
 def _name_of(units: Any) -> str:
-    """The name of units of pint, whatever format their registry writes by itself."""
+    """The name of units of pint, whatever default format their registry has."""
     try:
         return format(units, "D")
     except (TypeError, ValueError):

@@ -1,6 +1,6 @@
-"""Heights in netCDF files, classic and of version 4. Axes are told by the names of the dimensions, x and y.
+"""Heights in netCDF files, classic and of version 4. Axes are recognised by the names of the dimensions, x and y.
 
-SurfaceTopography takes the first dimension for x whatever it is called, and its length for that of x.
+SurfaceTopography takes the first dimension as x, whatever its name.
 """
 
 from typing import Any, NamedTuple
@@ -15,7 +15,7 @@ MAGIC = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF\r\n\x1a\n")
 
 
 class Heights(NamedTuple):
-    """Heights over (y, x) or (x), their positions along each axis, steps or None, units of length, notes."""
+    """Heights over (y, x) or (x), their positions along each axis, steps or None, units (lateral, height), notes."""
 
     z: np.ndarray
     positions: list[np.ndarray]
@@ -25,11 +25,11 @@ class Heights(NamedTuple):
 
 
 def read(raw: bytes, arguments: dict, channel: str | None, name: str) -> Heights | None:
-    """The heights of a netCDF file over dimensions x and y, or over x; None where it has none.
+    """The heights of a netCDF file over the dimensions x and y, or over x; None where it has none.
 
-    arguments : unit, height_unit, dx, dy, which hold in the place of what the file states
+    arguments : unit, height_unit, dx, dy, which override what the file states
 
-    Raises ValueError: several variables and none chosen, or no steps or units.
+    Raises ValueError: several variables without a choice, or no steps or units.
     """
     import netCDF4  # heavy: it is needed for these files alone
     from xarray.backends.netCDF4_ import NETCDF4_PYTHON_LOCK
@@ -40,17 +40,17 @@ def read(raw: bytes, arguments: dict, channel: str | None, name: str) -> Heights
         except (OSError, ValueError, RuntimeError):
             return None
         try:
-            named = {key: each for key, each in file.variables.items() if _is_map(each)}
-            if not named:
+            maps = {key: variable for key, variable in file.variables.items() if _is_map(variable)}
+            if not maps:
                 return None
-            variable = named[_chosen(list(named), channel, name)]
-            return _heights(file, variable, arguments, name, tuple(named))
+            variable = maps[_chosen(list(maps), channel, name)]
+            return _heights(file, variable, arguments, name, tuple(maps))
         finally:
             file.close()
 
 
 def data_sets(raw: bytes) -> dict[str, np.ndarray]:
-    """The data sets of an HDF5 file that may be maps, by name, heights (x, y); {} where it has none or is another file.
+    """The data sets of an HDF5 file that may be maps, heights (x, y) by name; {} for any other file.
 
     The first index runs along x, as in the files of the contact-mechanics challenge and in SurfaceTopography.
     """
@@ -58,13 +58,13 @@ def data_sets(raw: bytes) -> dict[str, np.ndarray]:
     from xarray.backends.netCDF4_ import NETCDF4_PYTHON_LOCK
 
     def maps(group: Any, path: str) -> dict[str, np.ndarray]:
-        variables = {path + key: each for key, each in group.variables.items()}
-        here = {
-            key: np.ma.filled(np.ma.asarray(each[...], dtype=float), np.nan)
-            for key, each in variables.items()
-            if each.ndim == 2 and min(each.shape) > 0 and getattr(each.dtype, "kind", "O") in "biuf"
+        heights = {
+            path + key: np.ma.filled(np.ma.asarray(data[...], dtype=float), np.nan)
+            for key, data in group.variables.items()
+            if data.ndim == 2 and min(data.shape) > 0 and getattr(data.dtype, "kind", "O") in "biuf"
         }
-        return here | {key: z for name, each in group.groups.items() for key, z in maps(each, f"{path}{name}/").items()}
+        deeper = [maps(subgroup, f"{path}{name}/") for name, subgroup in group.groups.items()]
+        return heights | {key: z for heights_of_group in deeper for key, z in heights_of_group.items()}
 
     with NETCDF4_PYTHON_LOCK:
         try:
@@ -78,7 +78,7 @@ def data_sets(raw: bytes) -> dict[str, np.ndarray]:
 
 
 def _axes(variable: Any) -> list[str]:
-    """The dimensions of more than one point, "x" and "y" in small letters."""
+    """The dimensions with more than one point, in lower case: "x", "y"."""
     pairs = zip(variable.dimensions, variable.shape, strict=True)
     return [dim.lower() for dim, points in pairs if points != 1]
 
@@ -103,10 +103,10 @@ def _chosen(names: list[str], channel: str | None, name: str) -> str:
     return "heights" if "heights" in names else names[0]
 
 
-def _heights(file: Any, variable: Any, arguments: dict, name: str, named: tuple) -> Heights:
+def _heights(file: Any, variable: Any, arguments: dict, name: str, maps: tuple) -> Heights:
     axes = _axes(variable)
     z = np.ma.filled(np.ma.asarray(variable[...], dtype=float), np.nan).reshape([n for n in variable.shape if n != 1])
-    mask = next((each for key, each in file.variables.items() if key.lower() == "mask"), None)
+    mask = next((variable_of_mask for key, variable_of_mask in file.variables.items() if key.lower() == "mask"), None)
     if mask is not None and mask.dimensions == variable.dimensions:
         mask.set_auto_maskandscale(False)
         z = np.where(np.asarray(mask[...]).reshape(z.shape) != 0, np.nan, z)
@@ -117,22 +117,22 @@ def _heights(file: Any, variable: Any, arguments: dict, name: str, named: tuple)
     lacking = [axis for axis in axes if axis_positions[axis] is None]
     units = _units(stated, lacking, arguments, name)
     overruling = {key: value for key, value in arguments.items() if stated.get(key, not lacking)}
-    if lacking:  # then `unit` is that of dx, and holds for no more where the file has one
+    if lacking:  # then `unit` is the unit of dx, and does not override the unit of the file
         overruling.pop("unit", None)
     size = metres(arguments.get("unit", units[0]), name) / metres(units[0], name)
     positions, steps = [], []
     for axis, points in zip(axes, z.shape, strict=True):
         step = arguments.get("dy", arguments.get("dx")) if axis == "y" else arguments.get("dx")
-        of_file = axis_positions[axis]
-        steps.append(of_file[0] if of_file else number(f"{name}: d{axis}", step, units[0]) * size)
-        positions.append(of_file[1] if of_file else steps[-1] * np.arange(points))
+        axis_of_file = axis_positions[axis]
+        steps.append(axis_of_file[0] if axis_of_file else number(f"{name}: d{axis}", step, units[0]) * size)
+        positions.append(axis_of_file[1] if axis_of_file else steps[-1] * np.arange(points))
     lengths = overruled(positions, steps, units, overruling, name)
-    notes = (f"channel {variable.name!r}" + f" of {', '.join(map(repr, named))}" * (len(named) > 1),)
+    notes = (f"channel {variable.name!r}" + f" of {', '.join(map(repr, maps))}" * (len(maps) > 1),)
     return Heights(z, lengths.positions, lengths.steps, lengths.units, notes + lengths.notes)
 
 
 def _positions(file: Any, axis: str, points: int, name: str) -> tuple[float, np.ndarray] | None:
-    """Step and positions along an axis, in the unit of the file; None where it has none.
+    """Step and positions along an axis, in the unit of the file; None where it states neither.
 
     Raises ValueError: positions without equal steps.
     """
@@ -165,20 +165,20 @@ def _stated_units(file: Any, variable: Any, axes: list[str], name: str) -> dict[
 
 
 def _units(stated: dict[str, str | None], lacking: list[str], arguments: dict, name: str) -> tuple[str, str]:
-    """The units of positions and of heights, of the file or, where it has none, of the call.
+    """The units of positions and of heights, from the file or, where it states none, from the call.
 
     lacking : axes without positions
 
-    Raises ValueError: units or distances that neither has, all in one message.
+    Raises ValueError: units or distances that neither states, all in one message.
     """
     units = {key: value or arguments.get(key) for key, value in stated.items()}
     if not any(stated.values()) and "unit" in arguments:
         units["height_unit"] = arguments.get("height_unit", arguments["unit"])
-    asked = [key for key, value in units.items() if not value]
-    sentences = [f"no {' and no '.join(asked)}: give {', '.join(asked)}"] if asked else []
+    missing_units = [key for key, value in units.items() if not value]
+    sentences = [f"no {' and no '.join(missing_units)}: give {', '.join(missing_units)}"] if missing_units else []
     if lacking and "dx" not in arguments:
-        missing = " and ".join(f"no positions of {axis}" for axis in lacking)
-        sentences.append(f"{missing}: give dx{' (and dy)' * ('y' in lacking)}")
+        no_positions = " and ".join(f"no positions of {axis}" for axis in lacking)
+        sentences.append(f"{no_positions}: give dx{' (and dy)' * ('y' in lacking)}")
     if sentences:
         raise ValueError(f"{name}: the file states {'; and '.join(sentences)}")
     return str(units["unit"]), str(units["height_unit"])
@@ -190,8 +190,8 @@ def _unit(file: Any, axis: str, name: str) -> str | None:
 
 
 def _unit_of(variable: Any, name: str) -> str | None:
-    """The unit of a variable: its attribute `units` (CF) or `unit` (SurfaceTopography). Raises ValueError for another
-    than one of length."""
+    """The unit of a variable: its attribute `units` (CF) or `unit` (SurfaceTopography). Raises ValueError for a unit
+    that is not one of length."""
     word = str(getattr(variable, "units", getattr(variable, "unit", ""))).strip()
     if word in ("", "1"):
         return None

@@ -11,12 +11,12 @@ _WIDTH, _HEIGHT, _POINTS = 260, 90, 200
 
 
 def with_picture(text: str, picture: str = "") -> str:
-    """A text with its lines, and a picture below it."""
+    """A text with its line breaks, and a picture below it."""
     return f'<pre style="white-space:pre-wrap">{escape(text)}</pre>{picture}'
 
 
 def curve(x: np.ndarray, y: np.ndarray, across: str, up: str) -> str:
-    """A curve as SVG, with words for both axes; "" where there are no numbers. Many points are means of some."""
+    """A curve as SVG, with words for both axes; "" where there are no numbers. Of many points, means are drawn."""
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     finite = np.isfinite(x) & np.isfinite(y)
     if finite.sum() < 2:
@@ -37,7 +37,7 @@ def curve(x: np.ndarray, y: np.ndarray, across: str, up: str) -> str:
 
 
 def of_heights(scan: Any) -> str:
-    """The text of a `Scan` and a picture of its heights; for a map those of its middle row."""
+    """The text of a `Scan` and a picture of its heights, for a map those of its middle row."""
     profile = scan.z.ndim == 1
     row, step = (scan.z, scan.steps[0]) if profile else (scan.z[len(scan.z) // 2], scan.steps[1])
     size = " x ".join(readable(float(f"{length:.3g}"), "m") for length in scan.sizes)
@@ -47,7 +47,7 @@ def of_heights(scan: Any) -> str:
 
 
 def of_contact(dataset: Any) -> str:
-    """HTML of an xarray.Dataset: xarray's own, under a picture of p(r) if it is one contact with a profile."""
+    """HTML of an xarray.Dataset: that of xarray, below a picture of p(r) if it is a single contact with a profile."""
     is_contact = "model_used" in dataset and "p" in dataset and "x" in dataset.coords
     drawn = is_contact and dataset["p"].dims == dataset["x"].dims == ("x",)
     picture = curve(dataset["x"].values, dataset["p"].values, "r/a", "nominal pressure p") if drawn else ""
@@ -55,9 +55,9 @@ def of_contact(dataset: Any) -> str:
 
 
 def show_in(shell: Any) -> None:
-    """Let a notebook, the shell of IPython, show datasets by `of_contact`, unless it shows them in another way already.
+    """Let a notebook (a shell of IPython) show datasets by `of_contact`, unless it has another way to show them.
 
-    xarray need not be imported: the class is named.
+    The class is given by its name, so xarray need not be imported.
     """
     formatter = shell.display_formatter.formatters["text/html"]
     if "xarray.core.dataset.Dataset" not in formatter:

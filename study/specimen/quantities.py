@@ -1,6 +1,7 @@
 """Numbers with units: "5 mm", "200 ± 10 GPa" or quantities of pint become SI numbers, and SI numbers readable text.
 
-pint reads the units but those of READABLE. The first other unit imports it, which takes half a second.
+The units of READABLE are read here, all others by pint. The first of the others imports pint, which takes half a
+second.
 """
 
 import math
@@ -26,26 +27,26 @@ READABLE = {
     "1": ("a pure number", (("", 1.0),)),
 }
 LONGEST = 100  # characters of a text with a unit, because pint computes any expression that is written there
-#: The digits that texts are read with, whatever the caller has set for its own `decimal`: 28, Python's default, is far
-#: more than a float holds. Every field is set, since what is left out is taken from `decimal.DefaultContext`.
+#: The decimal context in which texts are read, whatever context the caller has set. 28 digits, Python's default, are
+#: far more than a float holds. Every field is set: a missing one would come from `decimal.DefaultContext`.
 _EXACT = Context(28, ROUND_HALF_EVEN, -999999, 999999, 1, 0, [], [DivisionByZero, InvalidOperation, Overflow])
 _SURE = 1e-5  # a smaller relative spread is not written
 _SPREAD = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
 _UNIT_OR_SPREAD = re.compile(rf"(?![eE][-+]?\d)[^\W\d_]|[%°]|{_SPREAD.pattern}")  # the e of "1,2e-5" is no unit
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-#: A number with a unit that is a product of powers: read without pint, as the number times the size of its unit. The 1
-#: of "1/um^2" must not be a digit of the number: "2.1/um^2" would be "2." times 1/um^2.
+#: A number with a unit that is a product of powers. It is read as the number times the size of its unit, without pint.
+#: The 1 of "1/um^2" must not be a digit of the number: "2.1/um^2" would be "2." times 1/um^2.
 _PLAIN = re.compile(rf"({_NUMBER.pattern})\s*((?:(?<![\d.])1/)?[A-Za-zµ]+(?:(?:\^|\*|/)-?[A-Za-z0-9µ]+)*)")
-#: Signs that make pint read another number, without a word: signs that it does not know, which it drops or takes for a
-#: product ("5,0 mm" as 50 mm, "200–220 GPa" as 44 TPa), a second decimal point, a number that it multiplies by the one
-#: before ("5 500 um", "5 1/2 in", "200 GPa (10)"), and two tolerances ("200 GPa +10/-5 GPa").
+#: Patterns that make pint read another number without a word: characters that it does not know, and drops or takes for
+#: a product ("5,0 mm" as 50 mm, "200–220 GPa" as 44 TPa), a second decimal point, a second number, by which it
+#: multiplies the first ("5 500 um", "5 1/2 in", "200 GPa (10)"), and two tolerances ("200 GPa +10/-5 GPa").
 _AMBIGUOUS = re.compile(
     r"[^\w\s.+\-*/^()·×%°±⁻]|[¼-¾⅐-⅞]|\.\d*\.|\d[eE][-+]?\d+\.|[\w)]\s*\(\s*[-+]?[\d.]|\)\s*[\d.]"
     r"|(?<!\+)/\s*-\s*[\d.]|(?<![-+±*/^(×·\s])\s+(?!1\s*/\s*[^\d\s.])[\d.]"
 )
 #: A German data sheet writes 210 GPa as "210.000 MPa", which pint reads as 210 MPa.
 _THOUSANDS = re.compile(r"(\d{2,3})\.000[^A-Za-z\d]*(?:[\d.]+\s*)?(?:N/mm|MPa)")
-#: The minus sign of printed texts where it can be no dash of a range: before the number, or in an exponent.
+#: The minus sign of printed texts where it cannot be the dash of a range: before the number, or in an exponent.
 _MINUS = re.compile(r"^−|(?<=\d[eE])−|(?<=\^)−")
 #: A power without ^, as in "mm2" and "mm-2". The letters must not follow a digit: the e of "1e2" is no unit.
 _POWER = re.compile(r"(?<![\d.A-Za-z])([A-Za-zµ]+)(-?[23])(?![\w.])")
@@ -55,7 +56,7 @@ _MICRONS = re.compile(r"(?<=[\d\s.])(?:mu|µ|μ|mum|microns?)$")
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number in an SI unit, with its spread (one standard deviation) in the same unit; 0: none is known."""
+    """A number in an SI unit, and its spread (one standard deviation) in the same unit; 0: no spread is known."""
 
     value: float
     spread: float = 0.0
@@ -65,7 +66,7 @@ class Quantity:
 
 
 def has_unit(entry: Any) -> bool:
-    """Whether something is a quantity of pint, a `ufloat`, or a text of a number and, behind it, a unit or a spread."""
+    """Whether something is a quantity of pint, a `ufloat`, or a text with a number followed by a unit or a spread."""
     if isinstance(entry, str):
         number = _NUMBER.match(entry.strip())
         return bool(number) and bool(_UNIT_OR_SPREAD.search(entry.strip(), number.end()))
@@ -78,7 +79,7 @@ def _is_unsure(number: Any) -> bool:
 
 
 def unit_in(entry: Any) -> str:
-    """The unit of a text or of a quantity of pint, as it is written there; "" where it is no plain product of units."""
+    """The unit of a text or of a quantity of pint, as it is written; "" where it is not a plain product of units."""
     if not isinstance(entry, str):
         return str(getattr(entry, "units", ""))
     plain = [_PLAIN.fullmatch(part) for part in _SPREAD.split(entry.strip())]
@@ -89,10 +90,10 @@ def quantity(name: str, entry: Any, unit: str) -> Quantity:
     """The SI value of a text ("5 mm", "200 ± 10 GPa"), a quantity of pint, or, for unit "1", of a number or a `ufloat`.
 
     name : of the number, for messages
-    entry : text, number, `ufloat`, or quantity of pint; one that is measured (a `ufloat` with a unit) has a spread
+    entry : text, number, `ufloat`, or quantity of pint; a measured one (a `ufloat` with a unit) has a spread
     unit : one of READABLE: the SI unit of the result
 
-    Raises ValueError: there is no number or no unit, or the unit is of something else, which the message names.
+    Raises ValueError: there is no number or no unit, or the unit measures something else, which the message names.
     """
     with localcontext(_EXACT):
         try:
@@ -142,7 +143,7 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     if len(text) > LONGEST or len(spread) > 1 or not _NUMBER.match(head):
         bare = '; without brackets, as in "3 ± 0.2 mm"' * (bool(spread) and text.startswith("("))
         raise ValueError(f"{entry}: {wanted}{bare}")
-    if spread and (problem := _no_spread(spread[0])):
+    if spread and (problem := _spread_error(spread[0])):
         raise ValueError(f"{entry}: {problem}")
     if _AMBIGUOUS.search(text):
         raise ValueError(f"{entry}: write one number, with a decimal point and without gaps: {wanted}")
@@ -168,8 +169,8 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     return Quantity(_si(name, head, unit, wanted), _si(f"the spread of {name}", spread[0], unit, wanted))
 
 
-def _no_spread(text: str) -> str:
-    """The error of the text behind ±: "" if it begins with a number that may be a standard deviation."""
+def _spread_error(text: str) -> str:
+    """The error in the text after ±; "" if it begins with a number that may be a standard deviation."""
     if text.startswith(("-", "−")):
         return "behind ± must be a number not below 0: leave out its minus sign"
     return "" if _NUMBER.match(text) else "behind ± must be a number, finite and not below 0"
@@ -184,7 +185,7 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
     size = _size(plain[2], unit) if plain else None
     if size is not None and math.isfinite(value := float(Decimal(plain[1]) * size)):
         return value
-    registry = _registry()  # outside `try`: an error of pint itself is not one of the unit
+    registry = _registry()  # outside `try`: an error in importing pint is not an error of the unit
     try:
         parsed = registry.Quantity(text)
     except MemoryError:
@@ -213,7 +214,7 @@ def _near(text: str, unit: str) -> str:
 
 @lru_cache(maxsize=256)
 def _size(word: str, unit: str) -> Decimal | None:
-    """The size of a unit such as "um" or "1/mm^2" in the SI `unit`; None if it cannot be told."""
+    """The size of a unit such as "um" or "1/mm^2" in the SI `unit`; None if it is not known exactly."""
     written = {name.replace("²", "^2"): size for name, size in READABLE.get(unit, ("", ()))[1]}
     if unit != "1" and (size := written.get(word.replace("u", "µ"))):
         return Decimal(repr(size))
@@ -224,7 +225,7 @@ def _size(word: str, unit: str) -> Decimal | None:
         raise
     except Exception:  # pint then reads the whole text, and the message says what is wrong
         return None
-    # it is the integer 1 for the SI unit itself
+    # for the SI unit itself the magnitude is the integer 1
     return Decimal(magnitude) if isinstance(magnitude, (int, Decimal)) and unit != "1" else None
 
 
@@ -237,23 +238,25 @@ def _understood(parsed: Any) -> str:
 
 @cache
 def _registry() -> Any:
-    """The registry of pint; in decimal numbers, so that "3 um" and "3e-6 m" are the same float."""
+    """The registry of pint. It computes with decimal numbers, so that "3 um" and "3e-6 m" are the same float."""
     import pint
 
     return pint.UnitRegistry(non_int_type=Decimal)
 
 
 def multiple(largest: float, unit: str) -> tuple[str, float]:
-    """Name and size of the multiple of an SI unit in which numbers up to `largest` are read most easily.
+    """Name and size of the multiple of an SI unit in which numbers up to `largest` are easiest to read.
 
-    It is the largest multiple that is not above `largest`, or the smallest of all. unit : one of READABLE
+    It is the largest multiple that does not exceed `largest`, or else the smallest.
+
+    unit : one of READABLE
     """
     multiples = READABLE[unit][1]
     return next(((name, size) for name, size in multiples if largest >= size), multiples[-1])
 
 
 def readable(value: float, unit: str, spread: float = 0.0) -> str:
-    """A number in SI as text in the multiple that suits it: readable(2.5e-6, "m") is "2.5 µm"; with ± its spread.
+    """A number in SI as text in a suitable multiple, with ± its spread: readable(2.5e-6, "m") is "2.5 µm".
 
     value, spread : in the SI `unit`, one of READABLE; a spread of less than 1e-5 of the value is left out
     """

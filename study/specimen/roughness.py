@@ -1,4 +1,4 @@
-"""Roughness as people have it, and the model's: asperities per unit area `Nbar`, and their radius `Ra`.
+"""From a roughness as people specify it to that of the model: asperities per unit area `Nbar`, and their radius `Ra`.
 
 From a design: `square_lattice`, `hexagonal_lattice`, `area_fraction`, `cap_radius`. From a scan: `read` (a file),
 `profile`, `height_map` (arrays), then `measure`. `Ra` is the radius of an asperity everywhere here, never the roughness
@@ -33,9 +33,9 @@ __all__ = [
 
 #: Circles that do not overlap cover at most this fraction of a plane, in a hexagonal lattice.
 DENSEST = math.pi / (2 * math.sqrt(3))
-#: Least Ra √Nbar that asperities have. On a random surface Ra √Nbar = 0.116/s with s the rms slope of its profiles, so
-#: 0.1 asks for 49°; on a designed one, even half-spheres of this size cover only π/100 of the area. The ISO Ra of a
-#: random surface in the place of Ra gives 0.14 √α s, below 0.1 on most (docs/roughness.md has examples).
+#: Least plausible Ra √Nbar. On a random surface Ra √Nbar = 0.116/s with s the rms slope of its profiles, so 0.1 needs a
+#: slope of 49°; on a designed one, even half-spheres of this size cover only π/100 of the area. The ISO Ra of a random
+#: surface, mistaken for Ra, gives 0.14 √α s, which is below 0.1 on most (docs/roughness.md has examples).
 SHARPEST = 0.1
 
 
@@ -145,9 +145,9 @@ def cap_radius(height: Any, width: Any) -> Any:
 
 
 def _positive(name: str, value):
-    """The value, a list as an array. Raises ValueError if it is text, or not all of it is positive and finite."""
+    """The value, a list as an array. Raises ValueError for a text, or a number that is not positive and finite."""
     value = np.asarray(value) if isinstance(value, list | tuple) else value
-    if getattr(value, "attrs", {}).get("units", "1") != "1":  # two of them may differ, and the answer would have it
+    if getattr(value, "attrs", {}).get("units", "1") != "1":  # two units may differ, and the answer would have one
         raise ValueError(f"{name} is in {value.attrs['units']}: give numbers, all lengths in one unit")
     if isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "iu":
         value = value.astype(float)  # squares of whole numbers of 32 bits overflow from 46,341 on
@@ -165,7 +165,7 @@ def looks_like_iso_ra(Ra: Any, Nbar: Any, *, si: bool = False) -> str | None:
 
     Parameters
     ----------
-    Ra, Nbar : in units of one length, or in R; arrays are compared with each other, the sharpest is named
+    Ra, Nbar : in one unit of length, or in R; arrays are compared element by element, the sharpest is named
     si : whether they are in m and 1/m², so that the warning has readable units
 
     Returns

@@ -21,25 +21,25 @@ P, T = ParamSpec("P"), TypeVar("T")
 #: Metres in a unit. The micro sign and the Greek letter are two characters; keyboards have one or the other.
 MICRO = dict.fromkeys(("um", "µm", "μm"), 1e-6)
 UNITS = {"m": 1.0, "mm": 1e-3, **MICRO, "nm": 1e-9, "pm": 1e-12, "angstrom": 1e-10, "Å": 1e-10}
-#: Units as instruments and people write them, in small letters and without a plural s.
+#: Other spellings of units, in lower case and without a plural s.
 WORDS = {"angstrom": 1e-10, "ångström": 1e-10, "micron": 1e-6}
 PREFIXES = {"": 1.0, "milli": 1e-3, "micro": 1e-6, "nano": 1e-9, "pico": 1e-12}
 WORDS |= {prefix + word: size for prefix, size in PREFIXES.items() for word in ("meter", "metre")}
 #: Fewest points in a direction. They can show two bumps of eight points each.
 FEWEST = 16
 #: Largest rms slope, 72°. A stylus (cone of 60° or 90°) follows slopes up to 1.7, light up to about 1, the tip of an
-#: atomic force microscope up to 2.7. A steeper scan has other units than the caller says, or is full of spikes.
+#: atomic force microscope up to 2.7. A steeper scan has units other than the caller says, or is full of spikes.
 STEEPEST = 3.0
-#: Beyond these limits the unit of a scan must be another: a size above 1 m, which no instrument reaches; an rms of the
-#: heights below 1 pm, a hundredth of an atom; and asperities of a radius above 1 km, which heights of an rms of 1 nm
-#: have in waves of 8 mm, as wide as a contact or wider (tests/specimen/heights/test_lengths_refused.py).
+#: Outside these limits the unit of a scan must be wrong: a size above 1 m, which no instrument reaches; heights with an
+#: rms below 1 pm, a hundredth of an atom; and asperities with a radius above 1 km, such as waves 8 mm long with an rms
+#: of 1 nm, which are as wide as a contact or wider (tests/specimen/heights/test_lengths_refused.py).
 LONGEST, FLATTEST, BLUNTEST = 1.0, 1e-12, 1e3
-#: Largest distance of a position from the uniform grid, in steps. Curvatures err by about as much. Positions that are
-#: written to a tenth of the step pass.
+#: Largest distance of a position from the uniform grid, in steps. It is about the relative error of curvatures.
+#: Positions that are written to a tenth of the step pass.
 UNEVEN = 0.1
 
 
-#: Words that people have for an argument of `read`.
+#: A word that people may use -> the argument of `read` that they mean.
 _MEANT = {
     **dict.fromkeys(("spacing", "step", "steps", "pixel", "pixel_size", "pitch", "resolution", "increment"), "dx"),
     **dict.fromkeys(("units", "xunit", "x_unit"), "unit"),
@@ -50,14 +50,14 @@ _MEANT = {
 
 @dataclass(frozen=True, eq=False)
 class Scan:
-    """Heights of a surface. Made by `profile`, `height_map` and `read`, which check them.
+    """Heights of a surface. `profile`, `height_map` and `read` make a Scan and check its heights.
 
     Attributes
     ----------
     z : heights in m, shape (x) of a profile or (y, x) of a map; NaN where a point is missing
-    steps : distance of the points along each axis of z, m
-    name : the file, or what the caller calls it
-    notes : sentences about how it was read, which `measure` passes on
+    steps : distance between points along each axis of z, m
+    name : of the file, or as the caller says
+    notes : sentences about how the scan was read, which `measure` passes on
     huge : whether the limits of size are off, in `measure` too
     """
 
@@ -77,14 +77,14 @@ class Scan:
 
 
 def meant(word: str, arguments: Iterable[str]) -> str | None:
-    """The one of the arguments that somebody means by another word, "pixel"; None if none is near."""
+    """The argument that somebody may mean by another word, such as "pixel"; None if no argument is close to it."""
     arguments, word = list(arguments), word.lower()
     near = [_MEANT[word]] if word in _MEANT else difflib.get_close_matches(word, arguments, n=1, cutoff=0.75)
     return near[0] if near and near[0] in arguments else None
 
 
 def refusing_others(function: Callable[P, T]) -> Callable[P, T]:
-    """The function; a TypeError for an argument that it does not take says which one may be meant."""
+    """The function with a TypeError for an unknown argument that suggests the argument that may be meant."""
     names = list(inspect.signature(function).parameters)
 
     @functools.wraps(function)
@@ -111,15 +111,15 @@ def profile(
     huge: bool = False,
     despike: float | None = None,
 ) -> Scan:
-    """A profile, from its heights and either their positions or their distance.
+    """A profile, from its heights and either their positions or the distance between them.
 
     Parameters
     ----------
     z : heights, in height_unit (None: as `unit`)
-    x, dx : positions on a uniform grid, rising or falling, or the distance of two points; in unit
-    unit, height_unit : one of m, mm, um, nm, pm, angstrom, or as it is spelt otherwise
+    x, dx : positions on a uniform grid, rising or falling, or the distance between two points; in unit
+    unit, height_unit : one of m, mm, um, nm, pm, angstrom, or another spelling of these
     name : of the scan, in messages
-    missing, steep, huge, despike : as of `height_map`; the neighbours are four points on each side
+    missing, steep, huge, despike : as in `height_map`; the neighbours are four points on each side
 
     Returns
     -------
@@ -127,7 +127,7 @@ def profile(
 
     Raises
     ------
-    ValueError : neither or both of x and dx, positions not uniform, or heights as `height_map` refuses them
+    ValueError : neither or both of x and dx, positions that are not uniform, or heights that `height_map` refuses
     """
     if (x is None) == (dx is None):
         raise ValueError(f"{name}: give either the positions of the points, x, or their distance, dx")
@@ -155,15 +155,15 @@ def height_map(
     Parameters
     ----------
     z : heights, shape (y, x), in height_unit (None: as `unit`)
-    dx, dy : distance of two columns and of two rows, in unit; dy is dx if it is not given
-    unit, height_unit : one of m, mm, um, nm, pm, angstrom, or as it is spelt otherwise
+    dx, dy : distance between columns and between rows, in unit; dy defaults to dx
+    unit, height_unit : one of m, mm, um, nm, pm, angstrom, or another spelling of these
     name : of the scan, in messages
     missing : the treatment of heights that are NaN or under a mask: "fill" interpolates up to 1 % of the points;
-        "skip" leaves them, and every statistic takes the points whose neighbours are all there; "refuse"
-    steep : take slopes that no instrument measures (rms above 3), and heights that span more than the scan is long
-    huge : take a scan longer than 1 m, heights of an rms below 1 pm, and asperities of a radius above 1 km
-    despike : take points for missing that are further than so many robust deviations (1.4826 times the median of all
-        these distances) from the median of their eight neighbours; 5 is usual, None takes all points as they are
+        "skip" leaves them, and every statistic uses the points whose neighbours are all measured; "refuse"
+    steep : accept slopes that no instrument measures (rms above 3), and heights that span more than the scan is long
+    huge : accept a scan longer than 1 m, heights with an rms below 1 pm, and asperities with a radius above 1 km
+    despike : count as missing each point that is further than this many robust deviations (1.4826 times the median of
+        all these distances) from the median of its eight neighbours; 5 is usual, None keeps all points
 
     Returns
     -------
@@ -171,9 +171,9 @@ def height_map(
 
     Raises
     ------
-    ValueError : fewer than 16 points in a direction, heights that are no numbers or all equal, a distance that is not
-        positive, an unknown unit, more missing points than allowed, lengths whose unit must be another, or a despike
-        that is no positive number
+    ValueError : fewer than 16 points in a direction, heights that are not numbers or all equal, a distance that is not
+        positive, an unknown unit, more missing points than allowed, lengths whose unit must be wrong, or a despike
+        that is not a positive number
     """
     dx = number(f"{name}: dx", dx, unit)
     axes = [z.coords[axis].values for axis in ("x", "y") if axis in getattr(z, "coords", ())]  # of xarray
@@ -194,9 +194,9 @@ def metres(unit: str, name: str) -> float:
 
 
 def spelt(word) -> float | None:
-    """Metres in a unit however it is spelt, "Ångström", "microns"; None if it is none of length.
+    """Metres in a unit of length in any spelling, "Ångström", "microns"; None for any other word.
 
-    Å has a character of its own, and is also written as A and a ring.
+    Å is a character of its own, or an A with a combining ring.
     """
     if not isinstance(word, str):
         return None
@@ -205,7 +205,7 @@ def spelt(word) -> float | None:
 
 
 def number(name: str, value, unit: str) -> float:
-    """A length that was given as a number in `unit`. Raises ValueError for a text, "2 um", or anything else."""
+    """A length that is a number in `unit`. Raises ValueError for a text, "2 um", or anything else."""
     if isinstance(value, numbers.Real) and not isinstance(value, bool):
         return value
     raise ValueError(f"{name} = {value!r}: must be a number, in {unit}")
@@ -214,7 +214,7 @@ def number(name: str, value, unit: str) -> float:
 def _in_unit(name: str, values, unit: str):
     """The values. Raises ValueError for quantities of pint, and for a DataArray with another unit than `unit`.
 
-    Without this check their numbers would be taken as they are, in a unit that they do not have.
+    Without this check their numbers would be read in a unit that they do not have.
     """
     quantity = hasattr(values, "magnitude")
     units = values.units if quantity else getattr(values, "attrs", {}).get("units", unit)
@@ -224,7 +224,7 @@ def _in_unit(name: str, values, unit: str):
 
 
 def _step(x: np.ndarray, shape: tuple, name: str) -> float:
-    """Distance of the points of a uniform grid. Raises ValueError for positions that are not uniform."""
+    """Distance between the points of a uniform grid. Raises ValueError for positions that are not uniform."""
     if x.shape != shape or x.ndim != 1 or x.size < 2:
         raise ValueError(f"{name}: {x.shape} positions for {shape} heights; one column of each is needed")
     if not np.isfinite(x).all():
@@ -252,11 +252,11 @@ def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str, *, 
     if np.nanmax(z) == np.nanmin(z):
         raise ValueError(f"{name}: all {z.size} heights equal {np.nanmax(z):g}: there is no roughness to measure")
     scan = Scan(z * vertical, tuple(float(step) * lateral for step in steps), name, notes, bool(huge))
-    taken = f"Lengths were taken to be in {unit}, heights in {height_unit or unit}"
+    units_in_words = f"Lengths were taken to be in {unit}, heights in {height_unit or unit}"
     if not huge:
-        _of_a_size(scan, taken)
+        _check_size(scan, units_in_words)
     if not steep:
-        _plausible(scan, taken)
+        _check_slopes(scan, units_in_words)
     return scan
 
 
@@ -265,7 +265,7 @@ def _heights(z, dimensions: int, unit: str, name: str) -> np.ndarray:
     z = _in_unit(f"{name}: z", z, unit)
     z = z.transpose("y", "x") if set(getattr(z, "dims", ())) == {"x", "y"} else z  # of xarray
     try:
-        # asarray alone would take the heights under a mask for heights
+        # asarray alone would keep the heights under the mask
         z = np.ma.filled(z.astype(float), np.nan) if np.ma.isMaskedArray(z) else np.asarray(z, dtype=float)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name}: the heights are not an array of numbers: {error}") from error
@@ -277,9 +277,9 @@ def _heights(z, dimensions: int, unit: str, name: str) -> np.ndarray:
     return z
 
 
-def _of_a_size(scan: Scan, taken: str) -> None:
-    """Raise ValueError for lengths that no scan of a rough surface has: their unit must be another."""
-    way_out = f"{taken}: give unit and height_unit as the file has them, or huge=True if it is so"
+def _check_size(scan: Scan, units_in_words: str) -> None:
+    """Raise ValueError for lengths that no scan of a rough surface has: their unit must be wrong."""
+    way_out = f"{units_in_words}: give unit and height_unit as the file has them, or huge=True if it is so"
     if max(scan.sizes) > LONGEST:
         raise ValueError(
             f"{scan.name}: the scan is {max(scan.sizes):.3g} m long; at most {LONGEST:g} m is taken. {way_out}."
@@ -292,15 +292,15 @@ def _of_a_size(scan: Scan, taken: str) -> None:
         )
 
 
-def _plausible(scan: Scan, taken: str) -> None:
+def _check_slopes(scan: Scan, units_in_words: str) -> None:
     """Raise ValueError for slopes that no instrument measures: the unit of heights or lengths must be wrong."""
     span = np.nanmax(scan.z) - np.nanmin(scan.z)
     slope = math.sqrt(max(_mean_square_slope(scan.z, axis, step) for axis, step in enumerate(scan.steps)))
     if span > max(scan.sizes) or slope > STEEPEST:
         raise ValueError(
             f"{scan.name}: heights span {span:.3g} m on a scan {max(scan.sizes):.3g} m long, with an rms slope of "
-            f"{slope:.3g}; no instrument measures slopes above {STEEPEST:g}. {taken}: give unit and height_unit as "
-            "the file has them, cut away its spikes, or take it as it is with steep=True."
+            f"{slope:.3g}; no instrument measures slopes above {STEEPEST:g}. {units_in_words}: give unit and "
+            "height_unit as the file has them, cut away its spikes, or take it as it is with steep=True."
         )
 
 

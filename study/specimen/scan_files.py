@@ -20,11 +20,11 @@ from .scan_grids import columns_of, npy_table, on_grid, overruled, scan_of, with
 from .scan_headings import check_units, extent_notes, height_metres, length, stated, stated_height_unit, without_no_data
 from .scan_texts import NumberTable, table_of, text_of
 
-#: Endings of files that are read as text if they are text, and by SurfaceTopography if they are none.
+#: Endings of files that are read here if they are text, and otherwise by SurfaceTopography.
 TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".xyz", ".prf", ".smd", ".sdf", ".gz", "")
-#: Arguments that hold in the place of what a file states.
+#: Arguments that override what a file states.
 _LENGTHS = ("unit", "height_unit", "dx", "dy")
-#: Channels of a curve of force against distance, in small letters.
+#: Parts of the names of channels in a force curve, in lower case.
 _FORCE = ("defl", "zsnsr", "lvdt", "raw", "force")
 _NO_LENGTHS = (
     "the file states no distance of its points: give dx (and dy) and unit, and height_unit if heights have another"
@@ -50,28 +50,28 @@ def read(
 ) -> Scan:
     """A profile or a map of heights from a file.
 
-    Text and .npy: two columns are a profile, x and z; one column (or one row) is a profile of the distance dx; three
-    are a map, x, y and z of the points of a grid in any order; 16 columns or more are a map, a line for each y, of the
-    distances dx and dy. Columns are separated by commas, semicolons, tabs or spaces; the decimal mark is a point or,
-    where commas do not separate, a comma. Text before the first line of numbers, or behind # and %, is a
+    Text and .npy: two columns are a profile, x and z. One column (or one row) is a profile with points dx apart. Three
+    columns are a map, x, y and z of the points of a grid in any order. 16 columns or more are a map, a line for each
+    y, with points dx and dy apart. Columns are separated by commas, semicolons, tabs or spaces; the decimal mark is a
+    point or, where commas do not separate, a comma. Text before the first line of numbers, or after # and %, is a
     comment. An empty field, nan, Bad, ***, -- and - are missing points. Text may be UTF-8, UTF-16 or packed (.gz).
 
     SDF, SMD and PRF in text, netCDF, X3P and every other ending (.sur, .opd, .gwy, …) have their lengths in the file.
     The package SurfaceTopography reads the formats of instruments: pip install 'roughcoat[topography]'. Axes of netCDF
-    are told by the names of the dimensions, x and y. A mask of Gwyddion marks points, and takes none away.
+    are recognised by the names of the dimensions, x and y. A mask of Gwyddion marks points; it removes none.
 
     Parameters
     ----------
     path : of the file
     unit : unit of x, y, dx, dy and crop: m, mm, um, nm, pm or angstrom. Text and .npy have none, so it must be given.
     height_unit : unit of z; None: as `unit`
-    dx, dy : distance of the points, in unit; dy is dx if it is not given. Where a file states its lengths, unit,
-        height_unit, dx and dy of the call hold in their place, and the notes say what the file states
-    columns : which columns to take, counted from 0: (x, z), (x, y, z), or (z,) with dx
-    channel : name of the channel to read; None: the first of heights. The notes of the scan name it
+    dx, dy : distance between points, in unit; dy defaults to dx. Where a file states its lengths, unit, height_unit,
+        dx and dy of the call override them, and the notes say what the file states
+    columns : the columns to read, counted from 0: (x, z), (x, y, z), or (z,) with dx
+    channel : name of the channel to read; None: the first channel of heights. The notes of the scan name it
     crop : (x0, x1) or (x0, x1, y0, y1), the part to keep, in unit (m where it is None) or texts with units. x and y are
         those of the file, or begin with 0 at the first point
-    missing, steep, huge, despike : as of `height_map`
+    missing, steep, huge, despike : as in `height_map`
 
     Returns
     -------
@@ -80,11 +80,11 @@ def read(
     Raises
     ------
     ValueError : the file cannot be read as a scan; the message says what was read, and what is allowed
-    ImportError : the format of an instrument, and SurfaceTopography is not installed
+    ImportError : the file has the format of an instrument, and SurfaceTopography is not installed
     """
     path = Path(path)
     try:
-        if path.exists():  # who reads it says that it is not there
+        if path.exists():  # otherwise the reader says so
             checked(path)
     except ValueError as error:
         raise ValueError(f"{path.name}: {error}") from None
@@ -93,7 +93,7 @@ def read(
     arguments = {name: value for name, value in arguments.items() if value is not None}
     text = text_of(path) if ending in TEXT else None
     if ending != ".npy" and text is None:
-        scan = _of_own_format(path, arguments, channel, crop, how)
+        scan = _of_netcdf_or_x3p(path, arguments, channel, crop, how)
         return scan if scan is not None else _instrument(path, arguments, channel, crop, how)
     if text is not None:
         return _of_text(path.name, text, arguments, channel, crop, how)
@@ -102,7 +102,7 @@ def read(
     return _of_table(path.name, npy_table(path), arguments, crop, how)
 
 
-def _of_own_format(path: Path, arguments: dict, channel: str | None, crop, how: dict) -> Scan | None:
+def _of_netcdf_or_x3p(path: Path, arguments: dict, channel: str | None, crop, how: dict) -> Scan | None:
     """The scan of a netCDF or X3P file; None if it is neither."""
     name, head = path.name, begins(path) if path.exists() else b""
     if head.startswith(netcdf_heights.MAGIC):
@@ -116,7 +116,7 @@ def _of_own_format(path: Path, arguments: dict, channel: str | None, crop, how: 
 
 
 def _of_stated(name: str, z, steps, arguments: dict, channel: str | None, crop, how: dict) -> Scan:
-    """The scan of heights at distances that a format states in m. Raises ValueError for a column or channel of it."""
+    """The scan of a format that states its steps in m. Raises ValueError if the call names columns or a channel."""
     if more := [key for key, value in {**arguments, "channel": channel}.items() if value and key not in _LENGTHS]:
         raise ValueError(f"{name}: the format states its lengths itself; leave out {', '.join(more)}")
     positions = [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
@@ -125,7 +125,7 @@ def _of_stated(name: str, z, steps, arguments: dict, channel: str | None, crop, 
 
 
 def _of_text(name: str, text: str, arguments: dict, channel: str | None, crop, how: dict) -> Scan:
-    """The scan in a text, of a format that states its lengths or a table of numbers."""
+    """The scan in a text: a format that states its lengths, or a table of numbers."""
     surface = stated(text, name)
     table = None if surface else table_of(text, name, channel)
     pixel = None if surface else _zygo_pixel(table, "dx" in arguments, name)
@@ -136,13 +136,13 @@ def _of_text(name: str, text: str, arguments: dict, channel: str | None, crop, h
     if "columns" in arguments:
         raise ValueError(f"{name}: the file states its lengths itself; leave out columns")
     lengths = overruled([np.arange(2.0)] * 2, [pixel] * 2, ("m", "um"), arguments, name)
-    taken = {"unit": lengths.units[0], "height_unit": lengths.units[1]}
-    scan = _of_table(name, table, taken | dict(zip(("dy", "dx"), lengths.steps or (), strict=False)), crop, how)
+    units_used = {"unit": lengths.units[0], "height_unit": lengths.units[1]}
+    scan = _of_table(name, table, units_used | dict(zip(("dy", "dx"), lengths.steps or (), strict=False)), crop, how)
     return replace(scan, notes=lengths.notes + scan.notes)
 
 
 def _zygo_pixel(table: NumberTable, has_dx: bool, name: str) -> float | None:
-    """Metres of a pixel in XYZ of Zygo, where x and y are numbers of pixels and z is in µm; None if it is no such file.
+    """Size of a pixel, m, in an XYZ file of Zygo, where x and y count pixels and z is in µm; None for any other file.
 
     Raises ValueError: such a file has no size of a pixel, and the caller gives no dx.
     """
@@ -157,8 +157,8 @@ def _zygo_pixel(table: NumberTable, has_dx: bool, name: str) -> float | None:
 
 
 def _of_table(name: str, table: NumberTable, arguments: dict, crop, how: dict) -> Scan:
-    """The scan in a table of numbers: a profile, a map, or x, y, z of one."""
-    _refuse_lacking(name, table, arguments)
+    """The scan in a table of numbers: a profile, a map, or x, y, z of a map."""
+    _refuse_missing_lengths(name, table, arguments)
     unit, height_unit = arguments["unit"], arguments.get("height_unit", arguments["unit"])
     cleaned, holes = without_holes(table.numbers)
     table = replace(table, numbers=cleaned, notes=table.notes + holes)
@@ -181,8 +181,8 @@ def _of_table(name: str, table: NumberTable, arguments: dict, crop, how: dict) -
     return scan_of(name, z, positions, steps=steps, units=(unit, height_unit), crop=crop, notes=notes, how=how)
 
 
-def _refuse_lacking(name: str, table: NumberTable, arguments: dict) -> None:
-    """Raise ValueError for all lengths at once that the call lacks: unit, dx of a map or one column, height_unit."""
+def _refuse_missing_lengths(name: str, table: NumberTable, arguments: dict) -> None:
+    """Raise one ValueError for every length that the call lacks: unit, dx of a map or one column, height_unit."""
     rows, columns = table.numbers.shape
     picked, unit = plain(arguments.get("columns")), arguments.get("unit")
     is_map = picked is None and columns >= FEWEST and rows > 1
@@ -206,7 +206,7 @@ def _refuse_lacking(name: str, table: NumberTable, arguments: dict) -> None:
 
 
 def _instrument(path: Path, arguments: dict, channel: str | None, crop, how: dict) -> Scan:
-    """A scan in the format of an instrument, by SurfaceTopography. Its maps have x first, ours y."""
+    """A scan in the format of an instrument, by SurfaceTopography. Its maps have x as the first axis, ours have y."""
     name, ending = path.name, path.suffix.lower()
     try:
         with warnings.catch_warnings():
@@ -245,7 +245,7 @@ def _instrument(path: Path, arguments: dict, channel: str | None, crop, how: dic
     if chosen and chosen.physical_sizes is None:
         dx, unit = arguments.pop("dx"), arguments.get("unit", chosen.unit)
         steps = number(f"{name}: dx", dx, unit), number(f"{name}: dy", arguments.pop("dy", dx), unit)
-        if chosen.unit:  # then the sizes are in this unit, and `unit` is that of dx alone
+        if chosen.unit:  # then the sizes are in this unit, and `unit` is the unit of dx alone
             arguments.pop("unit", None)
             size = metres(unit, name) / metres(chosen.unit, name)
             steps = steps[0] * size, steps[1] * size
@@ -259,7 +259,7 @@ def _instrument(path: Path, arguments: dict, channel: str | None, crop, how: dic
 
 
 def _of_data_sets(path: Path, arguments: dict, channel: str | None, crop, how: dict) -> Scan | None:
-    """The scan in a data set of HDF5, which states no lengths, read without SurfaceTopography; None if it has none."""
+    """The scan in a data set of HDF5, which states no lengths, without SurfaceTopography; None if there is none."""
     name, is_hdf5 = path.name, path.is_file() and begins(path).startswith(netcdf_heights.MAGIC[-1])
     maps = netcdf_heights.data_sets(unpacked(content(path))) if is_hdf5 else {}
     if not maps:
@@ -292,10 +292,10 @@ def _are_labels(channel: str, z: np.ndarray) -> bool:
 
 
 def _without_mask(library, topography, channel) -> tuple:
-    """A map of Gwyddion with the heights under its mask, and a note of them.
+    """A map of Gwyddion with the heights under its mask, and a note about them.
 
-    The mask is what somebody has marked, grains or dust, and the heights below it are measured. Only where Gwyddion
-    itself has replaced missing points, all by the mean of the others, it says what is missing: then it stays.
+    A mask marks grains or dust, and the heights under it are measured. Only if Gwyddion itself has replaced missing
+    points, all by the mean of the others, does the mask show the missing points: then the mask stays.
     """
     measured = topography
     while hasattr(measured, "parent_topography"):  # the heights as they are in the file, without a scale
@@ -304,8 +304,8 @@ def _without_mask(library, topography, channel) -> tuple:
     mask, data = np.ma.getmaskarray(z), np.ma.getdata(z)
     if not mask.any() or mask.all():
         return topography, ()
-    there = data[~mask]
-    if np.allclose(data[mask], there.mean(), rtol=0, atol=1e-6 * (np.ptp(there) or 1.0)):
+    unmasked = data[~mask]
+    if np.allclose(data[mask], unmasked.mean(), rtol=0, atol=1e-6 * (np.ptp(unmasked) or 1.0)):
         return topography, (
             "the points under the mask have the mean height: Gwyddion has put it where they are missing",
         )
@@ -315,7 +315,7 @@ def _without_mask(library, topography, channel) -> tuple:
 
 
 def _of_instrument(topography, name: str, arguments: dict, crop, notes: tuple, how: dict, refused: str) -> Scan:
-    """The scan of a topography of SurfaceTopography. Its lengths are all in one unit, or none."""
+    """The scan of a topography of SurfaceTopography. Its lengths are all in one unit, or have no unit."""
     stated = topography.unit
     if stated is None and "unit" not in arguments:
         raise ValueError(f"{name}: the file states no unit of length; give unit")
@@ -325,7 +325,7 @@ def _of_instrument(topography, name: str, arguments: dict, crop, notes: tuple, h
         z = np.ma.filled(np.ma.asarray(topography.heights()).astype(float), np.nan).T
         if _are_labels(str(notes[:1]).partition(" of ")[0], z):
             raise ValueError(f"{notes[0]} has labels, which are no heights")
-        z = np.where(np.isinf(z), np.copysign(1e300, z), z)  # the largest number times a scale: `scan_of` says so
+        z = np.where(np.isinf(z), np.copysign(1e300, z), z)  # a mark of missing points times a scale, for `scan_of`
         steps = [float(step) for step in np.atleast_1d(topography.pixel_size)][::-1] if topography.is_uniform else None
         positions = None if steps else [np.asarray(topography.positions(), dtype=float)]
     positions = positions or [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
@@ -337,7 +337,7 @@ def _of_instrument(topography, name: str, arguments: dict, crop, notes: tuple, h
 
 
 def _lacking(channel, arguments: dict) -> list[str]:
-    """Sentences about all lengths that a channel of SurfaceTopography and the call both lack."""
+    """Sentences on the lengths that both a channel of SurfaceTopography and the call lack."""
     if channel.physical_sizes is None and "dx" not in arguments:
         return [_NO_LENGTHS if channel.unit is None else "the file states no distance of its points: give dx (and dy)"]
     return ["the file states no unit of length; give unit"] * (channel.unit is None and "unit" not in arguments)
@@ -352,7 +352,8 @@ def _source(path: Path):
 def _as_value_error(refused: str, ending: str):
     """Errors of SurfaceTopography, which are of many kinds, as one ValueError with their first line.
 
-    Where no format fits, its message lists what each reader says. The reader of the ending is quoted, if there is one.
+    Where no format fits, its message lists an error from each reader. The error from the reader of the ending is
+    quoted, if there is one.
     """
     try:
         yield
@@ -361,14 +362,15 @@ def _as_value_error(refused: str, ending: str):
     except Exception as error:
         tried = dict(re.findall(r"tried (\w+): *\n *(.*)", str(error)))
         reasons = [reason for reader, reason in tried.items() if ending and reader.lower().startswith(ending[1:])]
-        fits = _NO_FORMAT + "".join(f"; as {ending}: {of_ending}" for of_ending in reasons)
+        fits = _NO_FORMAT + "".join(f"; as {ending}: {reason}" for reason in reasons)
         reason = fits if tried else (str(error).strip().splitlines() or [type(error).__name__])[0]
         raise ValueError(f"{refused}: {reason}") from error
 
 
 def _channels(library, path: Path) -> tuple[list, object, str]:
-    """Channels of a file, the one that SurfaceTopography takes first, and the format; none if there is no file."""
-    if not path.is_file():  # reading it says so
+    """Channels of a file, the default channel of SurfaceTopography, and the format; none of them if there is no
+    file."""
+    if not path.is_file():  # the reader says so later
         return [], None, ""
     with library.open_topography(_source(path)) as reader:
         channels, default, kind = list(reader.channels), reader.default_channel, reader.format()
@@ -378,7 +380,7 @@ def _channels(library, path: Path) -> tuple[list, object, str]:
 
 
 def _chosen(channels: list, default, channel: str | None, name: str) -> tuple:
-    """The channel of that name, or the first of heights, and a note that names it. Raises ValueError for none."""
+    """The channel of that name, or the first of heights, and a note that names it. Raises ValueError without one."""
     named = {each.channel_id: each for each in channels}
     listed = ", ".join(map(repr, named))
     if channel is not None and channel not in named:
@@ -389,7 +391,7 @@ def _chosen(channels: list, default, channel: str | None, name: str) -> tuple:
     heights = [each for each in channels if each.is_height_channel]
     chosen = named[channel] if channel is not None else default if default in heights else (*heights, None)[0]
     if chosen is None or not chosen.is_height_channel:
-        those = ", ".join(repr(each.channel_id) for each in heights) or "none"
+        height_channels = ", ".join(repr(each.channel_id) for each in heights) or "none"
         what = f"channel {channel!r} has no heights" if chosen else f"the channels {listed} have no heights"
-        raise ValueError(f"{name}: {what}; channels of heights: {those}")
+        raise ValueError(f"{name}: {what}; channels of heights: {height_channels}")
     return chosen, (f"channel {chosen.channel_id!r}" + f" of {listed}" * (len(named) > 1),)

@@ -1,6 +1,6 @@
-"""From positions and heights as a file has them to a scan: .npy, x y z of a grid, rounding, the part to keep.
+"""From positions and heights as a file has them to a scan: .npy, x y z of a grid, rounded positions, the cropped part.
 
-And lengths of the call in the place of those that a file states: a reader or a file may be wrong.
+Lengths in the call override those that a file states, since a reader or a file may be wrong.
 """
 
 import dataclasses
@@ -19,19 +19,19 @@ from .quantities import has_unit, quantity
 from .scan import FEWEST, UNEVEN, Scan, height_map, metres, number, profile
 from .scan_texts import NumberTable
 
-#: A grid of x y z must have heights at this share of its points: a disk in its square has them at 0.79.
+#: Least share of the points of an x y z grid that must have heights: a disk in its square has 0.79.
 FULL = 0.25
 #: A position may be off the grid by its last written digit, if that is at most this share of the whole length.
 COARSE = 0.01
-#: A number this large is no height in any unit, and finite: programs mark missing points with the largest number that
-#: they have, 1.7e38, 3.4e38 or 1.8e308, times the scale of the heights perhaps.
+#: A finite number this large is not a height in any unit: programs mark missing points with their largest number,
+#: 1.7e38, 3.4e38 or 1.8e308, perhaps times the scale of the heights.
 NO_HEIGHT = 1e20
 #: Distances that differ by this share are equal: files round them.
 EQUAL = 1e-6
 
 
 class Lengths(NamedTuple):
-    """What `scan_of` takes: positions and steps along each axis, units of positions and heights, notes."""
+    """Arguments of `scan_of`: positions and steps along each axis, units of positions and heights, notes."""
 
     positions: list[np.ndarray]
     steps: list[float] | None
@@ -40,7 +40,7 @@ class Lengths(NamedTuple):
 
 
 def npy_table(path: Path) -> NumberTable:
-    """The numbers in a .npy file. Raises ValueError: it is none, whatever its name, or no array of real numbers."""
+    """The numbers in a .npy file. Raises ValueError: it is not a .npy file, or not an array of real numbers."""
     refused = f"{path.name}: not a .npy file of real numbers"
     head = begins(path, size=len(MAGIC_PREFIX))
     if head != MAGIC_PREFIX:  # numpy would open a zip, and speak of pickled data of all else
@@ -49,7 +49,7 @@ def npy_table(path: Path) -> NumberTable:
     try:
         with opened(path) as file:
             numbers = np.load(file, allow_pickle=False).astype(float, casting="same_kind")
-    except Exception as error:  # numpy takes the header for Python, and allocates what it says
+    except Exception as error:  # numpy evaluates the header, and allocates as much as it says
         raise ValueError(f"{refused}: {(str(error).splitlines() or [type(error).__name__])[0][:200]}") from error
     if numbers.ndim not in (1, 2) or not numbers.size:
         raise ValueError(f"{path.name}: an array of shape {numbers.shape}; allowed are one or two dimensions")
@@ -57,7 +57,7 @@ def npy_table(path: Path) -> NumberTable:
 
 
 def without_holes(z: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
-    """The numbers, NaN where one is too large for a height, and a note of them."""
+    """The numbers, with NaN for each that is too large for a height, and a note about these."""
     holes = np.isfinite(z) & (np.abs(z) >= NO_HEIGHT)
     if not holes.any():
         return z, ()
@@ -67,7 +67,10 @@ def without_holes(z: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
 
 
 def columns_of(table: NumberTable, arguments: dict, name: str) -> tuple[np.ndarray, list]:
-    """The columns of positions and heights, or all of a map, and where they stand; None where dx is the position."""
+    """The columns of positions and heights, or all columns of a map, and the places of positions and heights.
+
+    The place of the positions is None where dx stands for them.
+    """
     numbers, dx, picked = table.numbers, arguments.get("dx"), plain(arguments.get("columns"))
     places = [0, -1]
     if picked is not None:
@@ -85,7 +88,7 @@ def columns_of(table: NumberTable, arguments: dict, name: str) -> tuple[np.ndarr
         places = [0, 1, 2]
     n = numbers.shape[1]
     if n >= FEWEST and picked is None:
-        _no_positions(numbers, name)
+        _refuse_positions(numbers, name)
     if n >= FEWEST and dx is None:
         raise ValueError(f"{name}: a map of {numbers.shape[0]} × {n} heights: give dx (and dy), their distance")
     if n < FEWEST and (n > 3 or (n < 3 and ((n == 2) == (dx is not None) or "dy" in arguments))):
@@ -99,11 +102,11 @@ def columns_of(table: NumberTable, arguments: dict, name: str) -> tuple[np.ndarr
     return numbers, places if dx is None else [None, places[-1]]
 
 
-def _no_positions(heights: np.ndarray, name: str) -> None:
+def _refuse_positions(heights: np.ndarray, name: str) -> None:
     """Raise ValueError for a map whose first row or column has positions or numbers of the points."""
     for two, line in ((heights[:2], "row"), (heights[:, :2].T, "column")):
-        there = [each[~np.isnan(each)] for each in two]  # pandas leaves the corner empty
-        first, steps = there[0], [np.diff(each) for each in there]
+        present = [each[~np.isnan(each)] for each in two]  # pandas leaves the corner empty
+        first, steps = present[0], [np.diff(each) for each in present]
         equal = [each.size > 1 and each[0] != 0 and np.ptp(each) <= 1e-6 * abs(each[0]) for each in steps]
         if equal[0] and not equal[-1]:
             raise ValueError(
@@ -120,12 +123,12 @@ def on_grid(columns: np.ndarray, z: np.ndarray, steps: tuple | None, name: str) 
     Raises ValueError: the points are on no grid, in a single line, or two of them are at one place.
     """
     rows = f"{name}: {len(z)} rows of {columns.shape[1]} column(s)"
-    there = ~np.isnan(columns[:, :2]).all(axis=1)
-    xy, z = columns[there, :2], z[there]
+    has_position = ~np.isnan(columns[:, :2]).all(axis=1)
+    xy, z = columns[has_position, :2], z[has_position]
     if np.isnan(xy).any():
         raise ValueError(f"{rows}, x, y and z: {np.isnan(xy).any(axis=1).sum()} positions are not numbers")
     axes = [_axis(values) for values in xy.T]
-    why = [f"{of} has no equal steps" for of, axis in zip("xy", axes, strict=True) if axis is None]
+    why = [f"{axis_name} has no equal steps" for axis_name, axis in zip("xy", axes, strict=True) if axis is None]
     if not why and 1 in (size := [len(axis[0]) for axis in axes]):
         why = [f"all {'xy'[size.index(1)]} are equal"]
     if not why and len(z) < FULL * math.prod(size):
@@ -150,12 +153,12 @@ def on_grid(columns: np.ndarray, z: np.ndarray, steps: tuple | None, name: str) 
 
 
 def _axis(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """The uniform positions of the values, rising, and the place of each value among them; None if there are none."""
+    """Uniform rising positions for the values, and the place of each value among them; None if there are none."""
     unique = np.unique(values)
     span, gaps = unique[-1] - unique[0], np.sort(np.diff(unique))
     if not gaps.size:
         return unique, np.zeros(len(values), dtype=int)
-    jump = int(np.argmax(gaps[1:] / gaps[:-1])) + 1 if gaps.size > 1 else 0  # the gaps before it are of rounding
+    jump = int(np.argmax(gaps[1:] / gaps[:-1])) + 1 if gaps.size > 1 else 0  # the gaps before it come from rounding
     for gap in (span / gaps.size, span / (gaps.size - jump), np.median(gaps), np.median(gaps[jump:])):
         points = round(span / gap) + 1
         step = span / (points - 1)
@@ -167,9 +170,10 @@ def _axis(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
 
 
 def _last_digit(values: np.ndarray) -> float:
-    """The largest last digit of numbers that were written with equally many decimals, or equally many digits.
+    """The value of the last written digit: the largest among numbers with equally many decimals, or equally many
+    digits.
 
-    Trailing zeros may have been left out: of 0.5, 1 and 10.5 it is 0.1.
+    Trailing zeros may have been left out: for 0.5, 1 and 10.5 it is 0.1.
     """
     written = [Decimal(repr(value)).normalize() for value in np.unique(values[values != 0]).tolist()]
     powers = [(number.adjusted(), number.as_tuple().exponent) for number in written]
@@ -178,10 +182,10 @@ def _last_digit(values: np.ndarray) -> float:
 
 
 def _rounded_step(x: np.ndarray) -> float | None:
-    """The mean step of positions that are uneven by rounding alone; None if they are even, or uneven beyond rounding.
+    """The mean step of positions that are uneven only by rounding; None if they are even, or more uneven than that.
 
-    Instruments write x with few digits: 0.3, 0.7, 1.0 of a step of 1/3. Steps of mostly one last digit are left alone:
-    there a point may be missing.
+    Instruments write x with few digits: 0.3, 0.7, 1.0 for a step of 1/3. Where most steps are one unit of the last
+    digit, the answer is None: a point may be missing there.
     """
     steps = np.diff(x)
     mean = (x[-1] - x[0]) / max(len(steps), 1)
@@ -196,35 +200,37 @@ def _rounded_step(x: np.ndarray) -> float | None:
 def overruled(
     positions: list[np.ndarray], steps: list[float] | None, units: tuple[str, str], arguments: dict, name: str
 ) -> Lengths:
-    """Lengths with `unit`, `height_unit`, `dx` and `dy` of the call in the place of what the file states, in `units`.
+    """Lengths of the file, in `units`, overridden by `unit`, `height_unit`, `dx` and `dy` of the call.
 
-    `unit` alone is that of the file's numbers; beside dx it is the unit of dx. Without it dx is in the file's unit.
+    `unit` alone is the unit of the file's numbers; with dx it is the unit of dx. Without it dx is in the file's unit.
 
-    Raises ValueError: a distance that is no number, dy without dx, or a unit that is unknown.
+    Raises ValueError: a distance that is not a number, dy without dx, or an unknown unit.
     """
-    units_taken = arguments.get("unit", units[0]), arguments.get("height_unit", units[1])
-    differ = [metres(taken, name) != metres(stated, name) for taken, stated in zip(units_taken, units, strict=True)]
-    notes = (f"heights are in {units_taken[1]}, as height_unit says; the file states {units[1]}",) * differ[1]
+    units_used = arguments.get("unit", units[0]), arguments.get("height_unit", units[1])
+    differ = [metres(used, name) != metres(stated, name) for used, stated in zip(units_used, units, strict=True)]
+    notes = (f"heights are in {units_used[1]}, as height_unit says; the file states {units[1]}",) * differ[1]
     if "dx" not in arguments:
         if "dy" in arguments:
             raise ValueError(f"{name}: give dx beside dy, both in the place of what the file states")
-        notes += (f"x and y are in {units_taken[0]}, as unit says; the file states {units[0]}",) * differ[0]
-        return Lengths(positions, steps, units_taken, notes)
-    dx = number(f"{name}: dx", arguments["dx"], units_taken[0])
-    dy = number(f"{name}: dy", arguments["dy"], units_taken[0]) if "dy" in arguments else dx
+        notes += (f"x and y are in {units_used[0]}, as unit says; the file states {units[0]}",) * differ[0]
+        return Lengths(positions, steps, units_used, notes)
+    dx = number(f"{name}: dx", arguments["dx"], units_used[0])
+    dy = number(f"{name}: dy", arguments["dy"], units_used[0]) if "dy" in arguments else dx
     stated = [step * metres(units[0], name) for step in steps or [np.nan]]
-    taken = [dy, dx][-len(positions) :]
-    ratios = np.array(taken[-len(stated) :]) * metres(units_taken[0], name) / np.array(stated)
+    steps_of_call = [dy, dx][-len(positions) :]
+    ratios = np.array(steps_of_call[-len(stated) :]) * metres(units_used[0], name) / np.array(stated)
     if not np.allclose(ratios, 1, rtol=0, atol=EQUAL):
-        by_call = " and ".join(f"{key} = {step:g}" for key, step in zip(("dx", "dy"), taken[::-1], strict=False))
+        by_call = " and ".join(
+            f"{key} = {step:g}" for key, step in zip(("dx", "dy"), steps_of_call[::-1], strict=False)
+        )
         by_file = " and ".join(f"{step / metres(units[0], name):g}" for step in stated[::-1])
         notes += (
-            f"points are {by_call} {units_taken[0]} apart, as the call says; the file states {by_file} {units[0]}"
+            f"points are {by_call} {units_used[0]} apart, as the call says; the file states {by_file} {units[0]}"
             if steps
-            else f"points are {by_call} {units_taken[0]} apart, as the call says; the file has unequal steps",
+            else f"points are {by_call} {units_used[0]} apart, as the call says; the file has unequal steps",
         )
-    counts = [len(axis) for axis in positions]
-    return Lengths([step * np.arange(n) for step, n in zip(taken, counts, strict=True)], taken, units_taken, notes)
+    axes = [step * np.arange(len(axis)) for step, axis in zip(steps_of_call, positions, strict=True)]
+    return Lengths(axes, steps_of_call, units_used, notes)
 
 
 def scan_of(name, z, positions, *, steps=None, units=("m", "m"), crop=None, notes=(), how) -> Scan:
@@ -232,10 +238,10 @@ def scan_of(name, z, positions, *, steps=None, units=("m", "m"), crop=None, note
 
     z : heights (x) or (y, x) in units[1], NaN where a point is missing
     positions : of each axis of z, in units[0]; uniform ones of a map
-    steps : distance of the points along each axis; None: that of the positions
+    steps : distance between points along each axis; None: it follows from the positions
     crop : (x0, x1) or (x0, x1, y0, y1), or None
     notes : sentences about how the file was read
-    how : missing, steep, huge and despike of `height_map`
+    how : the arguments missing, steep, huge and despike of `height_map`
     """
     z, holes = without_holes(z)
     notes = (*notes, *holes)
@@ -257,7 +263,7 @@ def scan_of(name, z, positions, *, steps=None, units=("m", "m"), crop=None, note
 
 
 def _part(crop, positions: list, unit: str, name: str) -> tuple[slice, ...]:
-    """The points of each axis that lie in `crop`. Raises ValueError for one that is not an interval in the scan."""
+    """The points of each axis that lie in `crop`. Raises ValueError for a crop that is not an interval in the scan."""
     crop = list(crop) if isinstance(crop, (list, tuple, np.ndarray)) else [crop]
     if len(crop) not in (2, 2 * len(positions)):
         allowed = "(x0, x1)" + ", or (x0, x1, y0, y1)" * (len(positions) == 2)
@@ -269,20 +275,20 @@ def _part(crop, positions: list, unit: str, name: str) -> tuple[slice, ...]:
         for end in crop
     ]
     part = [slice(None)] * len(positions)
-    for i, (of, low, high) in enumerate(zip("xy", ends[::2], ends[1::2], strict=False)):
+    for i, (letter, low, high) in enumerate(zip("xy", ends[::2], ends[1::2], strict=False)):
         axis = len(positions) - 1 - i
         where = positions[axis]
         first, last, step = where.min(), where.max(), np.ptp(where) / max(len(where) - 1, 1)
         inside = np.flatnonzero((where >= low - 1e-3 * step) & (where <= high + 1e-3 * step))
         if not (low < high and first - 1.01 * step <= low and high <= last + 1.01 * step):
             raise ValueError(
-                f"{name}: crop from {low:g} to {high:g} {unit} in {of}: must rise and lie in the scan, which goes from "
-                f"{first:g} to {last:g} {unit}"
+                f"{name}: crop from {low:g} to {high:g} {unit} in {letter}: must rise and lie in the scan, which goes "
+                f"from {first:g} to {last:g} {unit}"
             )
         if len(inside) < FEWEST:
             raise ValueError(
-                f"{name}: crop from {low:g} to {high:g} {unit} in {of} keeps {len(inside)} points; at least {FEWEST} "
-                f"are needed. The scan has {len(where)}, from {first:g} to {last:g} {unit}"
+                f"{name}: crop from {low:g} to {high:g} {unit} in {letter} keeps {len(inside)} points; at least "
+                f"{FEWEST} are needed. The scan has {len(where)}, from {first:g} to {last:g} {unit}"
             )
         part[axis] = slice(inside[0], inside[-1] + 1)
     return tuple(part)

@@ -1,6 +1,6 @@
-"""The heading of a text file: the unit of its heights, a factor, which number stands for a missing point.
+"""The heading of a text file: the unit of its heights, a factor, and the number that stands for a missing point.
 
-And the text formats whose heading has every length: SDF (ISO 25178-71), SMD (ISO 5436-2) and PRF.
+Three text formats state every length in their heading: SDF (ISO 25178-71), SMD (ISO 5436-2) and PRF.
 """
 
 import re
@@ -12,7 +12,7 @@ from .scan_texts import NumberTable
 
 _UNIT = rf"(?:(?i:{'|'.join(WORDS)})s?|{'|'.join(sorted(UNITS, key=len, reverse=True))}|Å|A)(?![^\W_])"
 _NUMBER = r"[-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][-+]?\d+)?(?![\w.,])"
-#: A factor whose meaning is stated: height × factor is in that unit. SurfaceTopography and Gwyddion know them too.
+#: Factors with a stated unit: height × factor is in that unit. SurfaceTopography and Gwyddion know them too.
 _FACTORS = [
     re.compile(pattern, re.IGNORECASE)
     for pattern in (
@@ -21,12 +21,12 @@ _FACTORS = [
         rf"\b(?:z|height|value|data)[\s_-]*units?\s*[=:]\s*(?P<factor>{_NUMBER})\s*\*?\s*(?-i:(?P<unit>{_UNIT}))",
     )
 ]
-#: A name and a number, with a unit and "per bit" perhaps.
+#: A name and a number, perhaps with a unit and "per bit".
 _PAIR = re.compile(
     rf'(?P<key>[\w\\@][\w ./()\[\]>|\\@"×*-]*?)"?\s*(?:[=:;,\s]|(?<=[(\[×*]))\s*"?\s*(?P<value>{_NUMBER})'
     rf"\s*(?P<unit>{_UNIT})?(?P<per>\s*(?:/|per)\s*(?:bit|digit|count|lsb|step)s?\b)?"
 )
-#: Names of a scale of heights; and names that have such a word but are no scale.
+#: Names of a scale of heights, and names that contain such a word without being a scale.
 _SCALE = re.compile(
     r"scale\b|scaling|scale[\s_-]*(?:data|z|height)|skalier|échelle|fa[ck]t(?:o|eu)r|multipl|\bmult\b|amplif|bit2|\blsb\b"
     r"|\b1\s*(?:bit|digit|count)\b|quanti[sz]|^units?$|units? of$|[a-z]\s*[*×]$"
@@ -59,20 +59,21 @@ _SIZE = re.compile(
 )
 
 
-#: A size of the whole map, or the distance of its points, as headings have them.
+#: The size of the whole map, or the distance between its points, as headings state them.
 _EXTENT = re.compile(
     rf"^\W*(?:(?P<all>width|height)|(?P<each>(?:xy?[\s_-]*)?pixel[\s_-]*(?:size|width)))\W*?[:=]\s*(?P<value>{_NUMBER})"
     rf"\s*(?P<unit>{_UNIT})\W*$",
     re.IGNORECASE,
 )
-#: A distance may differ by this share from that of the heading, which is rounded: 1/N of N points would be more.
+#: A distance may differ by this share from the rounded one in the heading. A count that is off by one of N points, a
+#: share of 1/N, would differ by more.
 _ROUNDED = 1e-3
 
 
 def extent_notes(table: NumberTable, steps: tuple[float, float], unit: str, name: str) -> tuple[str, ...]:
-    """Notes where the heading of a map has other distances of points than the steps (dy, dx) in `unit`.
+    """Notes where the heading of a map states distances between points other than the steps (dy, dx) in `unit`.
 
-    The width of Gwyddion is that of all points, N steps and not the N - 1 from the first to the last.
+    The width in Gwyddion is that of N steps, not of the N - 1 from the first point to the last.
     """
     notes: tuple[str, ...] = ()
     for number, line in table.heading:
@@ -90,24 +91,24 @@ def extent_notes(table: NumberTable, steps: tuple[float, float], unit: str, name
 
 
 def length(word: str) -> float | None:
-    """Metres in a unit as a heading writes it; None if it is none of length."""
+    """Metres in a unit of length as a heading writes it; None for any other word."""
     return spelt(word) or {"A": 1e-10}.get(word)
 
 
 def check_units(table: NumberTable, unit: str, height_unit: str, places: list, name: str) -> None:
-    """Raise ValueError for a unit that the heading, if it has units ("x [mm] z [nm]"), does not have.
+    """Raise ValueError for a unit that contradicts the units in the heading ("x [mm] z [nm]"), if it has any.
 
     Where the heading has a unit for each column, those at `places` count: first of the positions, last of the heights.
-    A place is None where a distance stands for the positions; a single unit is then that of the heights.
+    A place is None where a distance stands for the positions; a single unit is then the unit of the heights.
     """
     width = table.numbers.shape[1]
     columns, line = _column_units(table, width)
-    of_heights, its_line = _value_unit(table)
+    of_heights, height_line = _value_unit(table)
     if of_heights and length(of_heights) is None and any(f.search(line) for _, line in table.heading for f in _FACTORS):
-        of_heights = ""  # "data unit=rad" before the factor that makes metres of it
+        of_heights = ""  # "data unit=rad" before the factor that converts it to metres
     for i, place in enumerate(places):
         argument, value = ("height_unit", height_unit) if i == len(places) - 1 else ("unit", unit)
-        words, quoted = ([of_heights], its_line) if of_heights and argument == "height_unit" else (columns, line)
+        words, quoted = ([of_heights], height_line) if of_heights and argument == "height_unit" else (columns, line)
         if place is None and len(words) in (1, width):
             continue
         words = [words[place]] if len(words) == width else words
@@ -119,7 +120,7 @@ def check_units(table: NumberTable, unit: str, height_unit: str, places: list, n
 
 
 def _column_units(table: NumberTable, width: int) -> tuple[list[str], str]:
-    """The units in the line that names the columns, or right below it, and that line; [] if there are none."""
+    """The units in the line that names the columns, or in the next one, and that line; [] if there are none."""
     for i, (_, line) in enumerate(reversed(table.heading[-4:])):
         brackets = re.findall(r"[\[(]\s*([^\W\d_]+)\s*[\])]", line)
         text = line.strip("#% ")
@@ -135,7 +136,7 @@ def _column_units(table: NumberTable, width: int) -> tuple[list[str], str]:
 
 
 def _value_unit(table: NumberTable) -> tuple[str, str]:
-    """The unit of the heights where the heading names it so, and the line; ("", "") if it does not."""
+    """The unit of the heights that the heading names, and its line; ("", "") if it names none."""
     keyence = any("xy calibration" in line.lower() for _, line in table.heading)
     if table.heading and table.heading[0][1].startswith("Zygo XYZ"):
         return "um", table.heading[0][1]
@@ -147,7 +148,7 @@ def _value_unit(table: NumberTable) -> tuple[str, str]:
 
 
 def height_metres(table: NumberTable, height_unit: str, name: str) -> tuple[float, tuple[str, ...]]:
-    """Metres that the number 1 stands for as a height, and what was done about a factor in the heading.
+    """The height in metres that the number 1 stands for, and a note if a factor of the heading was applied.
 
     A factor that the heading states with its unit ("height conversion factor (-> m)=6.3e-008", "Bit2nm = 0.012") is
     applied where height_unit is this unit. Any other line that looks like a scale raises ValueError.
@@ -176,7 +177,7 @@ def height_metres(table: NumberTable, height_unit: str, name: str) -> tuple[floa
 
 
 def stated_height_unit(table: NumberTable) -> str | None:
-    """The unit in which the heading has the heights, after its factor if it has one; None where it has none."""
+    """The unit of the heights by the heading, after its factor if it has one; None where it states no unit."""
     value_unit = _value_unit(table)[0]
     units = (conversion[1] for _, line in table.heading if (conversion := _factor(table, line, value_unit)))
     return next(units, value_unit if value_unit and length(value_unit) else None)
@@ -188,7 +189,7 @@ def _factor(table: NumberTable, line: str, value_unit: str) -> tuple[float, str]
         return _wyko(table) if re.match(r"wavelength\s", line, re.IGNORECASE) else (1.0, "nm")
     match = next((match for pattern in _FACTORS if (match := pattern.search(line))), None)
     if not match or (match["unit"] == "nm" and "2nm" in line.lower() and value_unit):
-        return None  # SPIP leaves open whether a file with a z-unit has been multiplied
+        return None  # SPIP leaves open whether the heights of a file with a z-unit have been multiplied
     return float(match["factor"].replace(",", ".")), match["unit"]
 
 
@@ -218,9 +219,9 @@ def _no_scale(line: str, size: float, at: str) -> None:
 
 
 def without_no_data(table: NumberTable, columns: np.ndarray, name: str) -> tuple[np.ndarray, tuple[str, ...]]:
-    """The heights with NaN for the number that the heading has for no data ("NODATA_value -9999"), and a note.
+    """The heights with NaN for the number by which the heading marks missing data ("NODATA_value -9999"), and a note.
 
-    Raises ValueError: a map has other rows or columns than the heading says.
+    Raises ValueError: a map has another number of rows or columns than the heading says.
     """
     notes, marks = (), set()
     for number, line in table.heading:
@@ -257,7 +258,8 @@ def stated(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]] | None:
 
 
 def _sdf(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]]:
-    """ISO 25178-71: a heading of "key = value", *, the heights in rows or one a line, *; heights times Zscale in m."""
+    """ISO 25178-71: a heading of "key = value", *, the heights in rows or one a line, *; height times Zscale is in
+    m."""
     heading, _, rest = text.partition("\n*")
     pairs = (line.partition("=") for line in heading.splitlines())
     value = {key.strip().lower(): field.strip() for key, _, field in pairs}
@@ -277,7 +279,7 @@ def _sdf(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]]:
 def _records(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]]:
     """SMD and PRF: records of lines; the first has the axes, CX with its step and CZ with its unit and factor."""
     axis = r"^C{}\s+([A-Z])\s+({})\s+([a-zA-Zµ]+)\s+({})\s+[A-Z](?:\s+({}))?"
-    x, z, y = (re.search(axis.format(of, *[_NUMBER] * 3), text, re.MULTILINE) for of in "XZY")
+    x, z, y = (re.search(axis.format(letter, *[_NUMBER] * 3), text, re.MULTILINE) for letter in "XZY")
     spacing = re.search(rf"^SPACING\s+CX\s+({_NUMBER})", text, re.MULTILINE)
     step = (x and x[1] == "I" and x[5]) or (spacing and spacing[1])
     sizes = [UNITS.get(match[3].lower()) for match in (x, z) if match]

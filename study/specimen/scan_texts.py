@@ -1,6 +1,6 @@
 """Text files of scans: their encoding, the separator and the decimal mark, which lines are heading and which are rows.
 
-What stands in the heading is read by scan_headings.
+scan_headings reads the content of the heading.
 """
 
 import csv
@@ -17,39 +17,40 @@ from solver.numerics import userfile
 
 from .scan import FEWEST
 
-#: (separator, decimal mark) of a text file. The first pair that fits its first line of numbers is taken; if only whole
-#: numbers stand there, the first line with a decimal mark shows it. (",", ",") fits fields in quotation marks alone.
+#: (separator, decimal mark) of a text file. The first pair that fits the first line of numbers holds. If that line has
+#: only whole numbers, the first line with a decimal mark shows the mark. (",", ",") fits only fields in quotation
+#: marks.
 DIALECTS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","), (",", ","))
-#: Rows that are packed into an array at a time.
+#: Number of rows that are packed into an array at a time.
 _BLOCK = 10_000
-#: Words for a missing point in a row of numbers, in small letters.
+#: Words for a missing point in a row of numbers, in lower case.
 MISSING = ("", "nan", "bad", "***", "--", "-")
-#: "1,024": this comma may be no decimal mark.
+#: "1,024": the comma may separate thousands.
 _THOUSAND = re.compile(r"(?<!\d)[1-9]\d{0,2},\d{3}(?!\d)")
-#: A comment begins a line or stands behind a gap: "-1.#IND" has none.
+#: A comment begins a line or follows a gap: "-1.#IND" has none.
 _COMMENT = re.compile(r"(?:^|(?<=[\s;,]))[#%].*")
-#: float takes "inf" and "1_000" as well.
+#: A number in a text; `float` would also read "inf" and "1_000".
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-#: Signs that no text has. The end marks 3 and 26, which texts of ISO 5436-2 have, are not among them.
+#: Characters that no text has. The end marks 3 and 26, which texts of ISO 5436-2 have, are not among them.
 _BINARY = re.compile(r"[\x00-\x02\x04-\x08\x0e-\x19\x1b-\x1f]")
-#: Bytes of lines of numbers alone. float takes no other number that they spell than `_NUMBER` does.
+#: Bytes of lines that have only numbers. Of the words that they spell, `float` reads no others than `_NUMBER` does.
 _PLAIN = b"0123456789+-.eE;, \t"
-#: Signs with which a number ends, and begins.
+#: Characters with which a number ends, and begins.
 _DIGITS, _BEGINS = "0123456789", "0123456789+-."
 _OF_TEXTS = bytes(code for code in range(128) if not _BINARY.match(chr(code)))
 _CHANNEL = re.compile(r"[#%\s]*(?:channel|kanal|kanál|canale?)\s*[:=]\s*(.+?)\s*$", re.IGNORECASE)
-#: Zygo writes this in the place of z.
+#: Zygo writes "No Data" in the place of z.
 _NO_DATA = re.compile(r"(?i)^(\s*[-+\d.,eE]+[\s;,]+[-+\d.,eE]+[\s;,]+)no\s+data[\s;,]*$")
 
 
 @dataclass(frozen=True, eq=False)
 class NumberTable:
-    """The numbers of a text file, shape (rows, columns), NaN where a point is missing, and what stands around them.
+    """The numbers of a text file, shape (rows, columns), NaN where a point is missing, and the text around them.
 
-    heading : (number, text) of each line that is no row, comments included
+    heading : (number, text) of each line that is not a row, comments included
     separator : between the columns; None: spaces
-    channel : its name in the heading, or ""
-    notes : lines that were taken for something else than a row, a sentence each
+    channel : name of the channel in the heading, or ""
+    notes : sentences about lines of numbers that were not read as rows
     """
 
     numbers: np.ndarray
@@ -60,12 +61,12 @@ class NumberTable:
 
 
 def text_of(path: Path) -> str | None:
-    """The text of a file in UTF-8, UTF-16 or Latin-1, unpacked if it is gzip; None if it is no text."""
+    """The text of a file in UTF-8, UTF-16 or Latin-1, unpacked if it is gzip; None if it is not text."""
     try:
-        is_text = not _BINARY.search(userfile.begins(path).decode("latin-1"))  # nor one in UTF-16
+        is_text = not _BINARY.search(userfile.begins(path).decode("latin-1"))  # text in UTF-16 has such bytes too
         most = userfile.LARGEST_TEXT if is_text else userfile.LARGEST
         raw = userfile.unpacked(userfile.content(path, most), most)
-    except ValueError as error:  # of the door
+    except ValueError as error:  # of userfile
         raise ValueError(f"{path.name}: {error}") from error
     if raw.startswith(b"ISO 5436"):  # separated by zeros
         raw = raw.replace(b"\0", b" ")
@@ -85,7 +86,7 @@ def text_of(path: Path) -> str | None:
 
 
 def _is_binary(text: str) -> bool:
-    """Whether signs stand in a text that no text has; of ASCII in a tenth of the time of the search."""
+    """Whether a text has characters that no text has. For ASCII the deletion takes a tenth of the search's time."""
     return bool(text.encode().translate(None, _OF_TEXTS) if text.isascii() else _BINARY.search(text))
 
 
@@ -94,8 +95,8 @@ def table_of(text: str, name: str, channel: str | None = None) -> NumberTable:
 
     A line before the first clean row that has as many fields, most of them numbers, is a row too.
 
-    Raises ValueError: no numbers; a row with another number of fields, or with a word, which the message names with
-    its line; no channel of several is chosen, or one that is not there.
+    Raises ValueError: there are no numbers; a row has another number of fields, or a word, which the message names with
+    its line; no channel of several is chosen, or one that the file does not have.
     """
     lines, channel_note = _of_channel(Lines(text.split("\n"), 1), name, channel)
     contents = Lines([_content(full) for full in lines.texts], lines.first)
@@ -107,7 +108,7 @@ def table_of(text: str, name: str, channel: str | None = None) -> NumberTable:
     table, numbers, dialect, cut = _rows(contents[first:], dialect, name)
     if cut and table.shape[1] == 2:
         raise ValueError(f"{name}, line {numbers[-1]}: 1 number(s) after lines of 2: the file may be cut off")
-    _no_rows_in_heading(contents[:first], dialect, table, name)
+    _refuse_rows_in_heading(contents[:first], dialect, table, name)
     if table[0, 0] == len(table) - 1 > 0 and np.isnan(table[0, 1:]).all():  # the number of the points that follow
         counts, table, numbers = [contents[first]], table[1:], numbers[1:]
         if table.shape[1] == 1 and _whole(table):
@@ -118,15 +119,15 @@ def table_of(text: str, name: str, channel: str | None = None) -> NumberTable:
     for number, content in counts:
         _check_counts(number, content, table.shape, name)
     notes = tuple(f"line {line}, {content.strip()!r}, is taken for the size of the table" for line, content in counts)
-    taken = np.zeros(len(lines.texts), dtype=bool)
-    taken[numbers - lines.first] = True
-    rest = ((lines.first + int(i), lines.texts[i].strip()) for i in np.flatnonzero(~taken))
+    is_row = np.zeros(len(lines.texts), dtype=bool)
+    is_row[numbers - lines.first] = True
+    rest = ((lines.first + int(i), lines.texts[i].strip()) for i in np.flatnonzero(~is_row))
     heading = tuple((number, full) for number, full in rest if full)
     return NumberTable(table, heading, dialect[0], channel_note, notes)
 
 
 def _rows(contents: "Lines", dialect: tuple, name: str) -> tuple[np.ndarray, np.ndarray, tuple, bool]:
-    """The rows (rows, columns), the numbers of their lines, their dialect, and whether the last one may be cut off.
+    """The table (rows, columns), the numbers of its lines, its dialect, and whether the last row may be cut off.
 
     Raises ValueError for a row with a word or with another number of fields.
     """
@@ -139,7 +140,7 @@ def _rows(contents: "Lines", dialect: tuple, name: str) -> tuple[np.ndarray, np.
         if not any(fields) and len(fields) < FEWEST:
             continue
         values = _values(fields, dialect[1])
-        # rows such as "0;0" do not show the mark
+        # rows such as "0;0" do not show the decimal mark
         if None in values and table.is_whole() and not _THOUSAND.search(content):
             dialect = dialect[0], ","
             values = _values(fields, ",")
@@ -156,26 +157,28 @@ def _rows(contents: "Lines", dialect: tuple, name: str) -> tuple[np.ndarray, np.
 
 
 def _plain_rows(contents: "Lines", dialect: tuple) -> tuple[np.ndarray, np.ndarray] | None:
-    """The rows and the numbers of their lines, as numpy reads them at once; None where that is not possible: beside
-    numbers there are words, missing points, quotation marks, rows of another length or other marks."""
+    """The table and the numbers of its lines, read by numpy at once.
+
+    None where numpy cannot: some lines have words, missing points, quotation marks, another length or other marks.
+    """
     separator, mark = dialect
     if any(content.encode().translate(None, _PLAIN) for content in contents.texts):
         return None
     numbers = [number for number, content in contents if content and not content.isspace()]
-    texts: Iterable[str] = contents.texts  # numpy passes over lines without fields
+    texts: Iterable[str] = contents.texts  # numpy skips lines without fields
     if mark == ",":
         if any("." in content for content in contents.texts):
             return None
         texts = (content.replace(",", ".") for content in contents.texts)
     try:
         table = np.loadtxt(texts, delimiter=separator, comments=None, ndmin=2)
-    except ValueError:  # the reader of single rows says what is wrong, if anything is
+    except ValueError:  # the reader of single rows reports the error, if there is one
         return None
     return (table, np.array(numbers)) if len(table) == len(numbers) else None
 
 
 class Lines:
-    """Lines of a text, as pairs of their number and text; a tuple for each would be larger than a line is."""
+    """Lines of a text, as pairs of their number and text. A list of tuples would be larger than the text itself."""
 
     def __init__(self, texts: list[str], first: int):
         self.texts, self.first = texts, first
@@ -196,7 +199,7 @@ class Lines:
 
 
 def _of_channel(lines: Lines, name: str, channel: str | None) -> tuple[Lines, str]:
-    """The lines of one channel, and its name: Gwyddion writes several into one file, one below the other."""
+    """The lines of one channel, and its name. Gwyddion writes several channels into one file, one after the other."""
     starts = [
         (i, match[1])
         for i, full in enumerate(lines.texts)
@@ -207,10 +210,10 @@ def _of_channel(lines: Lines, name: str, channel: str | None) -> tuple[Lines, st
         listed = ", ".join(map(repr, names)) or "none by name; choose columns of text with columns="
         raise ValueError(f"{name}: channel = {channel!r}, but the file has {listed}")
     ends = [*(i for i, _ in starts), len(lines)][1:]
-    filled = [
+    have_numbers = [
         any(_dialect(_content(full)) for _, full in lines[i:end]) for (i, _), end in zip(starts, ends, strict=True)
     ]
-    if channel is None and sum(filled) > 1:
+    if channel is None and sum(have_numbers) > 1:
         raise ValueError(f"{name}: the file has the channels {', '.join(map(repr, names))}: choose one with channel=")
     if channel is None or len(names) == 1:
         return lines, names[-1] if names else ""
@@ -239,7 +242,7 @@ def _fields(content: str, separator: str | None) -> list[str]:
 
 def _values(fields: list[str], mark: str) -> list[float | None]:
     """The number of each field, NaN where a point is missing, None where there is a word."""
-    if mark == ",":  # there a point would separate thousands
+    if mark == ",":  # then a point would separate thousands
         fields = [field.replace(",", ".") if "." not in field else "a point" for field in fields]
     return [
         float(field) if _NUMBER.fullmatch(field) else float("nan") if field.lower() in MISSING else None
@@ -248,7 +251,7 @@ def _values(fields: list[str], mark: str) -> list[float | None]:
 
 
 def _dialect(content: str) -> tuple | None:
-    """Separator and decimal mark of a clean row, of numbers and missing points alone; None for any other line."""
+    """Separator and decimal mark of a clean row, which has only numbers and missing points; None for other lines."""
     for separator, mark in DIALECTS:
         if separator and separator not in content.strip(" "):
             continue
@@ -259,7 +262,7 @@ def _dialect(content: str) -> tuple | None:
 
 
 def _first_row(contents: Lines, name: str) -> tuple[int, tuple, list]:
-    """Where the rows begin, their dialect, and the lines of one or two numbers before them, which say how many."""
+    """Index of the first row, its dialect, and the lines of one or two numbers before it, which are counts of rows."""
     counts = []
     clean = ((i, fits) for i, (_, content) in enumerate(contents) if (fits := _dialect(content)))
     for i, dialect in clean:
@@ -282,13 +285,13 @@ def _check_counts(number: int, content: str, shape: tuple, name: str) -> None:
 
 
 def _missing_rows(contents: Lines, dialect: tuple, width: int) -> int:
-    """How many lines right before the first clean row are rows of missing points alone."""
+    """Number of lines right before the first clean row that are rows of missing points alone."""
     rows = 0
     for _, content in reversed(contents):
         fields = _fields(content, dialect[0])
         words = [field.lower() for field in fields]
-        lone = width == 1 and words in (["nan"], ["bad"])  # a line of "--" under a heading is a rule
-        if not lone and not (len(fields) == width >= FEWEST and set(words) <= set(MISSING)):
+        is_single = width == 1 and words in (["nan"], ["bad"])  # a line of "--" under a heading is a rule
+        if not is_single and not (len(fields) == width >= FEWEST and set(words) <= set(MISSING)):
             break
         rows += 1
     return rows
@@ -299,7 +302,7 @@ def _whole(values: np.ndarray) -> bool:
 
 
 class _Table:
-    """Rows as they come, as wide as the first. Empty fields behind the last number are trailing separators."""
+    """Rows as they come, as wide as the first. Empty fields after the last number are trailing separators."""
 
     def __init__(self, name: str):
         self.name, self.width = name, 0
@@ -308,7 +311,7 @@ class _Table:
         self.lengths, self.numbers = array("q"), array("q")
 
     def add(self, values: list[float], number: int) -> None:
-        """Take a row. Raises ValueError for one with more numbers than the first has fields."""
+        """Add a row. Raises ValueError for a row with more numbers than the first has fields."""
         self.width = self.width or len(values)
         last = next((i for i in range(len(values), self.width, -1) if values[i - 1] == values[i - 1]), 0)
         self.lengths.append(len(values))
@@ -330,7 +333,7 @@ class _Table:
         return all(map(_whole, self.blocks))
 
     def _check(self, allowed: int, last: int = 0) -> None:
-        """Raise ValueError for the first row with fewer fields, or else the last one, which has `last` numbers."""
+        """Raise ValueError for the first row with fewer fields, or else for the last row, which has `last` numbers."""
         short = np.flatnonzero(np.array(self.lengths) < allowed)
         if not short.size and not last:
             return
@@ -345,7 +348,7 @@ class _Table:
         )
 
     def even(self) -> np.ndarray:
-        """All rows, up to the last column that has a number. Raises ValueError for one with fewer fields."""
+        """All rows, up to the last column that has a number. Raises ValueError for a row with fewer fields."""
         self._pack()
         table = np.concatenate(self.blocks)
         width = int(np.max(np.flatnonzero(~np.isnan(table).all(axis=0)), initial=-1)) + 1
@@ -353,7 +356,7 @@ class _Table:
         return table[:, :width]
 
 
-def _no_rows_in_heading(contents: Lines, dialect: tuple, table: np.ndarray, name: str) -> None:
+def _refuse_rows_in_heading(contents: Lines, dialect: tuple, table: np.ndarray, name: str) -> None:
     """Raise ValueError for a line of the heading that is a row of the table except for a word in it."""
     width = table.shape[1]
     for number, content in contents:
@@ -363,7 +366,7 @@ def _no_rows_in_heading(contents: Lines, dialect: tuple, table: np.ndarray, name
         values = _values(fields, dialect[1])
         words = [field for field, value in zip(fields, values, strict=True) if value is None]
         mostly = len(words) < width / 2 and not all(value is None or value != value for value in values)
-        if width == 2 and len(table) > 1 and values[0] is not None:  # "0.0 error" goes on where x begins
+        if width == 2 and len(table) > 1 and values[0] is not None:  # "0.0 error" is one step before the first x
             step = table[1, 0] - table[0, 0]
             mostly = abs(values[0] + step - table[0, 0]) < 0.1 * abs(step)
         if words and mostly:

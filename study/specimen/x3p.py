@@ -1,6 +1,6 @@
-"""Scans in X3P (ISO 25178-72, before ISO 5436-2): a zip with main.xml and the heights, which are in m.
+"""Scans in X3P (ISO 25178-72, formerly ISO 5436-2): a zip with main.xml and the heights, which are in m.
 
-SurfaceTopography takes one revision of the standard alone, and fails where the instrument has no name.
+SurfaceTopography reads only one revision of the standard, and fails where the instrument has no name.
 """
 
 import io
@@ -13,9 +13,9 @@ _TYPES = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
 
 
 def read(raw: bytes, name: str) -> tuple[np.ndarray, list[float]] | None:
-    """Heights (y, x) or (x) in m, NaN where a point is not valid, and steps along each axis; None if it is no X3P.
+    """Heights (y, x) or (x) in m, NaN where a point is not valid, and steps along each axis; None if it is not X3P.
 
-    Raises ValueError: it is one that is damaged, or of unequal steps.
+    Raises ValueError: an X3P file that is damaged, or has unequal steps.
     """
     try:
         with zipfile.ZipFile(io.BytesIO(raw)) as archive:
@@ -33,7 +33,7 @@ def _scan(archive: zipfile.ZipFile, name: str) -> tuple[np.ndarray, list[float]]
     root = ElementTree.fromstring(archive.read("main.xml"))
 
     def text(path: str, default: str | None = None) -> str:
-        # names of elements may have the namespace of one revision or another
+        # names of elements may have the namespace of any revision
         content = root.findtext("/".join(f"{{*}}{part}" for part in path.split("/")))
         content = root.findtext(path) if content is None else content
         if content is None or not content.strip():

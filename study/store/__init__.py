@@ -1,1 +1,1 @@
-"""The progress of a study is on disk: blocks, found by the keys of their cases. A results file is an export of them."""
+"""The progress of a study on disk: blocks of cases, identified by keys. A results file is an export of the blocks."""

@@ -1,8 +1,8 @@
 """One block on disk: arrays as `numpy.save` writes them, one after another, and a checksum of the whole file.
 
 The first array is a text in JSON: the facts and the names of the columns. The keys of the cases and the columns follow.
-It is not netCDF, because any thread must be able to read and write it. No array holds Python objects, so reading it
-executes nothing. It is not an archive of `numpy.savez`, which takes twice as long: 14 ms to write and 18 ms to read
+The file is not netCDF, because any thread must be able to read and write it. No array holds Python objects, so reading
+it executes nothing. It is not an archive of `numpy.savez`, which takes twice as long: 14 ms to write and 18 ms to read
 8,000 cases, against 8 and 8.
 """
 
@@ -20,12 +20,15 @@ from ..terminal import short_of_memory
 
 
 class Damaged(OSError):
-    """A file that is no block, or not the one that was written."""
+    """A file that is not a block, or has changed since it was written."""
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """facts : those on which the numbers depend besides the cases (JSON); keys : (n, 2) uint64
+    """Columns of n cases.
+
+    facts : everything besides the cases on which the numbers depend (JSON)
+    keys : of the cases, (n, 2) uint64
     arrays : name -> (n, ...)
     """
 
@@ -35,7 +38,7 @@ class Block:
 
 
 def write_block(path: Path, block: Block) -> None:
-    """Write a block: whole, or not at all. May raise OSError."""
+    """Write a block, completely or not at all. May raise OSError."""
     head = np.array(json.dumps({"facts": block.facts, "columns": list(block.arrays)}))
     with replacing(path) as temporary:
         with open(temporary, "wb") as file:
@@ -45,7 +48,7 @@ def write_block(path: Path, block: Block) -> None:
             except OSError as error:
                 if error.errno is None and has_room(temporary):
                     raise MemoryError(f"{path} cannot be written, though the disk has room: {error}") from error
-                if error.errno is None:  # numpy says how much of an array was written, not why no more
+                if error.errno is None:  # numpy says how much of an array was written, but not why
                     raise OSError(f"{path} cannot be written ({error}): is the disk full?") from error
                 raise
         seal(temporary)
@@ -69,5 +72,5 @@ def read_block(path: Path) -> Block:
     except Exception as error:
         if short_of_memory(error) or getattr(error, "errno", None):
             raise
-        # the checksum fits, the content does not: not written by us
+        # the checksum fits, but the content does not: another program wrote the file
         raise Damaged(f"{path}: is no whole block; {remedy}") from error

@@ -1,10 +1,12 @@
-"""The blocks of a window on disk, and which of its cases they hold. There is no other record of the progress.
+"""The blocks of a window on disk, and the cases that they hold. There is no other record of the progress.
 
-Cases are found by their keys. So it does not matter from which version of the study they are, in which order they were
-computed, or how large the blocks are. The blocks of a study of one window are added and stay, until `clean` is asked to
-remove those that no case of the study needs; the results file is an export of them. Those of one of many windows are
-removed when its results file is there, so that a large study is not on disk twice, and one that is soon whole is never
-on disk: to write its blocks takes a tenth of the time in which they are computed.
+Cases are identified by keys. So it does not matter which version of the study computed them, in which order they were
+computed, or how large the blocks are.
+
+In a study of one window the blocks accumulate, and the results file is an export of them; `clean` removes those that no
+case of the study needs. In a study of many windows the blocks of a window are removed once its results file exists, so
+that a large study is not on disk twice. The blocks of a window that is soon complete are never written: writing them
+takes a tenth of the time in which they are computed.
 """
 
 import hashlib
@@ -34,9 +36,9 @@ log = logging.getLogger(__name__)
 class Source:
     """The file of a block.
 
-    keys : (N, 2), of its cases; status : (N,) int8
-    facts, columns : as of `Block`, of the columns the names
-    inputs : the inputs of the study's derivatives, by their places among those of the block
+    keys, status : of the cases, (N, 2) and (N,) int8
+    facts, columns : the facts and the names of the columns, as in `Block`
+    inputs : places of the inputs of the study's derivatives among those of the block
     """
 
     path: Path
@@ -47,7 +49,7 @@ class Source:
     inputs: list[int]
 
     def read(self, rows: np.ndarray) -> dict[str, np.ndarray]:
-        """Columns of the cases at `rows` (n,): name -> (n, ...). Raises Damaged if the file has other cases now."""
+        """Columns of the cases at `rows` (n,): name -> (n, ...). Raises Damaged if the file now has other cases."""
         block = read_block(self.path)
         if not np.array_equal(block.keys, self.keys) or block.facts != self.facts or {*self.columns} - {*block.arrays}:
             raise Damaged(f"{self.path}: has become a block of other cases; the same command finds out of which")
@@ -57,9 +59,10 @@ class Source:
 
 @dataclass(frozen=True, eq=False)
 class InMemory:
-    """A block that is in memory.
+    """A block in memory.
 
-    index : (N,), its cases; arrays : its columns
+    index : numbers of the cases, (N,)
+    arrays : columns, name -> (N, ...)
     """
 
     index: np.ndarray
@@ -72,14 +75,14 @@ class InMemory:
 
 @dataclass(eq=False)
 class Inventory:
-    """Where each of the B cases is.
+    """The place of each of the B cases.
 
-    keys : (B, 2), None until a block of a window needs them
+    keys : (B, 2); None until a block of a window needs them
     sources : the blocks that hold usable cases
-    source, row : (B,) int32, index of the source of each case (-1: missing), and the row of the case there
+    source, row : index of the source of each case (-1: missing), and row of the case in that source, (B,) int32
     status : (B,) int8, NOT_RUN for a missing case
-    blocks : path of every block -> number of its cases, -1 for a damaged one
-    unwritten : indices of the sources that are in memory alone
+    blocks : path of every block -> number of its cases, -1 for a damaged block
+    unwritten : indices of the sources that are only in memory
     """
 
     keys: np.ndarray | None
@@ -103,14 +106,14 @@ def count_statuses(status: np.ndarray) -> dict[int, int]:
 
 
 def facts(x: np.ndarray, inputs: tuple[str, ...] = ()) -> dict:
-    """The facts on which stored numbers depend besides parameters: the version of the numerics, the points of profiles,
-    and the inputs of derivatives."""
+    """Everything besides the parameters on which stored numbers depend: the version of the numerics, the points of
+    profiles, and the inputs of derivatives."""
     about = {"numerics_version": NUMERICS_VERSION, "x": x.tolist()}
     return about | ({"inputs": list(inputs)} if inputs else {})
 
 
 def usable(definition: Definition, block: Block) -> bool:
-    """Whether a block holds all that the study wants: columns with enough digits, profile points, derivatives."""
+    """Whether a block has everything that the study needs: columns with enough digits, profile points, derivatives."""
     columns, wanted = not_run(definition, 0), facts(definition.x, definition.inputs)
     sizes = {name: array.dtype.itemsize for name, array in block.arrays.items()}
     digits = all(sizes.get(name, 0) >= array.dtype.itemsize for name, array in columns.items())
@@ -120,18 +123,18 @@ def usable(definition: Definition, block: Block) -> bool:
 
 
 def inventory(store: Store, retry: tuple = ()) -> Inventory:
-    """Which cases of a window are in its blocks. Those of the statuses `retry` count as missing."""
+    """The cases of a window that are in its blocks. Cases with a status in `retry` count as missing."""
     sources, blocks = [], {}
     for path in sorted(store.block_paths()):
         try:
             block = read_block(path)
-        except FileNotFoundError:  # removed just now
+        except FileNotFoundError:  # it has just been removed
             continue
         except OSError as error:  # its cases are computed again
             if short_of_memory(error):
                 raise
             log.warning("%s", error)
-            if isinstance(error, (Damaged, Unusable)):  # what cannot be read now is perhaps read later, so it stays
+            if isinstance(error, (Damaged, Unusable)):  # any other file may be readable later, so it stays
                 blocks[path] = -1
             continue
         blocks[path] = len(block.keys)
@@ -147,12 +150,12 @@ def inventory(store: Store, retry: tuple = ()) -> Inventory:
 
 
 def keys_of(store: Store) -> np.ndarray:
-    """(B, 2), the keys of the cases of a window. They are of no other window and take half a microsecond a case."""
+    """The keys of the cases of a window, (B, 2). No other window has them. They take half a microsecond a case."""
     return case_keys(store.definition.grid, bool(store.definition.stresses))
 
 
 def _places(keys: np.ndarray, sources: list[Source], retry: tuple[int, ...]) -> tuple[np.ndarray, ...]:
-    """Source, row and status of each case, (B,) each. A case in several places has the one of lowest status."""
+    """Source, row and status of each case, (B,) each. Of a case in several places the lowest status counts."""
     parts = [(np.empty((0, 2), np.uint64), np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0, np.int8))]
     for number, source in enumerate(sources):
         row = np.flatnonzero(~np.isin(source.status, (NOT_RUN, *retry))).astype(np.int32)
@@ -160,12 +163,12 @@ def _places(keys: np.ndarray, sources: list[Source], retry: tuple[int, ...]) -> 
     stored, source_numbers, row, status = (np.concatenate(column) for column in zip(*parts, strict=True))
     place = find(keys, stored, status)
     columns = ((source_numbers, -1), (row, -1), (status, NOT_RUN))
-    # the place -1 of a missing case is the last, where the value for it is appended
+    # a missing case has the place -1, the last, where the value of missing cases is appended
     return tuple(np.append(array, array.dtype.type(fill))[place] for array, fill in columns)
 
 
 def add(store: Store, stock: Inventory, index: np.ndarray, arrays: dict[str, np.ndarray]) -> None:
-    """Write a block of the cases at `index` (n,), in the types that the study keeps, and put it into the inventory."""
+    """Write a block of the cases at `index` (n,), in the types of the study, and put it into the inventory."""
     put_in_memory(store, stock, index, arrays)
     write_rest(store, stock)
 
@@ -181,10 +184,10 @@ def put_in_memory(store: Store, stock: Inventory, index: np.ndarray, arrays: dic
 
 
 def write_rest(store: Store, stock: Inventory) -> None:
-    """Write the blocks that are in memory alone.
+    """Write the blocks that are only in memory.
 
-    Those of one of many windows are in memory too until it is written: without locks another run may write it before,
-    and remove its blocks.
+    In a study of many windows they also stay in memory until the window is written: without locks another run may write
+    the window before, and remove its blocks.
     """
     about, places = facts(store.definition.x, store.definition.inputs), list(range(len(store.definition.inputs)))
     while stock.unwritten:
@@ -202,7 +205,7 @@ def write_rest(store: Store, stock: Inventory) -> None:
 def put(store: Store, block: Block) -> Path:
     """Write a block under a name that follows from its content, so that a second run writes the same file again.
 
-    If something else has this name, a block of other cases or a folder, it stays, and the block gets the next name.
+    If a block of other cases, or a folder, has this name, it stays, and the block gets the next name.
     """
     content = [block.keys.tobytes(), json.dumps(block.facts).encode(), json.dumps(list(block.arrays)).encode()]
     name = hashlib.sha256(b"".join(content)).hexdigest()[:32]
@@ -214,7 +217,7 @@ def put(store: Store, block: Block) -> Path:
 
 
 def _is_another(path: Path, block: Block) -> bool:
-    """Whether the path holds a block of other cases, or something that is no file."""
+    """Whether the path is that of a block with other cases, or of something that is not a file."""
     try:
         other = read_block(path)
     except (FileNotFoundError, Damaged):
@@ -254,15 +257,15 @@ def forget_other_exports(store: Store) -> None:
 
 
 def lost_cases(store: Store, digest: str) -> tuple[int, int] | None:
-    """How many cases of the results of this digest are not in the study as it is, and how many cases the results have.
+    """Number of cases in the results of this digest that the study no longer has, and number of all their cases.
 
-    None if no record says which cases these are. A record of an earlier version does not say of which study it is.
+    None if no record lists the cases of these results. A record of an earlier version does not name its study.
     """
     try:
         record = read_block(store.record(digest))
     except OSError:
         return None
-    if record.facts.get("study_digest", digest) != digest:  # a copy of another
+    if record.facts.get("study_digest", digest) != digest:  # a copy of another record
         return None
     rows = find(record.keys, keys_of(store), np.zeros(store.definition.grid.size))
     return int(np.count_nonzero(rows < 0)), len(record.keys)

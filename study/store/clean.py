@@ -1,4 +1,4 @@
-"""What `clean` removes: blocks that hold no case of the study as it is."""
+"""`clean` removes the blocks that hold no case of the study in its present form."""
 
 import re
 from collections.abc import Iterator
@@ -15,10 +15,9 @@ OF_A_WINDOW = re.compile(r"\d{12}-[0-9a-f]{16}-")  # the beginning of the name o
 
 
 def clean(store: Store) -> list[str]:
-    """Remove the blocks that hold no case of the study as it is; returns sentences about the removed blocks and those
-    that stay.
+    """Remove the blocks that hold no case of the study in its present form.
 
-    Raises StudyError while a run of the study is going on.
+    Returns sentences about the blocks that are removed and those that stay. Raises StudyError while the study runs.
     """
     if is_large(store.definition):
         return _clean_windows(store)
@@ -38,7 +37,7 @@ def clean(store: Store) -> list[str]:
 
 @contextmanager
 def alone(store: Store) -> Iterator[None]:
-    """Hold the lock of a study. Raises StudyError while a run of the study is going on."""
+    """Hold the lock of a study. Raises StudyError while the study runs."""
     with held(store.lock, wait=False) as is_free:
         if not is_free:
             raise StudyError([f"{store.folder}: a run of this study is going on; clean when it has ended"])
@@ -46,7 +45,7 @@ def alone(store: Store) -> Iterator[None]:
 
 
 def _clean_windows(store: Store) -> list[str]:
-    """Remove blocks of windows whose results are there, and of windows of another study, by their names."""
+    """Remove blocks, by their names, of windows that have results, and of windows of another study."""
     unread = f"it is so large that no block is looked for in {store.folder}"
     lines = [f"{store.parts}: the study is kept in parts, which stay; {unread}"]
     if not store.folder.exists():

@@ -1,4 +1,4 @@
-"""In which inputs two study files differ, as a message says it."""
+"""The inputs in which two study files differ, in words."""
 
 import tomllib
 from collections.abc import Iterator
@@ -8,26 +8,30 @@ from ..files.examine import Condition
 from ..inputs.definition import Definition
 from ..terminal import shown
 
-MOST = 3  # differences that are named; the others are counted
-UNNAMED = ("title", "numerics.block")  # no result depends on them
-OPEN = ("model.", "axes.")  # sections whose inputs are known by their names alone
+MOST = 3  # number of differences that are named; the others are counted
+UNNAMED = ("title", "numerics.block")  # inputs on which no result depends
+OPEN = ("model.", "axes.")  # sections that are left out of the names of their inputs
 
 
 def owner_of(condition: Condition, definition: Definition) -> str:
-    """Whose results a file has that are not those of a study of these numerics: "another definition (digest 01234567,
-    here 89abcdef; Ra: 0.004 there, 0.002 here)"."""
+    """The owner of results that another study of the same numerics has made, in words: "another definition (digest
+    01234567, here 89abcdef; Ra: 0.004 there, 0.002 here)"."""
     digests = f"digest {condition.digest[:8]}, here {definition.digest[:8]}"
     return f"another definition ({'; '.join([digests, *differences(condition.text, definition.text)])})"
 
 
 def differences(text: str, other: str) -> list[str]:
-    """The inputs in which two study files differ: "Ra: 0.004 there, 0.002 here". [] if one is no study file."""
+    """The inputs in which two study files differ: "Ra: 0.004 there, 0.002 here". [] if one is not a study file."""
     try:
-        there, here = (dict(_inputs(tomllib.loads(source))) for source in (text, other))
+        inputs, other_inputs = (dict(_inputs(tomllib.loads(source))) for source in (text, other))
     except (ValueError, RecursionError):
         return []
-    names = [name for name in {**there, **here} if there.get(name) != here.get(name) and name not in UNNAMED]
-    lines = [f"{name}: {_value(there, name)} there, {_value(here, name)} here" for name in names[:MOST]]
+    names = [
+        name
+        for name in {**inputs, **other_inputs}
+        if inputs.get(name) != other_inputs.get(name) and name not in UNNAMED
+    ]
+    lines = [f"{name}: {_value(inputs, name)} there, {_value(other_inputs, name)} here" for name in names[:MOST]]
     return lines + [f"and {len(names) - MOST} more"] * (len(names) > MOST)
 
 

@@ -1,7 +1,7 @@
-"""What an edited large study takes from its former parts: the cases that it still has, as blocks of its windows.
+"""An edited large study takes the cases that it still has from its former parts, as blocks of its windows.
 
-Parts are chosen by their labels, the values of their axes, and cases by their keys. So a case counts only if all that
-its numbers depend on is the same, whatever has become of the grid.
+Parts are chosen by their labels, the values of their axes, and cases by their keys. So a case is taken only if
+everything on which its numbers depend is the same, however the grid has changed.
 """
 
 import logging
@@ -25,30 +25,30 @@ from .window_files import WindowFiles
 from .windows import Store, Window, divisions, identities, is_large, windows_of, within
 
 log = logging.getLogger(__name__)
-#: What goes wrong while the text of a former study is read: it may need a law, or a file, that is not there any more.
+#: Errors while the text of a former study is read: it may need a law, or a file, that no longer exists.
 UNREADABLE = (StudyError, ValueError, OSError, RecursionError)
-#: The values of the axes of some cases.
+#: Dimension -> values of the axis, of some cases.
 Labels = dict[str, np.ndarray]
 
 
 def take_over(files: WindowFiles, former: list[Condition]) -> int:
-    """Write the cases of former parts that windows without results have too as blocks; returns how many.
+    """Write the cases that former parts share with windows without results, as blocks; returns their number.
 
     They are on the disk when this returns: then the parts may be removed. Cases with derivatives are not taken, because
-    results do not contain these.
+    results do not contain derivatives.
     """
-    taken, labelled_windows = 0, _with_labels(files, files.absent)
+    count, labelled_windows = 0, _with_labels(files, files.absent)
     for condition, store in _stores(files.store, former):
         block = store and _block(store, condition)
         if block and usable(files.store.definition, block):
             labels = axes_of(store.definition)
-            windows = (window for window, others in labelled_windows if _overlap(labels, others))
-            taken += sum(_take(files.store_of(window), block) for window in windows)
-    return taken
+            windows = (window for window, labels_of_window in labelled_windows if _overlap(labels, labels_of_window))
+            count += sum(_take(files.store_of(window), block) for window in windows)
+    return count
 
 
 def are_all_kept(files: WindowFiles, former: list[Condition]) -> bool:
-    """Whether every case of the former parts is one of the study, and can be taken, unless its file is damaged."""
+    """Whether the study still has, and can take, every case of the former parts, damaged files excepted."""
     labelled_windows = _with_labels(files, files.windows)
     for _, store in _stores(files.store, former):
         if store is None:
@@ -56,17 +56,17 @@ def are_all_kept(files: WindowFiles, former: list[Condition]) -> bool:
         definition, keys, labels = store.definition, keys_of(store), axes_of(store.definition)
         if not usable(files.store.definition, Block(facts(definition.x), keys[:0], not_run(definition, 0))):
             return False
-        kept = np.zeros(len(keys), dtype=bool)
-        for window in (window for window, others in labelled_windows if _overlap(labels, others)):
-            there = keys_of(files.store_of(window))
-            kept |= find(keys, there, np.zeros(len(there))) >= 0
-        if not kept.all():
+        is_in_study = np.zeros(len(keys), dtype=bool)
+        for window in (window for window, labels_of_window in labelled_windows if _overlap(labels, labels_of_window)):
+            keys_of_window = keys_of(files.store_of(window))
+            is_in_study |= find(keys, keys_of_window, np.zeros(len(keys_of_window))) >= 0
+        if not is_in_study.all():
             return False
     return True
 
 
 def _take(store: Store, block: Block) -> int:
-    """Write the cases of a block that a window has; returns how many."""
+    """Write the cases of a block that a window has; returns their number."""
     keys = keys_of(store)
     rows = find(keys, block.keys, np.zeros(len(block.keys)))
     index = np.flatnonzero(rows >= 0)
@@ -83,12 +83,12 @@ def _with_labels(files: WindowFiles, windows: list[Window]) -> list[tuple[Window
 
 
 def _overlap(labels: Labels, others: Labels) -> bool:
-    """Whether cases with these labels may be the same: along no axis that both have is every value different."""
+    """Whether cases with these labels may be the same: along every common axis they share a value."""
     return all(np.isin(values, others[dim]).any() for dim, values in labels.items() if dim in others)
 
 
 def _stores(store: Store, former: list[Condition]) -> Iterator[tuple[Condition, Store | None]]:
-    """Each former part with the store of its cases; None if the study that it is of cannot be read any more."""
+    """Each former part with the store of its cases; None if its study can no longer be read."""
     studies = dict[str, dict[str, Store]]()
     for condition in former:
         if condition.digest not in studies:
@@ -97,8 +97,8 @@ def _stores(store: Store, former: list[Condition]) -> Iterator[tuple[Condition, 
 
 
 def _windows_of_study(store: Store, condition: Condition) -> dict[str, Store]:
-    """Name of the file -> the store of each window of the study that a part is of; {} if that cannot be read any more,
-    or has derivatives."""
+    """Name of the file -> store, for each window of the study to which a part belongs; {} if that study can no longer
+    be read, or has derivatives."""
     try:
         tables = tomllib.loads(condition.text)
         definition = from_tables(tables, store.definition.name, condition.text, store.definition.name)
@@ -114,7 +114,7 @@ def _windows_of_study(store: Store, condition: Condition) -> dict[str, Store]:
 
 
 def _block(store: Store, condition: Condition) -> Block | None:
-    """The cases of a former part, if its file is undamaged and holds those of its window."""
+    """The cases of a former part, if its file is undamaged and holds the cases of its window."""
     if examine(condition.path).kind != "sound":
         return None
     definition, dataset = store.definition, read(condition.path)
@@ -125,8 +125,10 @@ def _block(store: Store, condition: Condition) -> Block | None:
 
 
 def _columns(definition: Definition, dataset: xr.Dataset) -> dict[str, np.ndarray]:
-    """Columns of cases as a block has them, name -> (B, ...), from their results. In SI units these are products with
-    the units, which are the results of cases whose every column is 1."""
+    """Columns of cases as a block has them, name -> (B, ...), from their results.
+
+    Results in SI are the columns times the units. The units are the results of cases whose columns are all 1.
+    """
     grid, empty = definition.grid, not_run(definition, definition.grid.size)
     ones = {name: np.ones_like(array) for name, array in empty.items()}
     units = dataset_of(definition, labelled(definition, ones, "")) if definition.scene else None

@@ -1,4 +1,4 @@
-"""The files of a study on disk: the condition of the file of each window, and of all together."""
+"""The files of a study on disk: the condition of each window's file, and of all together."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -33,7 +33,7 @@ class WindowFiles:
     """The files of the windows of a study.
 
     conditions : of the file of each window
-    others : files among those of many windows that are of none: of the study as it was, or of somebody else
+    others : files in the folder of the windows that belong to none of them: to a former study, or to somebody else
     divided : see `divisions`
     """
 
@@ -50,36 +50,36 @@ class WindowFiles:
 
     @property
     def path(self) -> Path:
-        """Path of the results: of the file, or of the folder of the files."""
+        """Path of the results file, or of the folder of the results files."""
         return self.store.path if self.is_one else self.store.parts
 
     @property
-    def there(self) -> list[Window]:
-        """The windows whose results are there."""
+    def present(self) -> list[Window]:
+        """The windows that have results."""
         pairs = zip(self.windows, self.conditions, strict=True)
         return [window for window, condition in pairs if belongs(self.store.definition, condition)]
 
     @property
     def absent(self) -> list[Window]:
-        """The windows whose results are not there."""
+        """The windows without results."""
         pairs = zip(self.windows, self.conditions, strict=True)
         return [window for window, condition in pairs if not belongs(self.store.definition, condition)]
 
     @property
     def wrong(self) -> list[Condition]:
-        """Conditions of the files that are there and are not the results that their names say."""
+        """Conditions of the existing files that are not the results that their names say."""
         return [condition for condition in self.conditions if not condition.good and condition.kind != "missing"]
 
     @property
     def is_complete(self) -> bool:
-        """Whether all results are there."""
+        """Whether all windows have results."""
         return not self.absent
 
     def store_of(self, window: Window) -> Store:
         return within(self.store, window, self.divided)
 
     def rivals(self) -> list[Condition]:
-        """The conditions of files in the place of the results that are of another study, or of somebody else."""
+        """The conditions of files in the place of the results that belong to another study, or to somebody else."""
         digests = "", self.store.definition.digest
         mine = [condition for condition in self.conditions if self.is_one and condition.digest not in digests]
         return mine + [examine(path, most=0) for path in self.others]
@@ -93,25 +93,25 @@ class WindowFiles:
         return dict(sorted(total.items()))
 
     def counts_of_blocks(self, window: Window) -> dict[int, int]:
-        """The same of a window without results, of its blocks."""
-        if not any(self.store.block_paths(window)):  # no key of a case is needed
+        """status -> number of cases in the blocks of a window without results."""
+        if not any(self.store.block_paths(window)):  # then no keys of cases are needed
             return {NOT_RUN: len(window.cases)}
         return count_statuses(inventory(self.store_of(window)).status)
 
     @property
     def missing(self) -> int:
-        """How many cases are neither in results nor in blocks."""
+        """Number of cases that are neither in results nor in blocks."""
         return sum(self.counts_of_blocks(window).get(NOT_RUN, 0) for window in self.absent)
 
     def summary(self) -> dict:
         """As `study.api.Study.status`."""
-        there, wrong, nothing = self.there, self.wrong, {NOT_RUN: self.store.definition.grid.size}
-        counts = self.counts() if there or not wrong else {}
+        present, wrong, nothing = self.present, self.wrong, {NOT_RUN: self.store.definition.grid.size}
+        counts = self.counts() if present or not wrong else {}
         if self.is_complete:
             state = "done"
-        elif wrong and not there:
+        elif wrong and not present:
             state = wrong[0].kind
-        elif not there and (self.others or self.conditions[0].good):
+        elif not present and (self.others or self.conditions[0].good):
             state = "outdated"
         else:
             state = "new" if counts == nothing else "partial"
@@ -121,7 +121,7 @@ class WindowFiles:
         return {"state": state, "cases": size, "counts": counts, "path": self.path, "reason": reason}
 
     def verdict(self) -> Condition:
-        """As `study.api.Study.verify`, when all conditions are those of `verified`."""
+        """As `study.api.Study.verify`, if all conditions come from `verified`."""
         definition = self.store.definition
         for condition in self.conditions:
             if condition.good and condition.digest != definition.digest:
@@ -134,15 +134,15 @@ class WindowFiles:
         return Condition(self.store.parts, "sound", digest=definition.digest)
 
     def opened(self) -> xr.Dataset:
-        """The dataset of the results. Raises StudyError if some are missing, or are others than their names say."""
+        """The dataset of the results. Raises StudyError if some are missing, or are not what their names say."""
         if self.is_one:
             return self._file()
         for condition in self.wrong:
             reason = f"{condition.reason}; run the study, which computes it again"
             raise Unusable(condition.path, condition.kind, reason)
         if not self.is_complete:
-            there = len(self.there)
-            what = f"{there} of {len(self.windows)} parts are there" if there else "does not exist"
+            count = len(self.present)
+            what = f"{count} of {len(self.windows)} parts are there" if count else "does not exist"
             raise StudyError([f"{self.path}: {what}; run the study first"])
         for path in self.others:
             raise Unusable(path, "foreign", NO_PART)
@@ -150,7 +150,7 @@ class WindowFiles:
         return for_users(opened_together(paths, self.path, divided(self.divided)))
 
     def partial(self) -> xr.Dataset:
-        """The grid with the cases in the blocks of a single window; the rest is NaN with status 127, not run."""
+        """The grid with the cases in the blocks of a single window; other cases are NaN with status 127, not run."""
         definition = self.store.definition
         arrays = gather(self.store, inventory(self.store), 0, definition.grid.size)
         return dataset_of(definition, parts(definition, arrays, "partial results"))
@@ -160,20 +160,20 @@ class WindowFiles:
         if belongs(definition, condition):
             return opened(condition)
         if condition.good or condition.kind == "missing":
-            there = f"holds results of {of_what(condition, definition)}" if condition.good else "does not exist"
-            raise StudyError([f"{self.path}: {there}; run the study first"])
+            what = f"holds results of {of_what(condition, definition)}" if condition.good else "does not exist"
+            raise StudyError([f"{self.path}: {what}; run the study first"])
         more = "; run the study, which writes it again" if condition.kind == "damaged" else ""
         raise Unusable(self.path, condition.kind, condition.reason + more)
 
 
 def add_counts(total: dict[int, int], counts: dict[int, int]) -> None:
-    """Add numbers of cases, by status, to a total."""
+    """Add the number of cases of each status to a total."""
     for status, number in counts.items():
         total[status] = total.get(status, 0) + number
 
 
 def glance(store: Store) -> WindowFiles:
-    """The state by the attributes of the files; a file of up to LAZY bytes in memory is read whole."""
+    """The state by the attributes of the files; a single file of up to LAZY bytes in memory is read completely."""
     return _state(store, LAZY, lambda window, identity: examine(window.path, identity, 0))
 
 
@@ -183,9 +183,10 @@ def verified(store: Store) -> WindowFiles:
 
 
 def checked(store: Store, before: WindowFiles | None = None) -> WindowFiles:
-    """The state with all bytes read: of many files by the seal, or by the digest where another program has removed it.
+    """The state with all bytes read. Many files are checked by the seal, or by the digest if another program has
+    removed the seal.
 
-    before : the state of a moment ago; it is returned if no file has changed since
+    before : the state of a moment ago, which is returned if no file has changed since
     """
     conditions = {condition.path: condition for condition in before.conditions} if before else {}
 
@@ -206,12 +207,12 @@ def _state(
 ) -> WindowFiles:
     """The state.
 
-    most : bytes in memory of a single file up to which all of it is read
-    look : of one of many windows and its identity: the condition
-    unless_changed : of the path of a single file and a function without arguments that looks at it: the condition
+    most : a single file of up to so many bytes in memory is read completely
+    look : look(window, identity) is the condition of the file of one of many windows
+    unless_changed : unless_changed(path, look) is the condition of a single file, by look() if the file has changed
     """
     definition = store.definition
-    # a single file may be there of a large study too, if a former version has made it
+    # a large study may have a single file too, if a former version wrote it
     if not is_large(definition) or belongs(definition, _of_one_file(store, 0)):
         return WindowFiles(
             store, [whole_window(store)], [unless_changed(store.path, partial(_of_one_file, store, most))]
@@ -223,8 +224,11 @@ def _state(
 
 
 def _of_one_file(store: Store, most: float) -> Condition:
-    """`examine` the results file of a study of one window. One of the same study with other cases is foreign: another
-    program has changed it, or it is of one of several windows."""
+    """`examine` the results file of a study of one window.
+
+    A file of the same study with other cases is foreign: another program has changed it, or it belongs to one of
+    several windows.
+    """
     definition, condition = store.definition, examine(store.path, most=most)
     if not belongs(definition, condition):
         return condition
@@ -247,7 +251,7 @@ def _sealed(path: Path, identity: Identity) -> Condition:
 
 
 def put_away(condition: Condition) -> Path:
-    """Rename the file of one of many windows that is damaged, or is another one; returns its new path."""
+    """Rename a damaged or misplaced file of one of many windows; returns its new path."""
     kind = "misplaced" if condition.kind == "misplaced" else "damaged"
     paths = (Path(f"{condition.path}.{kind}{f'-{number}' * (number > 1)}") for number in count(1))
     path = next(path for path in paths if not path.exists())
@@ -256,11 +260,11 @@ def put_away(condition: Condition) -> Path:
 
 
 def belongs(definition: Definition, condition: Condition) -> bool:
-    """Whether an undamaged results file is that of this very study."""
+    """Whether a file is undamaged and holds the results of this very study."""
     return condition.good and condition.digest == definition.digest
 
 
 def of_what(condition: Condition, definition: Definition) -> str:
-    """The owner of the results in an undamaged file that are not those of this study, in words (`owner_of`)."""
+    """The owner of an undamaged file whose results are not those of this study, in words (`owner_of`)."""
     same = condition.numerics == NUMERICS_VERSION
     return owner_of(condition, definition) if same else "another version of the numerics"

@@ -1,9 +1,9 @@
-"""The files of a study: its results, in one window of the grid or in many, and the blocks that they are written from.
+"""The files of a study: its results, in one window of the grid or in many, and the blocks from which they are written.
 
-A window is cases that follow each other. A study of ordinary size is one window, `results/NAME.nc`. A large one has
-many, `results/NAME/*.nc`, so memory does not grow with it: the file of each is a results file of these cases. Its name
-tells its first case and the study, and it counts if that is what is in it, by its digest of the study, its coordinates
-and its first case.
+A window is a range of consecutive cases. A study of ordinary size is one window, `results/NAME.nc`. A large study has
+many, `results/NAME/*.nc`, so that memory does not grow with it; the file of a window is a results file of its cases.
+The name of the file states its first case and the study. The file counts only if its digest of the study, its
+coordinates and its first case agree with the name.
 """
 
 from collections.abc import Iterator
@@ -19,20 +19,20 @@ from ..files.parts_folder import DIVIDED, FIRST
 from ..inputs.definition import LARGE, Definition, usual_block
 from ..inputs.grid import cut_out, windows
 
-#: A study of more cases has many windows: one takes some 100 bytes of memory a case, for the keys. So has one of more
-#: numbers, whose single file would have more than 4 GB.
+#: A study with more cases has many windows, since one window takes some 100 bytes of memory a case for the keys. So has
+#: a study with more numbers, whose single file would have more than 4 GB.
 CASES, NUMBERS = 4_000_000, LARGE
-#: Bytes of the numbers of a window, at most, if there are many: 1,000,000 cases without profiles, 194,000 with 33
-#: points. 1e8 cases without profiles are then 100 files, fewer than the 128 that xarray keeps open at a time.
+#: Largest number of bytes in one of many windows: 1,000,000 cases without profiles, 194,000 with 33 points. 1e8 cases
+#: without profiles are then 100 files, fewer than the 128 that xarray keeps open at a time.
 PART = 128_000_000
-#: Usual blocks in such a window, at most: of cases that take long a window has fewer.
+#: Largest number of usual blocks in such a window: it has fewer cases if they take long.
 BLOCKS = 64
 
 
 class Window(NamedTuple):
-    """Cases that follow each other, the part of the grid that they are, and the file of their results.
+    """Consecutive cases, their place in the grid, and the file of their results.
 
-    prefix : of the names of its blocks, if there are many windows: then no other block is looked into
+    prefix : of the names of the window's blocks, if there are many windows: other blocks need not be read
     """
 
     cases: range
@@ -45,9 +45,9 @@ class Window(NamedTuple):
 class Store:
     """The files of a study, or of one of its many windows.
 
-    definition : of the cases that are in them
+    definition : of the cases in these files
     window : None for a whole study
-    attributes : of the results file, beside those of the study
+    attributes : of the results file, in addition to those of the study
     """
 
     definition: Definition
@@ -82,7 +82,8 @@ class Store:
         return self.folder / f"{digest}.cases"
 
     def block_paths(self, window: Window | None = None) -> Iterator[Path]:
-        """Paths of the blocks of a window. Those of a whole study may be of windows that it had when it was larger."""
+        """Paths of the blocks of a window. A whole study may have blocks from windows that it had when it was
+        larger."""
         window = window or self.window
         return self.folder.glob(f"{window.prefix if window else ''}*.block")
 
@@ -106,7 +107,7 @@ def whole_window(store: Store) -> Window:
 
 
 def windows_of(store: Store) -> list[Window]:
-    """The windows of a large study, in the order of the cases. They depend on its grid and its output only."""
+    """The windows of a large study, in the order of the cases. They depend only on its grid and its output."""
     definition, cut, first = store.definition, [], 0
     grid = definition.grid
     most = max(1, min(PART * grid.size // (8 * definition.numbers), BLOCKS * usual_block(grid)))
@@ -119,13 +120,13 @@ def windows_of(store: Store) -> list[Window]:
 
 
 def divisions(definition: Definition, windows: list[Window]) -> str:
-    """How many windows there are along each dimension of the results that is cut: "h 5, n 2"."""
+    """Number of windows along each dimension of the results that is cut: "h 5, n 2"."""
     starts = {dim: len({window.place[dim].start for window in windows}) for dim in definition.grid.sizes}
     return ", ".join(f"{dim} {count}" for dim, count in definition.in_results(starts).items() if count > 1)
 
 
 def identities(store: Store, windows: list[Window]) -> list[Identity]:
-    """The attributes that the file of each of many windows must have. A file without its first case is of an earlier
+    """The identity of the file of each of many windows. A file without the number of its first case is of an earlier
     version."""
     definition, axes, divided = store.definition, axes_of(store.definition), divisions(store.definition, windows)
     expected = []
@@ -145,5 +146,5 @@ def within(store: Store, window: Window, divided: str) -> Store:
         return store
     definition = store.definition
     scene = definition.scene and definition.scene.within(window.place)
-    here = replace(definition, grid=cut_out(definition.grid, window.place), scene=scene)
-    return Store(here, store.results, window, {DIVIDED: divided, FIRST: window.cases.start})
+    definition_of_window = replace(definition, grid=cut_out(definition.grid, window.place), scene=scene)
+    return Store(definition_of_window, store.results, window, {DIVIDED: divided, FIRST: window.cases.start})

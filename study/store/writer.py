@@ -1,6 +1,6 @@
 """The results file of a window, written piece by piece, so that only a small part of it is in memory at a time.
 
-It is begun while cases are still computed: a piece is written when the last of its cases has come. The file of one of
+Writing begins while cases are still computed: a piece is written when its last case is complete. The file of one of
 many windows is a single piece.
 """
 
@@ -25,15 +25,17 @@ from ..inputs.grid import Grid, box, cut_out, windows
 from .blocks import Inventory, forget_other_exports, gather, note_export
 from .windows import Store
 
-AT_ONCE = 64_000_000  # bytes gathered at a time; with less, blocks in another order than the cases are read too often
+AT_ONCE = 64_000_000  # bytes gathered at a time; with fewer, blocks whose order differs from the cases' are read often
 
 
 @dataclass(eq=False)
 class Export:
-    """A results file that is being written, under another name.
+    """A results file that is being written under a temporary name.
 
-    opened : closes the file; since : when it was begun, by time.monotonic; chunk : cases in a chunk
-    pieces, start : those that are not written yet, in order, and their first case
+    opened : closes the file
+    since : time at which the file was begun, by time.monotonic
+    chunk : number of cases in a chunk
+    pieces, start : the pieces that are not written yet, in order, and their first case
     file, sums : None before the first piece
     """
 
@@ -57,9 +59,9 @@ class Export:
         self.pieces = deque(windows(grid, most, self.chunk))
 
     def advance(self) -> None:
-        """Write the pieces of which all cases are in blocks, up to the first of which one is missing.
+        """Write the pieces whose cases are all in blocks, up to the first piece that lacks a case.
 
-        Raises Damaged when a block has been spoiled since it was written, OSError when the file cannot be written.
+        Raises Damaged when a block has been damaged since it was written, OSError when the file cannot be written.
         """
         while self.pieces:
             grid = cut_out(self.store.definition.grid, self.pieces[0])
@@ -71,8 +73,11 @@ class Export:
     def _write(self, grid: Grid, piece: dict[str, slice], stop: int) -> None:
         definition = self.store.definition
         arrays = gather(self.store, self.stock, self.start, stop)
-        here = replace(definition, grid=grid, scene=definition.scene and definition.scene.within(piece))
-        part, place = dataset_of(here, parts(here, arrays, self.command)), definition.in_results(piece)
+        definition_of_piece = replace(definition, grid=grid, scene=definition.scene and definition.scene.within(piece))
+        part, place = (
+            dataset_of(definition_of_piece, parts(definition_of_piece, arrays, self.command)),
+            definition.in_results(piece),
+        )
         if self.file is None:
             self._create(part)
         for name, array in part.data_vars.items():
@@ -90,11 +95,11 @@ class Export:
 
 @contextmanager
 def exporting(store: Store, stock: Inventory, command: str, condition: Condition) -> Iterator[Export]:
-    """A results file to be written. It takes its place at the end of the `with` block, if no case is missing then.
+    """A results file to be written. It gets its name at the end of the `with` block, if no case is missing then.
 
-    condition : that of the results file that it replaces, see `put`
+    condition : of the results file that it replaces, see `put`
 
-    Raises OSError when the file cannot be written, StudyError when another file has come to its place.
+    Raises OSError when the file cannot be written, StudyError when another file has taken its place.
     """
     folder = None if store.window else store.folder
     with replacing(store.path, folder, partial(put, condition, store.definition.digest)) as temporary:

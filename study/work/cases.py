@@ -1,4 +1,4 @@
-"""Parcels of cases, with all that a worker on any machine needs to solve them.
+"""Parcels of cases, with everything that a worker on any machine needs to solve them.
 
 This module imports neither xarray nor netCDF4: without them a worker process starts in half the time and takes 44 MB
 less.
@@ -28,11 +28,12 @@ class Parcel:
 
     first, last : numbers of the first and the last case
     parameters : name -> (n,), or (1,) for all cases
-    x : (m,) points of the profiles; results, profiles : names of those that are wanted
-    inputs : of the solver, by which derivatives are wanted
-    stresses : names of the largest stresses and their places that are wanted
-    numerics : version of the solver's numerics that is wanted
-    known : laws, shapes and tables of users that its words stand for
+    x : points of the profiles, (m,)
+    results, profiles : names of the wanted results and profiles
+    inputs : of the solver, for the wanted derivatives
+    stresses : names of the wanted largest stresses and their places
+    numerics : wanted version of the solver's numerics
+    known : laws, shapes and tables of users for which words in the parameters stand
     """
 
     first: int
@@ -49,7 +50,7 @@ class Parcel:
 
 @dataclass(frozen=True)
 class Failure:
-    """Why a block has no results: the message of the exception, and its traceback."""
+    """The reason why a block has no results: the message of an exception, and its traceback."""
 
     message: str
     trace: str
@@ -65,14 +66,14 @@ def parcel(definition: Definition, index: Sequence) -> Parcel:
 
 
 def laws_of_users(known: Known, micro: np.ndarray) -> list[Law]:
-    """The laws among the words of `micro` that are not of this package."""
+    """The laws for the words of `micro` that do not belong to this package."""
     return [law for word in set(micro.ravel().tolist()) if (law := known.laws[word]) not in BUILT_IN]
 
 
 def can_travel(definition: Definition) -> bool:
-    """Whether another process can have the micro laws of a study.
+    """Whether the micro laws of a study can be sent to another process.
 
-    Their functions must have names, in a module that it can import. The program itself is no such module.
+    Their functions must have names, in a module that the process can import. The running program is not such a module.
     """
     for law in laws_of_users(definition.grid.lexicon.known, definition.grid.values["micro"][1]):
         if any(getattr(part, "__module__", "") == "__main__" for part in vars(law).values() if callable(part)):
@@ -85,8 +86,8 @@ def can_travel(definition: Definition) -> bool:
 
 
 def compute(task: Parcel) -> dict[str, np.ndarray]:
-    """Solve a parcel: name -> (n, ...). Touches no file and no shared state: may run in any thread, on any machine."""
-    with going_on():  # the functions of a law of one's own
+    """Solve a parcel: name -> (n, ...). It uses no file and no shared state: any thread, on any machine, may run it."""
+    with going_on():  # for the functions of a user's law
         problem = Problem.of(known=task.known, **task.parameters)
         solution = solve(problem, task.x)
         arrays = arrays_of(solution, task.results, task.profiles)
@@ -104,9 +105,9 @@ def arrays_of(solution: Solution, results: tuple[str, ...], profiles: tuple[str,
 
 
 def stresses_of(problem: Problem, solution: Solution, names: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """The largest stresses and their places: those of the `names` NAME, NAME_r, NAME_z -> (B,)."""
+    """The largest stresses and their places, NAME, NAME_r and NAME_z -> (B,), if `names` has them."""
     from solver.yields.below import central_spot
-    from solver.yields.contact import of_contacts  # most studies want none
+    from solver.yields.contact import of_contacts  # here, since most studies want no stresses
 
     places, columns = {("", "_r", "_z"): of_contacts(problem, solution)}, {}
     if {*central_spot.SPOT_EXTREMES} & {*names}:
@@ -139,10 +140,10 @@ def guarded(task: Parcel) -> dict[str, np.ndarray] | Failure:
 
 
 def blocks_of(missing: Sequence, size: int, part: tuple[int, int] = (1, 1)) -> list[Sequence]:
-    """The missing cases cut into blocks of at most `size`: the numbers of the cases of each.
+    """The missing cases, cut into blocks of at most `size`: the numbers of the cases of each block.
 
-    part : (i, n), only the i-th of n parts. The numbers of the cases decide to which part they belong, not what is
-        missing, so that parts that start at different times share no case
+    part : (i, n), only the i-th of n parts. Cases belong to parts by their numbers, whichever cases are missing, so
+        that parts that start at different times share no case
     """
     mine = missing[missing // size % part[1] == part[0] - 1] if part[1] > 1 else missing
     return [mine[start : start + size] for start in range(0, len(mine), size)]

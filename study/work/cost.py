@@ -14,31 +14,33 @@ from ..store.windows import PART, is_large
 from ..store.writer import AT_ONCE
 from ..terminal import rounded
 from .cases import compute, parcel
-from .engine import AHEAD, MANY, available_workers, core_takes, others_beside
+from .engine import AHEAD, MANY, available_workers, core_takes, number_of_helpers
 from .progress import duration
 
-SAMPLE = 256  # cases whose time is measured
+SAMPLE = 256  # number of cases whose time is measured
 PROCESS = 250_000_000  # bytes of this process, Python and the packages
 WORKER = 110_000_000  # bytes of a worker process, which has fewer packages
-PER_CASE = 100  # bytes for the key of a case, and to find it
-WORKING = 5  # memory of the arrays (B, m) of a block that is being solved, over that of its result
-# Each worker takes SOLVING bytes more, and has MATRICES matrices (B, n, n) at a time. Measured: peaks of runs on 17 to
-# 256 nodes, and of 300 cases of the study extremes_layered, which fill every table (0.86 GB in one process).
+PER_CASE = 100  # bytes for the key of a case, and for the search for it
+WORKING = 5  # memory of the arrays (B, m) of a block while it is solved, over that of its result
+# Each worker takes SOLVING bytes more, and has MATRICES matrices (B, n, n) at a time, by the peaks of runs on 17 to 256
+# nodes, and of 300 cases of the study extremes_layered, which fill every table (0.86 GB in one process).
 SOLVING, MATRICES = 80_000_000, 3
 KEY = 16  # bytes of the key of a case, in a block and in the record of the results file
-# A results file takes HEAD bytes besides its numbers, and these take ROOM times their size: chunks are stored whole at
-# the edges of a grid. Measured on files of 3000 and of 1e6 cases.
+# A results file takes HEAD bytes besides its numbers, which take ROOM times their size, since chunks at the edges of a
+# grid are stored whole. Measured on files of 3000 and of 1e6 cases.
 HEAD, ROOM = 300_000, 1.05
-TABLES = 600_000_000  # bytes that each process keeps for the exact layer: 0.4 GB of tables, and their sources
+TABLES = 600_000_000  # bytes that each process keeps for the exact layer: 0.4 GB of tables, and the data they come from
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """The cost of a run, as it is expected.
+    """The expected cost of a run.
 
-    cases : of the study; present : those on disk; seconds : for the others
-    memory : bytes at most; size : bytes of the results
-    disk : bytes at most of the results and of the blocks that are added
+    cases, present : number of cases in the study, and on disk
+    seconds : time for the missing cases
+    memory : largest number of bytes in memory
+    size : bytes of the results
+    disk : largest number of bytes of the results and the new blocks
     refused : the error with which `run` would end because of the results file
     """
 
@@ -56,14 +58,14 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     cases = definition.grid.size
     missing = cases - present
     blocks = -(-missing // definition.block)
-    count = max(1, min(workers or available_workers(), blocks))  # there is no work for more
+    count = max(1, min(workers or available_workers(), blocks))  # more workers would have no work
     seconds = missing * seconds_per_case(definition) / count if missing else 0.0
     size = definition.numbers * np.dtype(definition.dtype).itemsize
     block = size / cases * min(definition.block, cases)
-    here = blocks < MANY or count == 1  # whether the calling thread computes too
+    caller_solves = blocks < MANY or count == 1  # whether the calling thread computes too
     large, threads = is_large(definition), core_takes(definition)
-    processes = 0 if threads else others_beside(count, blocks, here)
-    keyed = min(cases, 2 * PART * cases // size) if large else cases  # of two windows in work, or of all
+    processes = 0 if threads else number_of_helpers(count, blocks, caller_solves)
+    keyed = min(cases, 2 * PART * cases // size) if large else cases  # those of two windows at a time, or all
     memory = PROCESS + WORKER * processes + PER_CASE * keyed + 3 * min(size, PART if large else AT_ONCE)
     memory += (AHEAD + WORKING) * count * block
     base, judged = (definition.grid.values[name][1] for name in ("base", "model_check"))
@@ -71,8 +73,10 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     exact = may_be_layered(base).any() or is_thin_layer(base).any() and (judged == "first_order").any()
     nodes = max(LADDER[-1], int(definition.grid.values["nodes"][1].max()))
     matrices = nodes**2 * min(definition.block, cases), nodes * (3 * STACK if exact else STACK)
-    memory += count * (SOLVING + 8 * MATRICES * min(matrices)) + (processes + (here or threads)) * TABLES * exact
-    if large:  # the results, and the blocks of two windows in work
+    memory += (
+        count * (SOLVING + 8 * MATRICES * min(matrices)) + (processes + (caller_solves or threads)) * TABLES * exact
+    )
+    if large:  # the results, and the blocks of two windows at a time
         disk = HEAD * (size // PART + 1) + ROOM * size * missing / cases + 2 * min(PART, size * missing / cases)
         return Estimate(cases, present, seconds, memory, size, disk)
     # the blocks of the missing cases, and the record of the cases in the results file
@@ -81,9 +85,11 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
 
 
 def seconds_per_case(definition: Definition) -> float:
-    """Time of a case on one worker. The first call prepares tables that all cases share, and is not counted. The second
-    is of the cases next to these, as far as there are some: laws of asperities that feel their layers are made anew
-    where the layer or the pitch is another."""
+    """Time of a case on one worker.
+
+    The first call prepares tables that all cases share, and is not counted. The second call solves the neighbouring
+    cases: where their layer or pitch differs, laws of asperities that feel the layer have to be computed again.
+    """
     places = np.linspace(0, definition.grid.size - 1, min(SAMPLE, definition.grid.size)).astype(int)
     compute(parcel(definition, places))
     sample = parcel(definition, (places + 1) % definition.grid.size)

@@ -30,8 +30,9 @@ from .progress import screen_of
 class Report:
     """The outcome of a run.
 
-    path : of the results; complete : whether it is written; if not, blocks failed or other parts are missing
-    cases : of the study; computed : those computed now; failures : number of a block -> why it failed
+    path, complete : path of the results, and whether they are written; if not, blocks failed or other parts are missing
+    cases, computed : number of cases in the study, and of those computed now
+    failures : number of a block -> reason of its failure
     counts : status -> number of cases; {} when there was nothing to do
     """
 
@@ -48,15 +49,15 @@ class Order:
     """The options of a run.
 
     workers, scheduler : see `engine.computed`
-    part : (i, n), compute the i-th of n parts only; the part that ends last writes the results
-    retry : compute cases of these statuses again
+    part : (i, n), compute only the i-th of n parts; the part that ends last writes the results
+    retry : compute cases with these statuses again
     fail_fast : stop at the first block that raises or has a failed case; a case without a solution has not failed
     force : replace the results file even if cases in it are lost
-    renew : replace it too if the same study file made it with another version of the numerics
+    renew : also replace it if the same study file made it with another version of the numerics
     yes : go on however large the study is
     command : of the user, for the history of the results
-    stream : where progress is written
-    progress : where it is written without a `stream`, see `progress.screen_of`
+    stream : for the progress
+    progress : whether progress is written without a `stream`, see `progress.screen_of`
     """
 
     definition: Definition
@@ -98,9 +99,9 @@ class Order:
         return self.part[1] > 1
 
     def lacking(self, state: WindowFiles) -> list[Window]:
-        """The windows whose results are to be written: they are not there, or hold cases to be tried again.
+        """The windows whose results are to be written: they do not exist, or hold cases to be tried again.
 
-        A single file with another title is written anew if its blocks are there.
+        A single file with another title is written again if its blocks exist.
         """
         definition, windows = self.definition, []
         for window, condition in zip(state.windows, state.conditions, strict=True):
@@ -115,7 +116,7 @@ class Order:
         return not state.others and not self.lacking(state)
 
     def report(self, state: WindowFiles, counts: dict[int, int] | None = None, **what) -> Report:
-        """A report; without `counts`, that there was nothing to do."""
+        """A report; without `counts` it says that there was nothing to do."""
         counts = counts or {}
         report = Report(state.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN))
         return replace(report, **what)
@@ -125,7 +126,7 @@ def check_replaceable(order: Order, state: WindowFiles) -> None:
     """Raise StudyError if results of another study or another version of the numerics would be lost, unless these may
     be replaced.
 
-    A file that roughcoat has not written is never replaced, and of many files none that is no file is put away.
+    A file that roughcoat has not written is never replaced. In a folder of many files nothing but a file is put away.
     """
     rivals = state.rivals()
     stay = [file for file in state.wrong if state.is_one or file.kind == "unreadable" or not file.path.is_file()]
@@ -143,7 +144,7 @@ def check_replaceable(order: Order, state: WindowFiles) -> None:
 
 
 def _refusal(order: Order, condition: Condition, command: str) -> str:
-    """Why a file of other results must not be replaced; "" if all its cases are in this study."""
+    """The reason not to replace a file of other results; "" if all its cases are in this study."""
     maker = f'; it was made by "{on_one_line(condition.command, 80)}"' if condition.command else ""
     if condition.numerics != NUMERICS_VERSION:
         owner = f"version {condition.numerics} of the numerics, this is {NUMERICS_VERSION}"
@@ -159,7 +160,7 @@ def _refusal(order: Order, condition: Condition, command: str) -> str:
 
 
 def _refusal_of_many(order: Order, state: WindowFiles, rivals: list[Condition], command: str) -> str:
-    """Why files of other results must not be removed; "" if all their cases are in this study, which takes them."""
+    """The reason not to remove files of other results; "" if all their cases are in this study, which takes them."""
     from ..store.former_parts import are_all_kept  # few runs have any
 
     if are_all_kept(state, rivals):
@@ -169,7 +170,7 @@ def _refusal_of_many(order: Order, state: WindowFiles, rivals: list[Condition], 
 
 
 def status_values(words: list[str]) -> tuple[int, ...]:
-    """Values of `status` by their words. Raises StudyError for a word that is none."""
+    """Values of `status` by their words. Raises StudyError for an unknown word."""
     values = {word: value for value, word in status_words().items()}
     wrong = [f'--status "{word}" is not known{suggest(word, values)}' for word in words if word not in values]
     if wrong:
@@ -178,7 +179,7 @@ def status_values(words: list[str]) -> tuple[int, ...]:
 
 
 def check_writable(path: Path) -> None:
-    """Raise StudyError when the results cannot be written to their folder, or to where a symbolic link leads."""
+    """Raise StudyError when the results cannot be written to their folder, or to the target of a symbolic link."""
     folder = path.parent
     try:
         str(path.absolute()).encode()
@@ -189,13 +190,13 @@ def check_writable(path: Path) -> None:
     except OSError as error:
         reason = "is a file, not a folder" if isinstance(error, FileExistsError) else error.strerror
         raise StudyError([f"{folder}: cannot be written: {reason}"], code=1) from None
-    except UnicodeEncodeError:  # Python has lone surrogates for bytes of a path that are not UTF-8
+    except UnicodeEncodeError:  # bytes of a path that are not UTF-8 are lone surrogates in Python
         wrong = f"{path.absolute()}: the path of results must be UTF-8: netCDF can open no other"
         raise StudyError([wrong]) from None
 
 
 def check_size(order: Order) -> None:
-    """Raise StudyError, which says the cost, for a study so large that it may be a mistake."""
+    """Raise StudyError, which states the cost, for a study so large that it may be a mistake."""
     definition = order.definition
     if definition.numbers > LARGE and not order.yes:
         cost = describe(estimate(definition, order.workers))

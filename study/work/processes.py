@@ -1,8 +1,8 @@
 """Worker processes of one machine, each fed by a thread of the process that runs the study.
 
 `dask.distributed.LocalCluster` is not used: a run of 100,000 thin rough cases takes 1.3 to 1.6 times as long with it
-(`python tools/bench/benchmark_engine.py 3 100`, three runs by turns on 2 busy processors). Dask's process
-scheduler is a pool of `concurrent.futures`: it holds all results in memory, and one killed process ends it.
+(`python tools/bench/benchmark_engine.py 3 100`, three runs by turns on 2 busy processors). Nor is the process scheduler
+of dask, a pool of `concurrent.futures`: it holds all results in memory, and one killed process ends it.
 """
 
 import os
@@ -19,8 +19,8 @@ from queue import Empty, SimpleQueue
 
 from .cases import Failure
 
-#: How often a block is tried. A process may be killed because others take the memory, so once is too few. A block may
-#: be too large itself, so it must not be tried for ever.
+#: Number of tries of a block. A process may be killed because others use up the memory, so one try is too few. A block
+#: may itself be too large, so it must not be tried for ever.
 ATTEMPTS = 3
 KILLED = f"the process that computed it was killed, {ATTEMPTS} times, perhaps for want of memory"
 #: Seconds after which a process without a task ends, and frees its memory. It is started again for the next task.
@@ -31,7 +31,7 @@ SERVE = "from study.work.processes import serve; serve()"
 def python_command(statement: str) -> tuple[list[str], dict[str, str]]:
     """Command and environment of a Python process that executes a statement and can import this package.
 
-    It looks for modules in the working folder last, because a user may have a solver.py there.
+    The process searches the working folder for modules last, because a user may have a solver.py there.
     """
     where = os.pathsep.join(filter(None, [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH")]))
     command = [sys.executable, "-P", "-c", f"import sys; sys.path.append(''); {statement}"]
@@ -39,7 +39,7 @@ def python_command(statement: str) -> tuple[list[str], dict[str, str]]:
 
 
 class Processes:
-    """A process for each thread that calls. It is started at its first call, and again after its end."""
+    """A process for each calling thread. It is started at the first call, and again after it has ended."""
 
     def __init__(self):
         self._mine = threading.local()
@@ -48,7 +48,7 @@ class Processes:
         self._ended = False
 
     def call(self, function: Callable, *arguments) -> object:
-        """function(*arguments), computed in the process of this thread; Failure if that was killed ATTEMPTS times."""
+        """function(*arguments), computed in the process of this thread; Failure if it was killed ATTEMPTS times."""
         task = pickle.dumps((function, arguments))
         for _ in range(ATTEMPTS):
             try:
@@ -57,7 +57,7 @@ class Processes:
                 process.stdin.flush()
                 return pickle.load(process.stdout)
             except (EOFError, OSError, ValueError, pickle.UnpicklingError):
-                self._mine.process = None  # it has ended, or `end` has closed its pipe
+                self._mine.process = None  # the process has ended, or `end` has closed its pipe
         return Failure(KILLED, "")
 
     def end(self) -> None:
@@ -86,28 +86,29 @@ class Threads:
     """In place of processes, for one call: threads that solve blocks themselves."""
 
     def reuse(self, most: int) -> int:
-        """So many can begin at once: a thread needs no start."""
+        """Number of threads that can begin at once: all of them, since a thread needs no start."""
         return most
 
     def feed(self, feeder: Callable, count: int) -> list[Future]:
-        """Start feeder(call) in `count` threads; call(function, task) computes there."""
+        """Start feeder(call) in `count` threads. There, call(function, task) computes in the thread itself."""
         threads = ThreadPoolExecutor(count)
         futures = [threads.submit(feeder, lambda function, task: function(task)) for _ in range(count)]
         threads.shutdown(wait=False)  # each ends after its last block
         return futures
 
     def end(self) -> None:
-        """Nothing: tasks that wait are taken from the feeders, and the blocks in work are solved to their end."""
+        """Do nothing: waiting tasks are taken away from the feeders, and blocks that have begun are solved to the
+        end."""
 
 
 def serve() -> None:
     """Work as a worker process: read pairs (function, its arguments) from stdin, write the results to stdout.
 
-    It ends after IDLE seconds without a task, or when stdin is closed. The system closes it when the process that runs
-    the study ends, however that ends.
+    The process ends after IDLE seconds without a task, or when stdin is closed. The system closes stdin when the
+    process that runs the study ends, in whatever way.
     """
     tasks, answers = SimpleQueue(), os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # prints of a library must not be among the answers
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what a library prints must not be among the answers
 
     def receive() -> None:
         try:

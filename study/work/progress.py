@@ -1,4 +1,4 @@
-"""Progress of a run or a call: one line that is rewritten on a terminal, a plain line now and then elsewhere."""
+"""Progress of a run or a call: a line that is rewritten on a terminal, or a plain line now and then elsewhere."""
 
 import contextvars
 import io
@@ -17,23 +17,25 @@ from ..terminal import shown
 
 EVERY = 10.0  # seconds between plain lines
 BLINK = 0.1  # seconds between rewritten lines
-SILENT = 2.0  # seconds without a word; after some three people wonder whether the program has stopped
-AGAIN = 0.5  # seconds between looks at the line, whose seconds go up one by one
+SILENT = 2.0  # seconds without output; after about three, people wonder whether the program has stopped
+AGAIN = 0.5  # seconds between updates of the line, in which seconds are counted
 SPEAKER = "roughcoat progress"  # the name of the thread
-ERASE = "\r\x1b[K"  # to the beginning of the line of a terminal, and erase it
+ERASE = "\r\x1b[K"  # go to the beginning of the terminal's line, and erase it
 
 
 @dataclass
 class Progress:
-    """Counts cases and writes how far a run is.
+    """The progress of a run: it counts cases and writes their number.
 
-    As a context manager it also says every second, after SILENT seconds, that the run goes on, and ends the line.
+    As a context manager it also shows every second, after SILENT seconds, that the run goes on, and ends the line.
 
-    done : cases on disk when the run began, and those computed since; computed : only these, for the rate
-    failed : cases that have failed; a case without a solution has not
-    passing : whether it is of a call: that writes nothing in the first SILENT seconds, and leaves nothing on a terminal
+    done : number of cases on disk when the run began, and of those computed since
+    computed : number of cases computed since, for the rate
+    failed : number of cases that have failed; a case without a solution has not
+    passing : whether this is the progress of a call, which writes nothing in the first SILENT seconds and leaves
+        nothing on a terminal
 
-    While nothing is computed it writes the seconds: "fig04: 8 s". A call of one block never writes anything else.
+    Until cases are computed it writes the seconds: "fig04: 8 s". A call of one block writes nothing else.
     """
 
     name: str
@@ -54,7 +56,7 @@ class Progress:
 
     def __enter__(self) -> "Progress":
         if self.stream is not None:
-            # with the context of the caller a notebook knows in which cell the line belongs
+            # from the context of the caller a notebook knows the cell to which the line belongs
             run = contextvars.copy_context().run
             self._thread = threading.Thread(target=run, args=(self._go_on,), name=SPEAKER, daemon=True)
             try:
@@ -76,12 +78,12 @@ class Progress:
             wait = AGAIN
 
     def tell(self) -> None:
-        """Write how far the run is, unless that was written lately."""
+        """Write the progress, unless it was written just now."""
         if self.done < self.total:
             self._write(self._line)
 
     def update(self, cases: int, failed: int) -> None:
-        """Add a finished block; any thread may."""
+        """Add a finished block. Any thread may call this."""
         with self._writing:
             self.done += cases
             self.computed += cases
@@ -91,7 +93,8 @@ class Progress:
             self._write(self._line)
 
     def close(self) -> None:
-        """End the rewritten line, or erase that of a call. After this nothing is written, not even by the thread."""
+        """End the rewritten line, or erase the line of a call. Nothing is written afterwards, not even by the
+        thread."""
         end = ERASE if self.passing else "\n"
         with self._writing:
             self._write(lambda terminal: end if terminal and self._shown else "")
@@ -101,7 +104,7 @@ class Progress:
     def _write(self, text: Callable[[bool], str]) -> None:
         """Write text(whether the stream is a terminal that can erase a line), if there is a stream.
 
-        A stream that fails is not used any more, and the run goes on.
+        A stream that fails is no longer used, and the run goes on.
         """
         with self._writing:
             try:
@@ -109,11 +112,11 @@ class Progress:
                     self.stream.write(line)
                     self.stream.flush()
                     self._shown = True
-            except (OSError, ValueError):  # its reader has left, its disk is full, or it has been closed
+            except (OSError, ValueError):  # the stream has lost its reader or been closed, or the disk is full
                 self.stream = None
 
     def _line(self, terminal: bool) -> str:
-        """How far the run is; "" if the last line was written just now."""
+        """The line on the progress; "" if the last line was written just now."""
         now = time.monotonic()
         if now - self.written < (BLINK if terminal else EVERY) and self.done < self.total:
             return ""
@@ -134,7 +137,7 @@ def erases(stream: TextIO) -> bool:
 
 
 def columns(terminal: TextIO) -> int:
-    """Width of a terminal; 80 when it does not say."""
+    """Width of a terminal; 80 if it is not known."""
     try:
         return os.get_terminal_size(terminal.fileno()).columns or 80
     except OSError:
@@ -146,7 +149,7 @@ def describe(
 ) -> str:
     """The line "fig04: 1200 of 2000 cases, 3 failed, 410/s, 2 s left", shortened to at most `width` characters.
 
-    seconds : from the beginning to the last block, which was `since` seconds ago
+    seconds : from the beginning to the last block, which ended `since` seconds ago
     """
     rate = computed / seconds if seconds > 0 else 0.0
     left = f", {duration(max((total - done) / rate - since, 0.0))} left" if rate and done < total else ""
@@ -189,18 +192,18 @@ class NotebookCell(io.TextIOBase):
                 self._handle.update(data, raw=True)
             else:
                 self._handle = import_module("IPython.display").display(data, raw=True, display_id=True)
-        except Exception as error:  # of the connection to the notebook, whatever that is
+        except Exception as error:  # from whatever connects to the notebook
             raise OSError(str(error)) from None
         return len(text)
 
 
 def screen_of(progress: bool | None) -> TextIO | None:
-    """Where a call of `study.solve` writes its progress; None: nowhere.
+    """The stream for the progress of a call of `study.solve`; None for no progress.
 
-    progress : False: nowhere; True: in the notebook, else on stderr, even if that is no terminal; None: in a notebook
-        or on a terminal, but not in threads and processes of a program that divides its work itself
+    progress : False: none; True: in the notebook, otherwise on stderr, even if that is not a terminal; None: in a
+        notebook or on a terminal, except in threads and processes of a program that divides its work itself
 
-    Raises StudyError if it is none of these.
+    Raises StudyError for any other value.
     """
     if progress is not None and type(progress) is not bool:
         raise StudyError([f"progress = {shown(progress)}: must be True, False or None"])
@@ -208,7 +211,7 @@ def screen_of(progress: bool | None) -> TextIO | None:
     if progress is False or (progress is None and divided):
         return None
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
-    if hasattr(shell, "kernel"):  # that of IPython in a terminal has none
+    if hasattr(shell, "kernel"):  # IPython in a terminal has none
         return NotebookCell()
     if sys.stderr is None or sys.stderr.closed:
         return None

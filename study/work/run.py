@@ -25,17 +25,19 @@ from .plan import Order, Report, check_replaceable, check_size, check_writable
 from .progress import Progress, screen_of
 
 log = logging.getLogger(__name__)
-#: Seconds for which the blocks of one of many windows are in memory alone: a run that is killed loses no more. Ordinary
-#: cases make a window whole in less; to write their blocks would take 9 to 14 % of the time of a run.
+#: Seconds for which the blocks of one of many windows are only in memory: a killed run loses no more than that. A
+#: window of ordinary cases is complete in less time; writing its blocks would take 9 to 14 % of the time of a run.
 BRIEF = 10.0
 
 
 def run(definition: Definition, results="results", **options) -> Report:
-    """Compute the missing cases and write the results. `options` as of `Order`.
+    """Compute the missing cases and write the results.
+
+    options : the fields of `Order`
 
     Raises StudyError when the folder cannot be written, or holds results that would be lost, or no scheduler answers;
-    nothing has been computed then. Raises OSError when writing failed later (a full disk), or the scheduler is lost;
-    blocks written so far stay and are used by the next run.
+    nothing has been computed then. Raises OSError when writing fails later (a full disk), or the scheduler is lost;
+    the blocks written so far stay, and the next run uses them.
     """
     order = Order(definition, Path(results), **options)
     state = checked(order.store)
@@ -46,7 +48,7 @@ def run(definition: Definition, results="results", **options) -> Report:
     check_writable(state.windows[0].path)
     with held(order.store.lock, shared=order.shared, waiting=lambda: say_waiting(order)):
         now = checked(order.store, state)
-        if now is not state:  # by the run for which this one has waited
+        if now is not state:  # the run for which this one waited has changed it
             if order.done(now):
                 return order.report(now)
             check_replaceable(order, now)
@@ -56,10 +58,12 @@ def run(definition: Definition, results="results", **options) -> Report:
 
 
 def _make_room(order: Order, state: WindowFiles) -> None:
-    """Remove what is in the way of the results, and say which damaged files stay under another name. Of parts of the
-    study as it was the cases that it still has are kept, as blocks."""
-    if state.others:  # as --force has said, or none of their cases is lost
-        from ..store.former_parts import take_over  # few runs have any
+    """Remove files that are in the way of the results, and warn of damaged files that stay under another name.
+
+    Former parts of the study are removed after the cases that it still has are stored as blocks.
+    """
+    if state.others:  # --force allows it, or no case is lost
+        from ..store.former_parts import take_over  # here, since few runs have former parts
 
         make_folder(order.store.folder)
         take_over(state, state.rivals())
@@ -78,7 +82,7 @@ def _make_room(order: Order, state: WindowFiles) -> None:
 
 
 def _compute(order: Order, state: WindowFiles) -> Report:
-    """Compute this run's part of the missing cases, and write the results meanwhile."""
+    """Compute this run's share of the missing cases, and write the results meanwhile."""
     make_folder(state.windows[0].path.parent)
     with Harvest(order, state) as harvest:
         blocks = [block for _, block in harvest.blocks]
@@ -88,14 +92,15 @@ def _compute(order: Order, state: WindowFiles) -> Report:
 
 
 class Harvest:
-    """The windows whose results a run brings in.
+    """The windows whose results a run computes.
 
-    blocks : the window and the numbers of the cases of each block that is computed
-    present : cases that were there before; computed : those that have been computed
+    blocks : the window and the numbers of the cases, for each block to be computed
+    present, computed : number of cases that existed before, and of those computed since
 
     As a context manager it leaves no half-written file behind. The results file of a study of one window is begun at
-    once. If other runs compute other blocks of it, the last of them writes the file. One of many windows is of one run
-    alone, and is begun with its first block. If it is whole within BRIEF seconds, its blocks are never on the disk.
+    once; if other runs compute other blocks of it, the last run writes the file. One of many windows belongs to a
+    single run, and its file is begun with the first block. If the window is complete within BRIEF seconds, its blocks
+    are never written to the disk.
     """
 
     def __init__(self, order: Order, state: WindowFiles):
@@ -114,7 +119,7 @@ class Harvest:
         self._opened.__exit__(*error)
 
     def keep(self, number: int, arrays: dict[str, np.ndarray]) -> None:
-        """Put the columns of a block on the disk, and write the files that are whole then."""
+        """Store the columns of a block, and write the files that are then complete."""
         window, index = self.blocks[number]
         export, _ = self._begun.get(window.cases.start) or self._begin(window)
         is_brief = export.store.window and time.monotonic() - export.since < BRIEF
@@ -124,8 +129,8 @@ class Harvest:
         self._advance(window.cases.start)
 
     def end(self) -> None:
-        """Write files that are whole, also if no case of them was missing, and the blocks of windows that have a failed
-        one."""
+        """Write the files that are complete, even if none of their cases was missing. In windows with a failed block,
+        write the other blocks."""
         for first, (export, _) in [*self._begun.items()]:
             self._advance(first)
             if export.pieces:
@@ -147,7 +152,7 @@ class Harvest:
             missing = self._begin(window)[0].stock.missing
         elif any(order.store.block_paths(window)):
             missing = missing.start + inventory(self.state.store_of(window), order.retry).missing
-            if not len(missing):  # a run that was killed has not come to write the results
+            if not len(missing):  # a run was killed before it wrote the results
                 self._begin(window)
         self.present += len(window.cases) - len(missing)
         return blocks_of(missing, order.definition.block, order.part if self.state.is_one else (1, 1))
@@ -172,8 +177,8 @@ class Harvest:
 
 def _export_if_last(order: Order, report: Report) -> Report:
     """Write the results if no other run holds the lock. Then this run is the last of several."""
-    with held(order.store.lock, wait=False) as alone:
-        if not alone:
+    with held(order.store.lock, wait=False) as is_alone:
+        if not is_alone:
             return report
         state = checked(order.store)
         if replace(order, retry=()).done(state):
@@ -192,10 +197,11 @@ def say_waiting(order: Order) -> None:
 
 
 def compute_blocks(order: Order, blocks: Sequence, present: int, keep: Callable) -> dict[int, str]:
-    """Compute blocks and keep them; returns the failures. A block that raises does not stop the others.
+    """Compute blocks and store them; returns the failures. A block that raises does not stop the others.
 
-    blocks : the numbers of the cases of each; present : cases of the study that were there before
-    keep : keep(number of a block, its columns) stores it
+    blocks : the numbers of the cases of each block
+    present : number of cases of the study that existed before
+    keep : keep(number of a block, its columns) stores a block
     """
     failures = {}
     if not blocks:

@@ -1,4 +1,4 @@
-"""A client of the scheduler of a dask cluster. Its address is checked first, and whether it answers."""
+"""A client of the scheduler of a dask cluster. First its address is checked, and whether it answers."""
 
 import logging
 import re
@@ -6,7 +6,7 @@ import socket
 import struct
 
 ADDRESS = re.compile(r"(?:(tcp|tls|ws|wss|ucx)://)?(\[[0-9a-fA-F:.%]+\]|[\w.-]+):(\d{1,5})|inproc://.+", re.ASCII)
-GREETING = 1_000_000  # most bytes of the first message of a scheduler; it has some hundreds
+GREETING = 1_000_000  # largest number of bytes in the first message of a scheduler, which has some hundreds
 
 
 def address_error(text: str) -> str:
@@ -20,7 +20,7 @@ def address_error(text: str) -> str:
 def connected(address: str, listens: float, answers: float):
     """A dask client of the scheduler at an address.
 
-    Raises StudyError when nothing listens there in `listens` seconds, or no scheduler answers in `answers`.
+    Raises StudyError when nothing listens there within `listens` seconds, or no scheduler answers within `answers`.
     """
     from ..inputs.definition import StudyError  # here: it loads numpy, which `address_error` must not
 
@@ -38,20 +38,20 @@ def connected(address: str, listens: float, answers: float):
 
             if not Security().get_connection_args("client")["ssl_context"]:
                 raise OSError("TLS needs certificates, which dask's configuration must name: see docs/cluster.md")
-        seconds = answers if _is_there(address, listens, answers) else listens
+        seconds = answers if _something_listens(address, listens, answers) else listens
         return Client(address, timeout=seconds, set_as_default=False)
     except MemoryError:
         raise
-    except Exception as error:  # any: an answer that the client does not understand raises whatever it does
+    except Exception as error:  # an answer that the client does not understand may raise anything
         words = str(error) or type(error).__name__
         raise StudyError([f"--scheduler {address}: no scheduler answers there ({words})"]) from None
 
 
-def _is_there(address: str, listens: float, answers: float) -> bool:
+def _something_listens(address: str, listens: float, answers: float) -> bool:
     """Whether something listens at the address.
 
-    Raises OSError when the host has no address, or when the first bytes from there are not those of dask. Dask takes
-    the first bytes as the length of a message, whatever they are, and asks for that much memory.
+    Raises OSError when the host has no address, or when the first bytes from it are not those of dask. Dask would take
+    any first bytes as the length of a message, and allocate that much memory.
     """
     scheme, host, port = ADDRESS.fullmatch(address).groups()
     if host is None:

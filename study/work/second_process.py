@@ -1,4 +1,4 @@
-"""A second process that takes tasks from the end of a list, while the caller takes them from its front."""
+"""A second process that takes tasks from the end of a list, while the caller takes tasks from the front."""
 
 import threading
 from collections.abc import Callable
@@ -10,10 +10,10 @@ from .processes import Processes
 
 
 class SecondProcess:
-    """Tasks `function(*arguments)`, by their names in order. The process is started for the last one, and ends with the
-    caller, or when `end` is called.
+    """Tasks `function(*arguments)` in order, by name. The process starts with the last task, and ends with the caller,
+    or when `end` is called.
 
-    It imports this package and not the program that calls, as those of `study.work.processes`.
+    Like the processes of `study.work.processes`, it imports this package and not the calling program.
     """
 
     def __init__(self, function: Callable, tasks: dict[str, tuple]):
@@ -35,9 +35,10 @@ class SecondProcess:
             future.set_result(result)
 
     def result_of(self, name: str) -> Any:
-        """The result of a task of the second process, once it is done.
+        """The result of a task that the second process has begun, once it is done.
 
-        None if the process has not begun the task, and will not: the caller then does it, as after a Failure.
+        None if the process has not begun the task, or has failed: then the caller does it. The process will not begin
+        it.
         """
         with self._changing:
             self._waiting.pop(name, None)

@@ -1,1 +1,1 @@
-"""At which load bodies and asperities first yield, and which layer protects the body."""
+"""The load at which bodies and asperities first yield, and the layer that protects the body."""

@@ -1,4 +1,4 @@
-"""The load at which something first yields."""
+"""The load at which a body or its asperities first yield."""
 
 import re
 from typing import Any
@@ -18,13 +18,13 @@ from ..data.contacts import Contacts
 from ..fields import carried, friction, numbered, refuse_both, residual_stresses, with_numbered_layers
 from ..inputs.vocabulary import CONTROLS, name_in_stack
 from ..rules.rule import validity_attributes
-from .model_validity import said_of, validity_at
-from .yielding_contacts import control_of, of_dataset, of_inputs, own_materials, refuse, without_control
+from .model_validity import sentences_on, validity_at
+from .yielding_contacts import control_of, materials_in, of_dataset, of_inputs, refuse, without_control
 
 BODIES = {"layer": "_Y1", "body": "_Y2", "asperities": "_Ya", "punch": "_Y_punch"}
-"""What may yield, in the order of the codes of `first_yield` -> the end of the names of its numbers."""
+"""Part that may yield, in the order of the codes of `first_yield` -> the ending of the names of its numbers."""
 FOUND = ("first_crossing", "none_up_to_0.2_R", "strength_not_known")
-"""Meanings of the values of found_Y1 and so on; of other shapes than balls the second is another."""
+"""Meanings of the values of found_Y1 and so on; for shapes other than balls the second has another name."""
 _NO_ASPERITIES = "no_asperities"  # the value 3 of found_Ya
 _FOUND_OF_SHAPES = (FOUND[0], f"none_up_to_a_slope_of_{STEEPEST}", FOUND[2])
 _LONG_NAMES = {"P": "load", "a": "contact radius", "D": "indentation depth", "p0": "nominal pressure in the centre"}
@@ -47,37 +47,38 @@ def first_yield(
 ) -> xr.Dataset:
     """The load at which layer, body, asperities and punch first yield, by von Mises: docs/stresses.md.
 
-    The largest stress need not grow with the load: what is found is the first load at which it exceeds the strength, up
-    to a = 0.2 R, under other shapes than balls up to a slope of 0.4 at the edge. Under a sharp tip or corner what is
-    touched yields under any load: P_Y1 is 0. Strengths that are not given are those of the materials that are named, of
-    which a hardness is 2.84 yield strengths.
+    The largest stress need not grow with the load: the answer is the first load at which it exceeds the strength, up to
+    a = 0.2 R, or under shapes other than balls up to a slope of 0.4 at the edge. Under a sharp tip or corner the bodies
+    yield at any load: P_Y1 is 0. Strengths that are not given come from the named materials, whose hardness is 2.84
+    yield strengths.
 
     Parameters
     ----------
-    contact : contacts of `study.solve` or of a results file, in place of the parameters. Their loads do not count
+    contact : contacts of `study.solve` or of a results file, in place of the parameters. Their loads do not matter
     Y1, Y2, Y_punch : yield strengths of layer, body and punch, > 0
-    hardness, yield_strength : of the softer of asperity and what it presses on, > 0; one of both is enough
+    hardness, yield_strength : of the softer of the asperity and the surface under it, > 0; one of the two is enough
     mu : >= 0; with mu > 0 the punch slides in full
-    sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where there are units. Of stacks that
-        of all layers, or a list of one for each
-    parameters : the strengths of the layers of stacks, layers.2.Y and so on; without a contact those of `study.solve`
-        without P, a and D
+    sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where there are units. For stacks that
+        of all layers, or a list with one for each
+    parameters : the strengths of the layers of stacks, layers.2.Y and so on; without a contact also those of
+        `study.solve`, except P, a and D
 
     Returns
     -------
     xarray.Dataset : over the dimensions of the parameters: P_Y1, a_Y1, D_Y1, p0_Y1, the contact at which the layer
-        first yields, and r_Y1, z_Y1, the place in units of a (r is x, behind the contact < 0, if mu > 0). The same of
-        the body with Y2, of the asperities with Ya, of an elastic punch, a half-space under the same pressure, with
-        Y_punch. found_Y1 and so on: 0, it is the first crossing; 1, there is none up to a = 0.2 R, or up to that slope;
-        2, the strength is not known; 3, of found_Ya alone, the punch is smooth. Where it is not 0 the numbers are NaN,
-        and P_Y1 has a `message`. validity_Y1 and so on: `validity` of the contact at that load, 0 where there is none;
-        P_Y1 has a `comment` that says it in words. P_Y1_spread and so on, of a strength with a spread: what that alone
-        makes. `first_yield`: what yields first, of those that are known. Of stacks P_Y_layer, a_Y_layer and so on over
-        `layer`, counted from 1 at the surface, in place of P_Y1, and `first_layer`, which of them yields first
+        first yields, and r_Y1, z_Y1, the place in units of a (with mu > 0 r is x, < 0 behind the contact). The same for
+        the body with Y2, for the asperities with Ya, and for an elastic punch, a half-space under the same pressure,
+        with Y_punch. found_Y1 and so on: 0, the load is the first crossing; 1, there is none up to a = 0.2 R, or up to
+        that slope; 2, the strength is not known; 3, only for found_Ya, the punch is smooth. Where it is not 0 the
+        numbers are NaN, and P_Y1 has a `message`. validity_Y1 and so on: `validity` of the contact at that load, 0
+        without a load; P_Y1 has a `comment` with it in words. P_Y1_spread and so on, for a strength with a spread: the
+        spread that follows from it alone. `first_yield`: the part that yields first, among those that are known. For
+        stacks P_Y_layer, a_Y_layer and so on over `layer`, counted from 1 at the surface, in place of P_Y1, and
+        `first_layer`, the layer that yields first
 
     Raises
     ------
-    StudyError : input that cannot be used; P, a or D is given, which are looked for
+    StudyError : input that cannot be used, such as P, a or D, which are to be determined
 
     Examples
     --------
@@ -87,30 +88,30 @@ def first_yield(
     1.612797
     """
     mu = friction(mu)
-    given = {"Y1": Y1, "Y2": Y2, "Y_punch": Y_punch, "hardness": hardness, "yield_strength": yield_strength}
-    given = {name: value for name, value in given.items() if value is not None}
+    strengths_of_call = {"Y1": Y1, "Y2": Y2, "Y_punch": Y_punch, "hardness": hardness, "yield_strength": yield_strength}
+    strengths_of_call = {name: value for name, value in strengths_of_call.items() if value is not None}
     if contact is not None:
-        given |= {name: parameters.pop(name) for name in [*parameters] if _OF_A_LAYER.fullmatch(name)}
+        strengths_of_call |= {name: parameters.pop(name) for name in [*parameters] if _OF_A_LAYER.fullmatch(name)}
         refuse_both("first_yield", contact, parameters)
-        contacts = of_dataset("first_yield", contact, given, CONTROLS)
+        contacts = of_dataset("first_yield", contact, strengths_of_call, CONTROLS)
         name = control_of(contacts.dataset)
     else:
         refuse("first_yield", parameters, (*CONTROLS, "cases"), "it is what is looked for")
-        name = "P" if "flat_radius" in parameters else "a"  # any value that a flat end allows
-        contacts = of_inputs("first_yield", parameters | given, name, 1e-3)
+        name = "P" if "flat_radius" in parameters else "a"  # a flat end does not allow any value of a
+        contacts = of_inputs("first_yield", parameters | strengths_of_call, name, 1e-3)
     stress, _ = contacts.units
-    own, problem = own_materials(parameters), contacts.problem
-    known, spreads = (strengths(contacts, own, spread) for spread in (False, True))
+    materials, problem = materials_in(parameters), contacts.problem
+    values, spreads = (strengths(contacts, materials, spread) for spread in (False, True))
     residual = residual_stresses(sigma_res, contacts)
     nu_punch = contacts.coordinate("nu_punch", 0.3)
     variables, loads = {}, []
     if stacked := numbers_of(problem.parameters) > 0:
-        layers, named = layer_strengths(contacts, own), with_numbered_layers(contacts)
-        found, in_layers = _of_layers(contacts, layers, mu, residual)
+        layers, named = layer_strengths(contacts, materials), with_numbered_layers(contacts)
+        of_layers, in_layers = _of_layers(contacts, layers, mu, residual)
         contacts = named
         variables |= {
             key: xr.Variable((*named.dims, *value.dims[len(named.dims) :]), value.values, value.attrs)
-            for key, value in found.items()
+            for key, value in of_layers.items()
         }
         loads.append(in_layers.min(axis=1))
         first_layer = np.where(np.isfinite(in_layers).any(axis=1), 1 + in_layers.argmin(axis=1), 0).astype(np.int8)
@@ -118,23 +119,23 @@ def first_yield(
     for body, end in BODIES.items():
         if stacked and body == "layer":
             continue
-        strength = np.where(_there(problem, body), known[body], np.nan)
+        strength = np.where(_is_elastic(problem, body), values[body], np.nan)
         if np.isfinite(strength).any():
             crossing = crossing_of(problem, body, strength, mu, residual, nu_punch, bool(np.any(spreads[body] > 0)))
         else:
             crossing = Crossing.none(len(problem))
-        found = np.where(crossing.crossed, 0, np.where(np.isnan(known[body]), 2, 1))
-        found = np.where((body == "asperities") & ~_there(problem, "asperities"), 3, found).astype(np.int8)
+        found = np.where(crossing.crossed, 0, np.where(np.isnan(values[body]), 2, 1))
+        found = np.where((body == "asperities") & ~_is_elastic(problem, "asperities"), 3, found).astype(np.int8)
         loads.append(np.where(crossing.crossed, crossing.numbers["P"], np.inf))
         variables |= _variables(contacts, body, end, crossing, found)
         if np.any(spreads[body] > 0):
-            variables |= _spreads(contacts, body, end, crossing, spreads[body] / known[body])
+            variables |= _spreads(contacts, body, end, crossing, spreads[body] / values[body])
     loads = np.array(loads)
     first = np.where(np.isfinite(loads).any(axis=0), 1 + loads.argmin(axis=0), 0).astype(np.int8)
     about = _flags("what yields first", ("not_known", *BODIES))
     variables["first_yield"] = labelled(contacts, first, about)
-    made = without_control(carried(contacts.dataset, variables), name)
-    return made.assign_coords(numbered(contacts, "layer")) if stacked else made
+    answer = without_control(carried(contacts.dataset, variables), name)
+    return answer.assign_coords(numbered(contacts, "layer")) if stacked else answer
 
 
 #: The name of a strength of a layer.
@@ -143,8 +144,10 @@ _FIRST_LAYER = "layer that yields first among the layers, counted from 1 at the 
 
 
 def _of_layers(contacts: Contacts, layers: list, mu: float, residual: np.ndarray) -> tuple[dict, np.ndarray]:
-    """The variables of the layers of stacks over `layer`, and their loads (B, N), inf where there is none. A stack of
-    one layer has those of one layer too."""
+    """The variables of the layers of stacks over `layer`, and their loads (B, N), inf where there is none.
+
+    A stack of one layer also has the variables of a single layer.
+    """
     problem, columns, loads = contacts.problem, [], []
     for j, (strength, spread, _) in enumerate(layers):
         strength = np.where(is_bare(problem.base), np.nan, strength)
@@ -154,67 +157,69 @@ def _of_layers(contacts: Contacts, layers: list, mu: float, residual: np.ndarray
             crossing = crossing_of(problem, "layer", strength, mu, residual, slopes=slopes, layer=j)
         found = np.where(crossing.crossed, 0, np.where(np.isnan(strength), 2, 1)).astype(np.int8)
         loads.append(np.where(crossing.crossed, crossing.numbers["P"], np.inf))
-        own = _variables(contacts, f"layer {j + 1}", "_Y_layer", crossing, found)
+        columns_of_layer = _variables(contacts, f"layer {j + 1}", "_Y_layer", crossing, found)
         if any(np.any(spread > 0) for _, spread, _ in layers):
-            own |= _spreads(contacts, f"layer {j + 1}", "_Y_layer", crossing, np.nan_to_num(spread / strength))
-        columns.append(own)
-    made = {name: _over_layers([own[name] for own in columns]) for name in columns[0]}
+            columns_of_layer |= _spreads(
+                contacts, f"layer {j + 1}", "_Y_layer", crossing, np.nan_to_num(spread / strength)
+            )
+        columns.append(columns_of_layer)
+    variables = {name: _over_layers([columns_of_layer[name] for columns_of_layer in columns]) for name in columns[0]}
     if len(layers) == 1:
-        made |= {name.replace("_Y_layer", "_Y1"): value for name, value in columns[0].items()}
-    return made, np.stack(loads, axis=1)
+        variables |= {name.replace("_Y_layer", "_Y1"): value for name, value in columns[0].items()}
+    return variables, np.stack(loads, axis=1)
 
 
 def _over_layers(columns: list) -> xr.Variable:
-    """One variable over `layer`, with what is said of each of its values."""
+    """One variable over `layer`, with the messages and comments on each of its values."""
     about = {**columns[0].attrs, "long_name": columns[0].attrs["long_name"].replace("layer 1", "layer")}
     for name in ("message", "comment"):
-        said = [f"layer {j}: {own.attrs[name]}" for j, own in enumerate(columns, 1) if name in own.attrs]
-        about |= {name: "; ".join(said)} if said else {}
-    return xr.Variable((*columns[0].dims, "layer"), np.stack([own.values for own in columns], axis=-1), about)
+        texts = [f"layer {j}: {column.attrs[name]}" for j, column in enumerate(columns, 1) if name in column.attrs]
+        about |= {name: "; ".join(texts)} if texts else {}
+    return xr.Variable((*columns[0].dims, "layer"), np.stack([column.values for column in columns], axis=-1), about)
 
 
-def _there(problem: Any, body: str) -> np.ndarray:
-    """Which cases have such a body, and it is elastic."""
+def _is_elastic(problem: Any, body: str) -> np.ndarray:
+    """Which cases have such a body, and the body is elastic."""
     bare = is_bare(problem.base)
     rough = np.isfinite(problem.Nbar) & (problem.micro != "smooth")
     return {"layer": ~bare, "body": bare | (problem.n > 0), "asperities": rough, "punch": problem.m > 0}[body]
 
 
 def _variables(contacts: Contacts, body: str, end: str, crossing: Crossing, found: np.ndarray) -> dict:
-    where, made = f"at which the {body} first yield{'' if body == 'asperities' else 's'}", {}
+    where, variables = f"at which the {body} first yield{'' if body == 'asperities' else 's'}", {}
     stress, size = contacts.units
     for name in NUMBERS:
         i, j = _POWERS[name]
         about = about_of(contacts, f"{_LONG_NAMES[name]} {where}", (i, j))
-        made[f"{name}{end}"] = labelled(contacts, crossing.numbers[name] * stress**i * size**j, about)
-    made[f"r{end}"] = labelled(contacts, crossing.r, {"long_name": f"radius of the place {where}, over a"})
-    made[f"z{end}"] = labelled(contacts, crossing.z, {"long_name": f"depth of the place {where}, over a"})
+        variables[f"{name}{end}"] = labelled(contacts, crossing.numbers[name] * stress**i * size**j, about)
+    variables[f"r{end}"] = labelled(contacts, crossing.r, {"long_name": f"radius of the place {where}, over a"})
+    variables[f"z{end}"] = labelled(contacts, crossing.z, {"long_name": f"depth of the place {where}, over a"})
     round_ = np.isin(contacts.problem.shape, ROUND)
     words = (FOUND if round_.all() else _FOUND_OF_SHAPES) + (_NO_ASPERITIES,) * (body == "asperities")
-    made[f"found{end}"] = labelled(contacts, found, _flags(f"whether the load {where} was found", words))
+    variables[f"found{end}"] = labelled(contacts, found, _flags(f"whether the load {where} was found", words))
     if found.any():
-        made[f"P{end}"].attrs["message"] = _message(body, found, crossing.unsolved, round_.all())
+        variables[f"P{end}"].attrs["message"] = _message(body, found, crossing.unsolved, round_.all())
     flags = validity_at(contacts, crossing)
-    made[f"validity{end}"] = labelled(contacts, flags, _about_validity(body))
+    variables[f"validity{end}"] = labelled(contacts, flags, _about_validity(body))
     sharp = bool(((found == 0) & (crossing.numbers["P"] == 0) & ~round_).any())
-    if comment := ". ".join(text for text in (_SHARP * sharp, said_of(flags)) if text):
-        made[f"P{end}"].attrs["comment"] = comment
-    return made
+    if comment := ". ".join(text for text in (_SHARP * sharp, sentences_on(flags)) if text):
+        variables[f"P{end}"].attrs["comment"] = comment
+    return variables
 
 
 def _spreads(contacts: Contacts, body: str, end: str, crossing: Crossing, relative: np.ndarray) -> dict:
-    """P_Y1_spread and so on: what the spread of the strength alone makes."""
-    made, (stress, size) = {}, contacts.units
+    """P_Y1_spread and so on: the spreads that follow from the spread of the strength alone."""
+    variables, (stress, size) = {}, contacts.units
     for name in NUMBERS:
         i, j = _POWERS[name]
         spread = np.abs(crossing.by_strength[name]) * crossing.numbers[name] * relative * stress**i * size**j
         words = f"standard deviation of {name}{end}, from the spread of the strength of the {body} alone"
-        made[f"{name}{end}_spread"] = labelled(contacts, spread, about_of(contacts, words, (i, j)))
-    return made
+        variables[f"{name}{end}_spread"] = labelled(contacts, spread, about_of(contacts, words, (i, j)))
+    return variables
 
 
 def _message(body: str, found: np.ndarray, unsolved: np.ndarray, round_: bool) -> str:
-    """Why there is no load, with how many cases each reason has."""
+    """The reasons why there is no load, with the number of cases of each."""
     farthest = "a = 0.2 R" if round_ else f"a slope of the shape of {STEEPEST}, or a = 0.2 R of balls"
     need = {"layer": "Y1", "body": "Y2", "punch": "Y_punch", "asperities": "hardness or yield_strength"}
     need = need.get(body) or name_in_stack(int(body.removeprefix("layer ")), "Y")

@@ -1,4 +1,4 @@
-"""Whether the model describes the contacts at which something first yields."""
+"""Whether the model describes the contacts at first yield."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from ..work.cases import arrays_of
 
 
 def validity_at(contacts: Contacts, crossing: Crossing) -> np.ndarray:
-    """`validity` of the contact at the first yield of each case, (B,) int32; 0 where there is none, or no load."""
+    """`validity` of the contact at the first yield of each case, (B,) int32; 0 without a yield, or a load."""
     flags, rows = np.zeros(len(contacts.problem), np.int32), np.flatnonzero(crossing.numbers["P"] > 0)
     if not len(rows):
         return flags
     problem = replace(contacts.problem.take(rows), control="P", value=crossing.numbers["P"][rows])
     solution = solve(problem)
-    # without strengths, whose masks say that something yields: at these loads it does
+    # without strengths: their masks say that a body yields, which is known at these loads
     numbers = {name: value for name, value in problem.parameters.items() if not is_strength(name)}
     radii = contacts.scene.radii() if contacts.scene else {}
     results = results_of(problem.known.laws, problem.micro, felt=bool(problem.feels_layer().any()))
@@ -34,7 +34,7 @@ def validity_at(contacts: Contacts, crossing: Crossing) -> np.ndarray:
     return flags
 
 
-def said_of(flags: np.ndarray) -> str:
+def sentences_on(flags: np.ndarray) -> str:
     """A sentence for each assumption that contacts of this `validity` violate; "" if all hold."""
     violated = broken(Labelled("case", flags, validity_attributes()))
     return " ".join(of_cases(where) + RULES[name].sentence for name, where in violated.items() if where.any())

@@ -16,7 +16,7 @@ from ..fields import carried, friction, refuse_both
 from ..inputs.definition import StudyError
 from ..terminal import shown
 from .first_yield import about_of, labelled
-from .yielding_contacts import of_dataset, of_inputs, own_materials, refuse, without_control
+from .yielding_contacts import materials_in, of_dataset, of_inputs, refuse, without_control
 
 
 def h_protect(
@@ -30,17 +30,17 @@ def h_protect(
 ) -> xr.Dataset:
     """The thickness above which a layer protects the body from yielding: docs/stresses.md.
 
-    Under a stiff layer the largest stress of the body first rises with the thickness, before it falls.
+    Under a stiff layer the largest stress of the body first rises with the thickness, and then falls.
 
     Parameters
     ----------
     contact : contacts of `study.solve` or of a results file on layers, in place of P and the parameters. Their load
-        counts, and their h does not
+        matters, and their h does not
     P : load
-    Y2 : yield strength of the body, > 0; without it that of the material that is named
-    by : the thickness that is looked for: "h", or that of another layer of a stack, "layers.2.h"; the others stay
+    Y2 : yield strength of the body, > 0; by default that of the named material
+    by : the thickness to determine: "h", or that of another layer of a stack, "layers.2.h"; the others stay
     mu : >= 0; with mu > 0 the punch slides in full
-    parameters : those of `study.solve` without that thickness, a and D
+    parameters : of `study.solve`, except that thickness, a and D
 
     Returns
     -------
@@ -61,12 +61,12 @@ def h_protect(
     0.0238
     """
     mu = friction(mu)
-    given = {} if Y2 is None else {"Y2": Y2}
+    strength_of_call = {} if Y2 is None else {"Y2": Y2}
     if contact is not None:
         refuse_both("h_protect", contact, parameters | ({} if P is None else {"P": P}))
-        contacts = _under_its_load(of_dataset("h_protect", contact, given, (by,)))
+        contacts = _controlled_by_load(of_dataset("h_protect", contact, strength_of_call, (by,)))
     else:
-        contacts = _of_inputs(P, parameters, given, by)
+        contacts = _of_inputs(P, parameters, strength_of_call, by)
     problem = contacts.problem
     by = "h" if by == "layers.1.h" else by
     if by not in problem.parameters or not (by == "h" or _THICKNESS.fullmatch(by)):
@@ -75,16 +75,20 @@ def h_protect(
         )
     if np.any(is_bare(problem.base)):
         raise StudyError(['h_protect: base = "half_space" has no layer that could protect it'])
-    known = strengths(contacts, own_materials(parameters))["body"]
-    if np.isnan(known[problem.n > 0]).any():
+    strength = strengths(contacts, materials_in(parameters))["body"]
+    if np.isnan(strength[problem.n > 0]).any():
         raise StudyError(["h_protect needs Y2, the yield strength of the body: it is not given, or not known of it"])
     stiff = problem.n == 0
-    found = protection(problem.but(n=np.where(stiff, 1.0, problem.n)), np.where(stiff, np.nan, known), mu, by)
+    protecting = protection(problem.but(n=np.where(stiff, 1.0, problem.n)), np.where(stiff, np.nan, strength), mu, by)
     _, size = contacts.units
-    lacking = found.unsolved & np.isnan(found.protects)
+    lacking = protecting.unsolved & np.isnan(protecting.protects)
     words = {
-        "h_protect": ("thickness above which the body does not yield", found.protects, lacking),
-        "h_yields": ("least thickness at which the body yields and a bare one would not", found.yields, found.unsolved),
+        "h_protect": ("thickness above which the body does not yield", protecting.protects, lacking),
+        "h_yields": (
+            "least thickness at which the body yields and a bare one would not",
+            protecting.yields,
+            protecting.unsolved,
+        ),
     }
     variables = {}
     for name, (long_name, values, unsolved) in words.items():
@@ -114,7 +118,7 @@ def _of_inputs(P: Any, parameters: dict, strengths: dict, by: str) -> Contacts:
     stack = "layers" in parameters or any(name.startswith("layers.") for name in parameters)
     by = "layers.1.h" if stack and by == "h" else by
     if isinstance(parameters.get("layers"), (list, tuple)) and by.startswith("layers."):
-        j = int(by.split(".")[1]) - 1  # what the list says of it does not count
+        j = int(by.split(".")[1]) - 1  # the thickness in the list does not matter
         layers = [
             {key: value for key, value in layer.items() if not (i == j and key == "h")}
             if isinstance(layer, dict)
@@ -125,8 +129,8 @@ def _of_inputs(P: Any, parameters: dict, strengths: dict, by: str) -> Contacts:
     return of_inputs("h_protect", parameters | {"P": P} | strengths, by, 0.01)
 
 
-def _under_its_load(contacts: Contacts) -> Contacts:
-    """The contacts with P given, whatever controlled them."""
+def _controlled_by_load(contacts: Contacts) -> Contacts:
+    """The contacts with the load as their control, whatever controlled them."""
     if contacts.problem.control == "P":
         return contacts
     if "P" not in contacts.dataset:

@@ -1,4 +1,4 @@
-"""The contacts that first yield and the protecting layer are asked about: those of inputs, or of a dataset."""
+"""The contacts of a question on first yield or on the protecting layer: from inputs, or from a dataset."""
 
 from typing import Any
 
@@ -23,7 +23,10 @@ def refuse(who: str, parameters: dict, names: tuple, reason: str) -> None:
 
 
 def of_inputs(who: str, parameters: dict, name: str, value: float) -> Contacts:
-    """The contacts with these inputs and any value of one more, `value` where they have no units. None is solved."""
+    """The contacts with these inputs and an arbitrary value of one more, without solving them.
+
+    value : of the further input where inputs have no units
+    """
     any_value = AnyValue(value, "1 nN" if name == "P" else "1 um")
     contacts = Contacts.of(unsolved(who, parameters | {name: any_value}), who)
     contacts.refuse_without_stresses(who)
@@ -31,8 +34,10 @@ def of_inputs(who: str, parameters: dict, name: str, value: float) -> Contacts:
 
 
 def of_dataset(who: str, contact: Any, strengths: dict[str, Any], left_out: tuple) -> Contacts:
-    """The contacts of a dataset with these `strengths`, in place of its own. left_out : what is looked for, and is no
-    dimension of the answer."""
+    """The contacts of a dataset with these `strengths` in place of its own.
+
+    left_out : the wanted inputs, which are not dimensions of the answer
+    """
     refuse_no_results(contact, who)
     contact = contact.isel({name: 0 for name in left_out if name in contact["status"].dims})
     for name, strength in strengths.items():
@@ -62,15 +67,15 @@ def control_of(contact: xr.Dataset) -> str:
     return next(name for name in CONTROLS if name in contact.coords)
 
 
-def own_materials(parameters: dict) -> dict[str, Material]:
-    """The materials that are given as such, by name."""
-    given = [parameters.get(body) for body in ("punch", "layer", "body")]
+def materials_in(parameters: dict) -> dict[str, Material]:
+    """The materials among the parameters that are `Material` objects, by name."""
+    values = [parameters.get(body) for body in ("punch", "layer", "body")]
     stack = parameters.get("layers", ())
-    given += [layer.get("material") for layer in stack if isinstance(layer, dict)] if isinstance(stack, list) else []
-    several = [one for value in given for one in (value if isinstance(value, (list, tuple)) else [value])]
-    return {one.name: one for one in several if isinstance(one, Material)}
+    values += [layer.get("material") for layer in stack if isinstance(layer, dict)] if isinstance(stack, list) else []
+    several = [material for value in values for material in (value if isinstance(value, (list, tuple)) else [value])]
+    return {material.name: material for material in several if isinstance(material, Material)}
 
 
 def without_control(dataset: xr.Dataset, name: str) -> xr.Dataset:
-    """The dataset without what was looked for."""
+    """The dataset without the wanted input."""
     return dataset.drop_vars([name, f"{name}_spread"], errors="ignore")

@@ -16,7 +16,7 @@ from study.figures import registry
 from study.figures.figure_results import digest, results
 from study.studies.evidence import tradeoff
 from study.studies.evidence.problem_sets import SETS
-from study.studies.evidence.tradeoff import WAYS, errors, measure, taken, timed, with_reference
+from study.studies.evidence.tradeoff import WAYS, errors, measure, selection, timed, with_reference
 from study.studies.evidence.tradeoff_view import DRAWN, MODELS, columns, factors, rows, time_to
 from study.studies.paper import paper_error
 
@@ -55,7 +55,7 @@ def test_reference_leaves_out_what_has_no_solution():
     kept, reference = with_reference(cases | {"nu1": np.array([0.3, 0.3, 0.5, 0.3, 0.3, 0.3])})  # C = 0 at ν = 1/2
     assert kept["P"].tolist() == np.delete(cases["P"], 2).tolist()
     assert np.isfinite([getattr(reference, name) for name in JUDGED]).all()
-    part, of_part = taken(kept, reference, np.array([3, 1]))
+    part, of_part = selection(kept, reference, np.array([3, 1]))
     assert part["P"].tolist() == kept["P"][[3, 1]].tolist() and of_part.a.tolist() == reference.a[[3, 1]].tolist()
 
 

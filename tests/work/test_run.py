@@ -26,7 +26,7 @@ def as_solved(dataset):
     variables, coords = (
         {name: dataset.variables[name] for name in part} for part in (dataset.data_vars, dataset.coords)
     )
-    return DatasetParts(variables, coords, dataset.attrs).settings_apart().dataset()
+    return DatasetParts(variables, coords, dataset.attrs).settings_as_attributes().dataset()
 
 
 @pytest.mark.parametrize("workers", [1, 2, 5])

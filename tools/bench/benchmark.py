@@ -1,12 +1,13 @@
-"""Speed of the solver: cases per second on one thread, and that over the speed of stacked 17 x 17 linear solves.
+"""Speed of the solver: cases per second on one thread, also over the speed of stacked 17 x 17 linear solves.
 
     python tools/bench/benchmark.py [bench.json]
     python tools/bench/benchmark.py --page docs/speed.md
 
-The ratio r takes the machine out: it counts the linear systems that numpy solves in the time of one case, both in
-processor time and by turns. Beside it: time and memory against the number of cases, one and two threads, asperities
-that feel the coated body (benchmark_felt.py), a study of a million cases, BLAS left two threads (benchmark_threads.py
-has more), and at equal error the paper's way and, if they are installed (extra `peers`), other codes.
+The ratio r does not depend on the machine: it counts the linear systems that numpy solves in the time of one case, both
+in processor time and by turns. Further measurements: time and memory against the number of cases, one and two threads,
+asperities that feel the coated body (benchmark_felt.py), a study of a million cases, BLAS with two threads
+(benchmark_threads.py has more), and at equal error the paper's method and, if they are installed (extra `peers`), other
+codes.
 """
 
 import argparse
@@ -35,17 +36,17 @@ from study.studies.evidence.problem_sets import SETS  # noqa: E402
 from study.studies.evidence.tradeoff import WAYS, measured, paper_way, taken, with_reference  # noqa: E402
 
 SIZES = (1_000, 10_000, 100_000, 1_000_000)
-#: From this size on the time per case is called flat if it is within FLAT of its mean.
+#: From this size on the time per case counts as flat if it is within FLAT of its mean.
 LARGE, FLAT = 10_000, 0.15
 BLOCK = 8000
-#: k, intervals, cases of the paper's way; of k = 5, 10, 20, 30, 35, 40 that with which all end at least cost.
+#: k, intervals, cases of the paper's method. Of k = 5, 10, 20, 30, 35, 40 the one with which all cases end fastest.
 PAPERS = ((5, 20, 200), (5, 45, 200), (10, 80, 100), (20, 130, 50), (30, 390, 20), (30, 640, 10), (35, 1100, 5))
 PAPERS_CASES = 1000
 
 
 def speed() -> list[dict]:
-    """Cases per second of every kind of case at three tolerances, and well-conditioned systems of 17 unknowns solved by
-    stacked numpy.linalg.solve."""
+    """Cases per second of every kind of case at three tolerances, and systems per second of stacked numpy.linalg.solve,
+    well-conditioned and of 17 unknowns."""
 
     def row(cases):
         """One row of a problem, by turns with the linear systems."""
@@ -70,8 +71,8 @@ def layered_over_thin(rows: list[dict], micro: str, rtol: float = 1e-6) -> float
 
 
 def sizes(count=SIZES) -> list[dict]:
-    """Processor time of one call with ever more thin rough cases, the shortest of several between those of the other
-    sizes, and the largest memory of the process so far (must come early)."""
+    """Processor time of one call with ever more thin rough cases, the shortest of several, in turns with the other
+    sizes; and the largest memory of the process so far (this must come early)."""
     times, peak = {size: [] for size in count}, {}
     for _ in range(REPEATS):
         for size in count:
@@ -108,9 +109,9 @@ def threads() -> list[dict]:
 
 
 def papers_way() -> list[dict]:
-    """The paper's way on its own cases on the layer, and Newton with the loosest rtol that is at least as accurate.
+    """The paper's method on its own cases on the layer, and Newton with the loosest rtol that is at least as accurate.
 
-    Processor time per case, error of 95 % of the cases; a larger batch would lower neither's time per case by much.
+    Processor time per case, error of 95 % of the cases; a larger batch would not lower the time per case much.
     """
     cases, reference = with_reference(SETS["paper, layer"](PAPERS_CASES, 1))
     newton = [measured(WAYS["newton, rtol"], rtol, cases, reference, REPEATS) for rtol in WAYS["newton, rtol"].settings]
@@ -180,7 +181,7 @@ def report(result: dict) -> None:
 
 
 def main(arguments: list[str]) -> None:
-    """Print the tables and write all as JSON, or measure what docs/speed.md says and write it."""
+    """Print the tables and write all numbers as JSON; or measure the numbers of docs/speed.md and write the page."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("json", nargs="?", type=Path, help="file for all figures of the full benchmark")
     parser.add_argument("--page", type=Path, help="write docs/speed.md there in place of it, in some minutes")

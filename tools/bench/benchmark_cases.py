@@ -1,4 +1,4 @@
-"""What the benchmarks share: cases, and how their time is taken."""
+"""Shared by the benchmarks: cases, and the measurement of times."""
 
 import os
 import time
@@ -61,8 +61,8 @@ def processor_seconds(action) -> float:
 
 
 def by_turns(*actions) -> np.ndarray:
-    """Shortest processor time of each action, of turns of some runs in a row, so that each finds its own cache: at
-    least REPEATS turns, and a second in all."""
+    """Shortest processor time of each action. A turn has some runs in a row, so that each action finds its own cache;
+    there are at least REPEATS turns, and a second in all."""
     times = np.empty((0, len(actions), 1 + REPEATS))
     while len(times) < REPEATS or times.sum() < 1.0:
         turn = [[processor_seconds(action) for _ in range(1 + REPEATS)] for action in actions]
@@ -82,13 +82,13 @@ def seconds(action) -> float:
 
 
 def systems(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """So many well-conditioned systems of ORDER unknowns: matrices and right-hand sides."""
+    """`count` well-conditioned systems of ORDER unknowns: matrices and right-hand sides."""
     matrices = np.random.default_rng(0).standard_normal((count, ORDER, ORDER)) + ORDER * np.eye(ORDER)
     return matrices, np.random.default_rng(1).standard_normal((count, ORDER, 1))
 
 
 def rated(cases: Problem) -> dict:
-    """Cases per second of one call, and that over the systems per second of stacked numpy.linalg.solve, by turns."""
+    """Cases per second of one call, also over the systems per second of stacked numpy.linalg.solve, by turns."""
     matrices, right = systems(SYSTEMS)
     times = by_turns(lambda: solve(cases, X), lambda: np.linalg.solve(matrices, right))
     rate, rate_of_systems = np.array([len(cases), SYSTEMS]) / times
@@ -97,7 +97,7 @@ def rated(cases: Problem) -> dict:
 
 @contextmanager
 def on_path(path: str):
-    """A path of the solver while it is open: "numpy", or a variant of the compiled core."""
+    """Context manager: the solver takes this path, "numpy" or a variant of the compiled core."""
     before = os.environ.get(VARIABLE, "")
     os.environ[VARIABLE] = path
     try:

@@ -1,9 +1,9 @@
-"""Worker processes of our own beside those of a local dask cluster, in alternation, on two workers:
+"""Our worker processes compared with those of a local dask cluster, in turns, with two workers:
 
     python tools/bench/benchmark_engine.py [REPEATS [THOUSANDS]]
 
-For each, wall and processor time of a run of so many thousand thin rough cases, 200 by default, with the start of the
-workers. Each measurement is a process of its own. The module `study.work.processes` says what was found.
+It prints for each the wall and processor time of a run of so many thousand thin rough cases, 200 by default, with the
+start of the workers. Each measurement has a process of its own. The module `study.work.processes` has the results.
 """
 
 import os
@@ -27,7 +27,7 @@ def local_cluster():
     import dask
     from dask.distributed import LocalCluster
 
-    # what dask sets makes malloc give memory back after each block, which doubles the processor time
+    # by dask's settings malloc would give memory back after each block, which doubles the processor time
     dask.config.set({"distributed.nanny.pre-spawn-environ": {}, "distributed.worker.profile.enabled": False})
     options = {"n_workers": WORKERS, "threads_per_worker": 1, "memory_limit": 0, "dashboard_address": ":0"}
     with LocalCluster(**options) as cluster:
@@ -38,7 +38,7 @@ ENGINES = {"ours": nullcontext, "dask": local_cluster}
 
 
 def measure(name: str, thousands: int) -> str:
-    """What is said of an engine, in this process."""
+    """The line about an engine, measured in this process."""
     text = STUDY.replace("num = 100,", f"num = {thousands // 10},")
     definition = from_tables(tomllib.loads(text), "many", text, "many")
     start = time.perf_counter()

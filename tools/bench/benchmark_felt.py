@@ -1,10 +1,10 @@
-"""What asperities on the coated body cost beside those on a half-space of the layer's material:
+"""The cost of asperities on the coated body, compared with asperities on a half-space of the layer's material:
 
     python tools/bench/benchmark_felt.py
 
-Processor times by turns, on one thread. A family is one body with one pitch over h; its law is computed once and kept.
-Families are new in every turn: their N̄ differ by 1e-4. On the half-space `model_error` takes the family as well, at one
-pressure; so `layer_ms` itself bounds what a new family costs.
+Processor times by turns, on one thread. A family is one body with one pitch over h; its law is computed once and
+stored. Families are new in every turn: their N̄ differ by 1e-4. On the half-space `model_error` needs the family as
+well, at one pressure; so `layer_ms` itself is the bound for the cost of a new family.
 """
 
 import os
@@ -20,17 +20,18 @@ from benchmark_cases import REPEATS, X, by_turns, processor_seconds  # noqa: E40
 
 from solver import Problem, Status, solve  # noqa: E402
 
-#: What is asked for: a batch of one family over the same on a half-space; milliseconds more of a lone contact of a new
-#: family; milliseconds of one of many contacts of as many families.
+#: Required: the time of a batch of one family over the same on a half-space; the additional milliseconds of a lone
+#: contact of a new family; the milliseconds of one of many contacts of as many families.
 BARS = {"batch": 1.2, "lone": 60.0, "many": 15.0}
 BATCH, LONE, MANY = 10_000, 24, 1000
 LAWS = ("disc_cell", "square_lattice")
-#: Each turn takes the next one: N̄ times 1 + _NEW times it. Families are told apart by their pitch to 1e-9 or so.
+#: Each turn takes the next number, and N̄ times 1 + _NEW times the number. Families with pitches that differ by more
+#: than about 1e-9 are different.
 _TURN, _NEW = count(), 1e-4
 
 
 def contacts(size: int, families: int, micro: str, on: str) -> Problem:
-    """Random rough contacts on bonded layers, so many families over their pitches, 1.05 to 16 h; an elastic punch."""
+    """Random rough contacts on bonded layers under an elastic punch, of `families` pitches, 1.05 to 16 h."""
     random = np.random.default_rng(3)
 
     def between(low, high, number):
@@ -45,7 +46,7 @@ def contacts(size: int, families: int, micro: str, on: str) -> Problem:
 
 
 def batch(micro: str) -> dict:
-    """A batch of one family, whose law is computed in its first turn, over the same on a half-space."""
+    """The time of a batch of one family, whose law is computed in the first turn, over the same on a half-space."""
     problems = [contacts(BATCH, 1, micro, on) for on in ("layer", "half_space")]
     shares = [float(np.mean(solve(one, X).status == Status.CONVERGED)) for one in problems]
     times = by_turns(*(lambda one=one: solve(one, X) for one in problems))
@@ -66,7 +67,8 @@ def new_families(size: int, micro: str, on: str) -> np.ndarray:
 
 
 def lone(micro: str) -> dict:
-    """What a contact of a new family takes more than on a half-space: the largest, and the mean over pitches."""
+    """The additional time of a contact of a new family over one on a half-space: the largest, and the mean over
+    pitches."""
     layer, bare = (new_families(LONE, micro, on) for on in ("layer", "half_space"))
     more = layer - bare
     row = {
@@ -92,7 +94,7 @@ def many(micro: str) -> dict:
 
 
 def felt() -> Iterator[dict]:
-    """A row for each way and law."""
+    """A row for each of the three measurements and each law."""
     return (way(micro) for way in (batch, lone, many) for micro in LAWS)
 
 

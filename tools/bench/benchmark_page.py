@@ -1,4 +1,4 @@
-"""docs/speed.md as the benchmark writes it: measured by `python tools/bench/benchmark.py --page docs/speed.md`."""
+"""The page docs/speed.md, which `python tools/bench/benchmark.py --page docs/speed.md` measures and writes."""
 
 import os
 import platform
@@ -92,7 +92,7 @@ each code, and against rtol = 1e-12: they say how well a code solves its own mod
 
 
 def measured_page() -> str:
-    """The page, with all that it says measured now."""
+    """The page, with all its numbers measured now."""
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
     run = whole_run()  # must come first
     return PAGE.format(
@@ -118,13 +118,13 @@ def measured_page() -> str:
 
 
 def printed(name: str) -> str:
-    """The tables that a script of tools prints, such as that of `make start`."""
+    """The tables that a script of tools prints, such as those of `make start`."""
     script = Path(__file__).parents[1] / name
     return subprocess.run([sys.executable, str(script)], check=True, capture_output=True, text=True).stdout.strip()
 
 
 def by_columns(rows: list[dict]) -> list[list[dict]]:
-    """The rows in groups of the same columns."""
+    """The rows in groups with the same columns."""
     groups = {}
     for row in rows:
         groups.setdefault(tuple(row), []).append(row)

@@ -1,9 +1,9 @@
-"""A load axis as a path: what better first guesses could save, and how good those from other loads are.
+"""A load axis as a path: the possible saving by better first guesses, and the errors of guesses from other loads.
 
-The cases of a parameter study begin at their own solution but for a relative error of `SIZES`: what this saves is the
-most that any prediction of such an error can. Beside it stands the error of a cubic in ln P through every fourth load,
-by which three quarters of the cases could be predicted in one batch, and that of a parabola through the three loads
-before, which leaves batches of as many cases as there are paths.
+The cases of a parameter study start from their own solutions with a relative error of `SIZES`: no prediction with such
+an error can save more. The second table has the error of a cubic in ln P through every fourth load, which could predict
+three quarters of the cases in one batch, and that of a parabola through the three loads before, which allows only
+batches of as many cases as there are paths.
 """
 
 from contextlib import contextmanager
@@ -26,8 +26,8 @@ NODES = 16  # of the mesh on which solutions are compared
 
 @on_path("numpy")
 def saved() -> list[dict]:
-    """Processor time of a study of 8,000 cases whose first guesses have an error, over that of the solver as it is, all
-    by numpy, whose guesses can be replaced."""
+    """Processor time of a study of 8,000 cases whose first guesses have an error, over that of the unchanged solver;
+    all by numpy, since its guesses can be replaced."""
     rows = []
     for base in ("thin_layer", "layered"):
         cases, known = load_axis(base), {}
@@ -46,7 +46,8 @@ def saved() -> list[dict]:
 
 @contextmanager
 def started(known: dict, size: float | None = None):
-    """Where the first mesh of a stack begins: as ever, which fills `known` with solutions, or `size` beside these."""
+    """The start on the first mesh of a stack: the usual one, which fills `known` with solutions, or a distance of
+    `size` from these."""
     real, solve_on = adaptive.first_guess, adaptive.solve_on
     random = np.random.default_rng(0)
 

@@ -2,13 +2,14 @@
 
     python tools/bench/benchmark_peers.py
 
-They solve on a square grid with a free (not periodic) kernel, three contact radii wide for the smooth sphere. Beside
-them stands this solver on the exact layer, bonded to a half-space of its own material: a Hertz contact that it does not
-know to be one. Its basis holds the pressure of Hertz, so that its error is that of rounding.
+The other codes solve on a square grid with a free (not periodic) kernel, three contact radii wide for the smooth
+sphere. This solver takes the exact layer, bonded to a half-space of the same material: a Hertz contact that it does not
+recognize. Its basis contains the pressure of Hertz, so that its only error is rounding.
 
-The rough sphere has spherical asperities on a square lattice, of a pitch of a tenth of the contact radius. They resolve
-each; this solver has a micro law in their place. So its D is that of another model, and each code is judged by its own
-finest grid, this one by its smallest rtol: what is compared is the time that its own answer takes to some error.
+The rough sphere has spherical asperities on a square lattice, with a pitch of a tenth of the contact radius. The other
+codes resolve each of them; this solver replaces them by a micro law. Its D is that of another model, so each code is
+judged by its own finest grid, and this one by its smallest rtol: the comparison is of times to reach some error of its
+own answer.
 """
 
 from importlib.util import find_spec
@@ -25,7 +26,7 @@ GRIDS = (16, 32, 64, 128)
 BATCH = 1000
 #: Pitch and radius of the asperities, in R: at this load the contact radius is about 0.022.
 PITCH, RA = 0.002, 0.004
-#: Width of its grid, whole pitches, and points in a pitch: the last ones are the finest grid.
+#: Width of the grid for the rough sphere, whole pitches; and points per pitch, from the coarsest to the finest grid.
 ROUGH_WIDTH, IN_A_PITCH = 32 * PITCH, (3, 4, 6, 8, 12)
 
 
@@ -35,7 +36,7 @@ def smooth(x: np.ndarray) -> np.ndarray:
 
 
 def rough(x: np.ndarray) -> np.ndarray:
-    """That of the sphere with an asperity in its apex."""
+    """Depth of the rough sphere, with an asperity at its apex, at the same points."""
     from_apex = x - PITCH * np.round(x / PITCH)
     return smooth(x) + smooth(from_apex) / RA
 
@@ -118,7 +119,7 @@ def peers(seconds) -> list[dict]:
 
 
 def _timed(action) -> tuple[float, float]:
-    """What it returns, and the seconds of one run: those of the others take up to minutes."""
+    """The result of an action, and the seconds of a single run: runs of the other codes take up to minutes."""
     start = perf_counter()
     found = action()
     return found, perf_counter() - start

@@ -1,6 +1,6 @@
-"""What smooth thin layers gain by a solver of their own over Newton's method: `python tools/bench/benchmark_smooth.py`.
+"""The gain of the special solver for smooth thin layers over Newton's method: `python tools/bench/benchmark_smooth.py`.
 
-Shortest processor times by turns, of a batch and of cases solved one by one.
+It prints shortest processor times by turns, of a batch and of cases solved one by one.
 """
 
 import numpy as np

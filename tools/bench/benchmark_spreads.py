@@ -1,8 +1,8 @@
-"""Spreads: processor time of 4,000 layered contacts with seven of them, against the same contacts without.
+"""Spreads: processor time of 4,000 layered contacts with seven of them, over that of the same contacts without.
 
 python tools/bench/benchmark_spreads.py [CASES]
 
-dP/dD is apart: its derivatives take a second linear system at two states beside each solution, here and in
+dP/dD is a separate matter: its derivatives take a second linear system at two states near each solution, here and in
 `solver.sensitivities`; the last line solves without them.
 """
 

@@ -1,5 +1,5 @@
-"""A study of a million thin rough cases with profiles by `python -m study run`, from file to dataset; and what the
-solver alone takes for such cases on two threads and on one."""
+"""A study of a million thin rough cases with profiles by `python -m study run`, from file to dataset; and the time of
+the solver alone for such cases on two threads and on one."""
 
 import resource
 import subprocess
@@ -41,8 +41,8 @@ WORKERS, BLOCK, DRAWN, REPEATS = 2, 8000, 64_000, 3
 
 
 def whole_run() -> dict:
-    """Wall time of the run, memory of the largest of its 1 + WORKERS processes, and size of the dataset. Must come
-    first: the largest memory of a child begins with what this process has."""
+    """Wall time of the run, memory of the largest of its 1 + WORKERS processes, and size of the dataset. It must come
+    first: the measured memory of a child starts from that of this process."""
     with TemporaryDirectory() as folder:
         path = Path(folder, "million.toml")
         path.write_text(STUDY, encoding="utf-8")
@@ -57,7 +57,7 @@ def whole_run() -> dict:
 
 
 def beside_the_solver(row: dict) -> dict:
-    """The row of a run, with what the solver alone takes for the same cases (from DRAWN of them), and its share."""
+    """The row of a run, with the time of the solver alone for the same cases (from DRAWN of them), and its share."""
     drawn = np.random.default_rng(0).permutation(row["cases"])[:DRAWN]
     blocks = [parcel(DEFINITION, drawn[i : i + BLOCK]) for i in range(0, DRAWN, BLOCK)]
     problems = [Problem.of(**block.parameters) for block in blocks]

@@ -1,11 +1,11 @@
-"""What one BLAS thread is worth: processor and wall time of calls on the exact layer, alone and beside busy processes.
+"""The effect of one BLAS thread: processor and wall time of calls on the exact layer, alone and beside busy processes.
 
     python tools/bench/benchmark_threads.py
     python tools/bench/benchmark_threads.py core
 
-Each row is a process of its own, whose BLAS is told by OPENBLAS_NUM_THREADS to have so many threads. "free" takes the
-limit of the solver away (solver/numerics/threads.py), "limited" is the solver as it is. A number above that of the
-processors stands for a machine with more of them.
+Each row is a process of its own, whose OPENBLAS_NUM_THREADS sets the number of BLAS threads. "free" takes the limit of
+the solver away (solver/numerics/threads.py), "limited" is the solver as it is. More threads than processors stand for a
+machine with more processors.
 """
 
 import json
@@ -23,7 +23,7 @@ BUSY = "while True: pass"
 
 
 def random_cases() -> dict:
-    """8,000 random cases of the exact layer, as `study.solve` takes them."""
+    """8,000 random cases of the exact layer, as arguments of `study.solve`."""
     import xarray as xr
     from solver_cases import random_cases
 
@@ -32,7 +32,7 @@ def random_cases() -> dict:
 
 
 def a_map() -> dict:
-    """A map of 25,000 cases, as `study.solve` takes it."""
+    """A map of 25,000 cases, as arguments of `study.solve`."""
     import numpy as np
 
     axes = {"P": np.geomspace(1e-7, 1e-3, 50), "h": np.geomspace(1e-3, 0.1, 10), "n": np.linspace(0.1, 0.9, 5)}
@@ -52,12 +52,14 @@ def child(grid: str, free: bool) -> None:
     study.solve(P=1e-5, h=[0.01, 0.02], n=0.5, Nbar=250000, Ra=0.004)
     parameters = GRIDS[grid]()
     wall, processor = time.perf_counter(), time.process_time()
-    study.solve(**parameters, profiles=False, workers=1)  # the time of this process is all there is
+    study.solve(
+        **parameters, profiles=False, workers=1
+    )  # no other process computes, so that the time of this one is complete
     print(json.dumps([time.process_time() - processor, time.perf_counter() - wall]))
 
 
 class _Nothing:
-    """In place of the limit."""
+    """A limit that does nothing, in place of the solver's."""
 
     def __enter__(self):
         return None
@@ -74,7 +76,7 @@ NOTHING = _Nothing()
 
 @contextmanager
 def busy(count: int):
-    """So many processes that keep a processor busy each."""
+    """Context manager: `count` processes, each of which keeps a processor busy."""
     others = [subprocess.Popen([sys.executable, "-c", BUSY]) for _ in range(count)]
     try:
         yield
@@ -93,8 +95,8 @@ def measured(grid: str, threads: int, free: bool) -> tuple[float, float]:
 
 
 def blas_threads(grids=tuple(GRIDS), numbers=(2, 4, 8)) -> list[dict]:
-    """A row for each way, alone and with a busy process for each processor; processor time also over that of one
-    forced thread in the same company."""
+    """A row for each setting, alone and with a busy process for each processor; processor time also over that of one
+    forced thread under the same load."""
     rows = []
     for grid, others in product(grids, (0, os.cpu_count())):
         with busy(others):
@@ -108,11 +110,11 @@ def blas_threads(grids=tuple(GRIDS), numbers=(2, 4, 8)) -> list[dict]:
 
 
 def core_threads() -> list[dict]:
-    """A row for each base: what two threads of one process are worth on the compiled core.
+    """A row for each base: the gain by two threads of one process on the compiled core.
 
-    Of each thread is measured how long it computed, waited for a processor, and was blocked, by others that hold
-    Python's lock. So the bound of the gain on idle processors, 2 computed/(computed + blocked), can be measured on a
-    busy machine too, where it comes out too low. Linux only.
+    The times of each thread are measured: computing, waiting for a processor, and blocked by others that hold Python's
+    lock. The bound of the gain on idle processors, 2 computed/(computed + blocked), can therefore be measured on a busy
+    machine too, where it comes out too low. Linux only.
     """
     import tomllib
 
@@ -138,7 +140,7 @@ def core_threads() -> list[dict]:
 
 
 def _thread_times(compute, blocks: list) -> list[tuple[int, int, int]]:
-    """Of two threads that share the blocks: ns in which each computed, waited for a processor, and was there."""
+    """For two threads that share the blocks: ns in which each computed, waited for a processor, and existed."""
     waiting, times = deque(blocks), []
 
     def spent() -> list[int]:

@@ -1,7 +1,7 @@
-"""What people run: four workloads side by side, the latency of small batches, the second core, the floor of flops.
+"""Typical work: four workloads, the latency of small batches, the second core, and the lower bound from flops.
 
-Times are processor times, the shortest of several by turns with stacked `numpy.linalg.solve` of 17 unknowns, if nothing
-else is said.
+Unless stated otherwise, times are processor times, the shortest of several by turns with stacked `numpy.linalg.solve`
+of 17 unknowns.
 """
 
 import time
@@ -21,8 +21,8 @@ from solver.rough import newton, start
 ROUGH = {"Nbar": 250_000.0, "Ra": 0.004}
 #: The core with the widest vectors, if there is one, and numpy.
 PATHS = (*available()[:1], "numpy")
-SINGLE = 1000  # single systems, in the time of which latencies are counted
-#: Of the second core: 60,000 layered cases.
+SINGLE = 1000  # latencies are given over the time of so many single systems
+#: The grid for the second core: 60,000 layered cases.
 GRID = {
     "P": np.geomspace(1e-6, 1e-4, 30),
     "h": np.geomspace(5e-3, 0.1, 20),
@@ -33,7 +33,8 @@ GRID = {
 
 
 def load_axis(base: str, loads: int = 20, size: int = 8000) -> Problem:
-    """A parameter study: so many loads over four decades, of layers of 5 stiffnesses and ever more thicknesses."""
+    """A parameter study: `loads` loads over four decades, layers of 5 stiffnesses, and thicknesses to make `size`
+    cases."""
     axes = np.geomspace(5e-3, 0.1, size // loads // 5), np.linspace(0.1, 0.9, 5), np.geomspace(1e-7, 1e-3, loads)
     h, n, P = (v.ravel() for v in np.meshgrid(*axes, indexing="ij"))
     return Problem.of(P=P, h=h, n=n, base=base, **ROUGH)
@@ -50,8 +51,8 @@ WORKLOADS = {
 
 
 def workloads() -> list[dict]:
-    """A row for each on each path: cases per second, r, and the time over that of numpy's flops at the rate of a matrix
-    product."""
+    """A row for each workload on each path: cases per second, r, and the time over that of numpy's flops at the rate of
+    a matrix product."""
     rows, per_flop = [], 1 / flops_per_second()
     for name, make in WORKLOADS.items():
         cases = make()
@@ -68,14 +69,15 @@ def workloads() -> list[dict]:
 
 
 def flops_per_second() -> float:
-    """Of one thread in the product of two matrices of 512 rows."""
+    """Flops per second of one thread in the product of two matrices of 512 rows."""
     matrix = np.random.default_rng(0).standard_normal((512, 512))
     return 2 * 512**3 / by_turns(lambda: matrix @ matrix)[0]
 
 
 @contextmanager
 def counted():
-    """A list of the flops, while it is open, of forming layered matrices from the few nodes and of eliminating all."""
+    """Context manager: a list that collects the flops of forming layered matrices from few nodes, and of
+    eliminating."""
     flops, form, eliminate = [], hankel.rows_of, newton.solve_stack
 
     def forming(parts, mesh):
@@ -95,7 +97,7 @@ def counted():
 
 
 def latency() -> list[dict]:
-    """Milliseconds of a call with 1, 10 and 100 cases, and that over SINGLE single solutions of 17 unknowns."""
+    """Milliseconds of a call with 1, 10 and 100 cases, also over SINGLE single solutions of 17 unknowns."""
     (matrix,), (right,) = systems(1)
     ordinary = problem("disc_cell", "layered", 1e-6, 100)
     rows, kinds = [], {"ordinary layered": ordinary, "random coatings": coatings(100)}
@@ -116,7 +118,7 @@ def latency() -> list[dict]:
 
 
 def labelled(part: Problem) -> dict:
-    """The cases as `study.solve` takes them."""
+    """The cases as arguments of `study.solve`."""
     names = ("h", "n", "nu1", "nu2", "bonding", "Ra", "Nbar")
     return {"P": xr.DataArray(part.value, dims="case")} | {
         name: xr.DataArray(getattr(part, name), dims="case") for name in names
@@ -124,8 +126,9 @@ def labelled(part: Problem) -> dict:
 
 
 def second_core() -> list[dict]:
-    """Wall and processor seconds of the calling process for the grid: alone, with the processes that it has to start,
-    and with those that wait from the call before. Wall over processor time of the first says how idle it is."""
+    """Wall and processor seconds of the calling process for the grid: alone, with processes that it must start, and
+    with processes that wait from the call before. Wall over processor time of the first tells how idle the machine
+    is."""
     study.solve(P=1e-5, h=0.02, n=0.5, **ROUGH)
     rows, reference = [], None
     for name, workers in {"one": 1, "two, started": 2, "two, waiting": 2, "one again": 1, "two again": 2}.items():

@@ -1,13 +1,13 @@
-"""Whether converged answers keep their tolerance on both paths: `python tools/errors/contract.py [SIZE [SEED]]`.
+"""Do converged answers keep their tolerance on both paths? `python tools/errors/contract.py [SIZE [SEED]]`.
 
 SIZE random contacts (20,000 by default) of the kinds that the compiled core takes (tests/compiled/both_paths.py) are
-solved at each of the tolerances RTOL by numpy and by the core, and at FINE by numpy, which is the truth. Some five
-minutes. A line for each path and tolerance:
+solved at each of the tolerances RTOL by numpy and by the core, and at FINE by numpy, which is the truth. It takes some
+five minutes, and prints a line for each path and tolerance:
 
 - judged: converged answers whose truth has an `error` below a tenth of the tolerance;
-- beyond rtol: of these, how many are farther from the truth than rtol, and the largest distance over rtol;
-- above error: how many are farther from the truth than their `error`, and the largest distance over it;
-- by base, how many are beyond rtol.
+- beyond rtol: the number of these that are farther from the truth than rtol, and the largest distance over rtol;
+- above error: the number of these that are farther from the truth than their `error`, and the largest distance over it;
+- for each base, the number of those beyond rtol.
 """
 
 import sys
@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.append(str(Path(__file__).parents[2] / "tests/compiled"))  # pytest has it there already
+sys.path.append(str(Path(__file__).parents[2] / "tests/compiled"))  # under pytest it is there already
 from both_paths import by, contacts  # noqa: E402
 
 from solver import Problem, Solution, Status  # noqa: E402

@@ -1,12 +1,12 @@
 """Does `study.design` find every solution? `python tools/errors/designs.py [TARGETS [SEED]]`, some minutes.
 
-Of random layered contacts, smooth and rough, a result is wanted by one input, TARGETS times in all (10,000), with what
-`study.design` searches with. Four tenths are thicknesses of layers that slide, over which p(0) and p_max turn most. The
-wanted value lies between the least and the largest of 400 points over the bounds, or up to a tenth of the range of its
-logarithm beyond these. Printed are for each input:
+The search of `study.design` varies one input of random layered contacts, smooth and rough, until a result has a wanted
+value, TARGETS times in all (10,000). In four tenths of them the input is the thickness of a layer that slides, over
+which p(0) and p_max turn most. The wanted value lies between the smallest and the largest of 400 points over the
+bounds, or up to a tenth of the range of its logarithm outside them. It prints for each input:
 
-- targets, and how many have no, one, several solutions;
-- differ: those where the number of solutions is not that of the crossings of the 400 points;
+- targets, and the numbers of those with no, one, several solutions;
+- differ: targets whose number of solutions is not that of the crossings of the 400 points;
 - worst: the largest relative distance of the result, solved again, from the wanted value, over rtol;
 
 and the processor time of a design of docs/design.md.
@@ -24,7 +24,7 @@ from study.inverse.design_curves import crossings, scanned
 POINTS, RTOL, EACH = 400, 1e-6, 20
 TARGETS = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
 LAWS = ("smooth", "disc_cell", "hex_lattice", "normal_heights")
-#: Input that is looked for -> its bounds.
+#: Input that is varied -> its bounds.
 BY = {"h": (1e-4, 1.0), "n": (1e-3, 1e2), "P": (1e-8, 1e-3), "D": (1e-6, 1e-2), "a": (1e-3, 0.1), "Nbar": (1e3, 1e7),
       "Ra": (1e-4, 1e-1), "nu1": (0.0, 0.49), "m": (1e-3, 10.0)}  # fmt: skip
 
@@ -51,7 +51,8 @@ def contacts(size: int, random: np.random.Generator) -> dict[str, np.ndarray]:
 
 
 def tried(name: str, target: str, size: int, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of EACH targets of each of `size` contacts: number of solutions, that of the 400 points, worst miss over rtol."""
+    """For EACH targets of each of `size` contacts: number of solutions, that of the 400 points, worst miss over
+    rtol."""
     control = name if name in ("P", "a", "D") else "P"
     given = contacts(size, random) | {control: np.exp(random.uniform(np.log(1e-7), np.log(1e-4), size))}
     given["bonding"][:] = "frictionless" if name == "h" else given["bonding"]
@@ -83,7 +84,7 @@ def tried(name: str, target: str, size: int, random: np.random.Generator) -> tup
 
 def main(total: int = 10_000, seed: int = 1) -> None:
     random, begun, everything = np.random.default_rng(seed), time.process_time(), []
-    size = -(-total // (EACH * 64))  # some of the 66 do not count: flat curves
+    size = -(-total // (EACH * 64))  # 64 instead of 66, since flat curves do not count
     for name in BY:
         control = name if name in ("P", "a", "D") else "P"
         parts = [

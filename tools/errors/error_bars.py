@@ -1,14 +1,15 @@
-"""What the factors in solver/rough/error.py are worth: `python tools/errors/error_bars.py [SIZE]`, a minute.
+"""The effect of the factors in solver/rough/error.py: `python tools/errors/error_bars.py [SIZE]`, a minute.
 
-SIZE random cases (2,000 by default) of each law on each base, far beyond any scene, are solved on few nodes and on 96,
-which are the truth. Of few cases none may be left to judge; shares of none are nan. A line for each number of nodes:
+SIZE random cases (2,000 by default) of each law on each base, far outside real contacts, are solved on few nodes, and
+on 96 nodes, which is the truth. If SIZE is small, no case may remain; shares are then nan. It prints a line for each
+number of nodes:
 
-- cases: those whose error on 96 nodes is below a tenth of what is judged;
-- blind: of cases whose estimate is multiplied by _BLIND, how many have a truth above the estimate without that factor,
-  and how many above the estimate with it;
-- ring: of cases whose truth is above the estimate, where λ has risen before the first node: how many there are, and
-  the largest error of Ar/An over λ s²/2 at that node, in units of Ar/An;
-- above: how many have a truth above their error bar, and by which factor at most.
+- cases: those whose error on 96 nodes is below a tenth of the judged error;
+- blind: of cases whose estimate is multiplied by _BLIND, the share whose truth is above the estimate without that
+  factor, and the share above the estimate with it;
+- ring: the number of cases whose truth is above the estimate, and whose λ has risen before the first node; and their
+  largest error of Ar/An over λ s²/2 at that node, in units of Ar/An;
+- above: the share of cases whose truth is above the error bar, and the largest factor.
 """
 
 import sys
@@ -16,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.append(str(Path(__file__).parents[2] / "tests/shared"))  # pytest has it there already
+sys.path.append(str(Path(__file__).parents[2] / "tests/shared"))  # under pytest it is there already
 from solver_cases import EXTREMES, ROUGH_KINDS, random_cases  # noqa: E402
 
 from solver import Problem

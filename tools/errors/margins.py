@@ -1,8 +1,8 @@
-"""How far the bounds of `base="auto"` are from the errors they bound: `python tools/errors/margins.py [SIZE [SEED]]`.
+"""The bounds of `base="auto"` compared with the true errors: `python tools/errors/margins.py [SIZE [SEED]]`.
 
-Random cases (1,500 of each control by default, some minutes) are solved on the exact layer and on each cheap model. A
-line for each control and model: the number of cases whose bound is between 1e-4 and 0.3, and the largest and the median
-ratio of the true error to the bound. Below 1 the bound holds; solver/models/auto.py has the factors.
+Random cases (1,500 of each control by default, some minutes) are solved on the exact layer and on each cheap model. It
+prints a line for each control and model: the number of cases whose bound is between 1e-4 and 0.3, and the largest and
+the median ratio of the true error to the bound. Below 1 the bound holds; solver/models/auto.py has the factors.
 """
 
 import sys
@@ -35,7 +35,7 @@ def sample(control: str, size: int, seed: int) -> dict:
 
 
 def ratios(control: str, size: int, seed: int) -> dict:
-    """Model -> true error over bound, of the cases whose bound is between 1e-4 and 0.3."""
+    """Model -> true error over bound, for the cases whose bound is between 1e-4 and 0.3."""
     np.seterr(all="ignore")  # cases that a model cannot have
     given, found = sample(control, size, seed), {}
     exact = solve(Problem.of(**given, base="layered"))

@@ -1,11 +1,11 @@
-"""Spreads of results, propagated to first order, beside those of random draws of the inputs, for six real systems.
+"""Spreads of results, propagated to first order, compared with random draws of the inputs, for six real systems.
 
 python tools/errors/monte_carlo.py [DRAWS]      10,000 draws of each system
 
-The draws are normal, made to have exactly the means, the spreads and no correlation: the deviation of a nearly linear
-result is then known to far better than the 0.7 % of 10,000 plain draws. The spreads are those of somebody who has
-measured the parts: 1 to 10 %. Wider ones bend what first order takes for straight: a rubber of E ± 23 %, and the
-DLC a-C:H of study.materials, 200 ± 35 GPa, are last.
+The draws are normal, transformed to have exactly the means, the spreads and no correlation: the deviation of a nearly
+linear result is then known far better than to the 0.7 % of 10,000 plain draws. The spreads are those of measured parts,
+1 to 10 %. Results are not linear over wider spreads: the last systems are a rubber of E ± 23 %, and the DLC a-C:H of
+study.materials, 200 ± 35 GPa.
 """
 
 import sys
@@ -50,7 +50,7 @@ WIDE = {
 def compared(given: dict, draws: int, seed: int = 0) -> dict[str, tuple[float, float]]:
     """Result -> its spread to first order and the deviation of its draws, both over its value."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # of validity, which is not the question here
+        warnings.simplefilter("ignore", UserWarning)  # about validity, which does not matter here
         found = study.solve(**given, x=2, profiles=False)
         sampled = study.solve(**drawn(given, draws, seed), x=2, profiles=False)
     assert found.status == 0 and (sampled.status == 0).all()

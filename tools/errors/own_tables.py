@@ -1,13 +1,13 @@
-"""What `model_error` of tables of one's own is worth: `python tools/errors/own_tables.py [SIZE [SEED]]`, a minute.
+"""The reliability of `model_error` for user's tables: `python tools/errors/own_tables.py [SIZE [SEED]]`, a minute.
 
-SIZE random tables (100 by default) are made from the laws of this package: half of them with 5 to 60 rows here and
-there, the others with 60 in equal steps of log p. Contacts with each are compared with those of the law itself, on a
-half-space and on the exact layer, from 1.5 times the first pressure on. Three lines:
+SIZE random tables (100 by default) are made from the laws of this package: half of them with 5 to 60 rows at random
+places, the others with 60 in equal steps of log p. Contacts with each are compared with those of the law itself, on a
+half-space and on the exact layer, from 1.5 times the first pressure on. It prints three lines:
 
-- tables: how many are not refused, and how many of these are somewhere between their rows off by more than `error`;
-- contacts: how many there are, how many are farther off than `model_error`, and the largest ratio of the two;
-- edge: the largest error above that of the rows, over (p1/p(0))^_STEEPNESS: what _GUESSED of
-  solver/models/law_error.py must be.
+- tables: the number that are not refused, and of those with an error between their rows above `error`;
+- contacts: their number, the number with an error above `model_error`, and the largest ratio of the two;
+- edge: the largest excess over the error of the rows, over (p1/p(0))^_STEEPNESS, which gives _GUESSED in
+  solver/models/law_error.py.
 """
 
 import sys
@@ -23,8 +23,8 @@ LAWS = ("disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heigh
 
 
 def table(random: np.random.Generator, even: bool):
-    """The name of a random law, its parameters, and the :class:`~solver.laws.Law` of a random table of it; ValueError
-    of one that is refused."""
+    """The name of a random law, its parameters, and the :class:`~solver.laws.Law` of a random table of it. Raises
+    ValueError for a table that is refused."""
     law, Ra = str(random.choice(LAWS)), 10 ** random.uniform(-4, -1)
     given = {"Nbar": 10 ** random.uniform(-2, 2) / Ra**2, "Ra": Ra}
     if law == "power_law":

@@ -1,12 +1,12 @@
 """How often `error` is below the truth: `python tools/errors/random_contacts.py [SIZE [SEED]]`, a minute.
 
 SIZE random rough contacts (20 by default) of each law on each base are solved at a given load and rtol 1e-9, which is
-the truth. The same contacts are solved again from their load, their radius and their depth, at the five RTOL each. A
-line for each law on each base, and one for all:
+the truth. The same contacts are solved again from their load, their radius and their depth, at the five RTOL each. It
+prints a line for each law on each base, and one for all:
 
-- answers: those with an `error`, where that of the truth is below a tenth of it;
-- above: of these, how many are farther from the truth than `error`; and the largest distance in units of `error`;
-- median: that of the distance, in the same units.
+- answers: those whose `error` is more than ten times that of the truth;
+- above: the number of these that are farther from the truth than `error`; and the largest distance in units of `error`;
+- median: of the distance, in the same units.
 """
 
 import sys
@@ -19,7 +19,7 @@ from solver.solution import JUDGED
 BASES = ("half_space", "thin_layer", "layered")
 LAWS = ("disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights")
 RTOL = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-#: Far beyond any scene, drawn by the logarithm; NR is Nbar Ra².
+#: Ranges far wider than those of real contacts, drawn by the logarithm; NR is Nbar Ra².
 RANGES = {"P": (1e-8, 1e-2), "h": (1e-3, 1e1), "n": (1e-3, 1e2), "Ra": (1e-5, 1e-1), "NR": (1e-2, 1e2),
           "B": (0.01, 1.0), "sigma": (1e-8, 1e-3)}  # fmt: skip
 #: Answers with numbers and an `error`.

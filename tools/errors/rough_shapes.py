@@ -2,10 +2,10 @@
 [SEED]]`, some minutes.
 
 SIZE random contacts (10 by default) of each shape, of random laws on half-spaces and layers, are solved at a given
-load, radius or depth, and rtol 1e-9, which is the truth; and again at rtol 1e-3 and 1e-6. A line for each shape: how
-they end (the names of the statuses); how many answers have an `error` ten times that of the truth, how many of these
-are farther from the truth than `error`, and the largest distance in units of `error`; seconds of processor time a case.
-After SIZE and SEED there may be the names of some shapes.
+load, radius or depth, and rtol 1e-9, which is the truth; and again at rtol 1e-3 and 1e-6. It prints a line for each
+shape: the names of the statuses; the number of answers whose `error` is ten times that of the truth, the number of
+these that are farther from the truth than `error`, and the largest distance in units of `error`; seconds of processor
+time per case. The names of some shapes may follow SIZE and SEED.
 """
 
 import sys
@@ -27,8 +27,8 @@ def drawn(random: np.random.Generator, low: float, high: float) -> float:
 
 
 def contact(shape: str, random: np.random.Generator) -> dict:
-    """Arguments of ``Problem.of``: one contact of about the radius a, from a smooth one to one in which asperities
-    yield as much as the body. A half-space of the softer material tells about its load."""
+    """Arguments of ``Problem.of``: one contact of about the radius a, from a smooth one to one whose asperities yield
+    as much as the body. A half-space of the softer material gives its approximate load."""
     a, h_a, n = drawn(random, 1e-3, 0.3), drawn(random, 3e-2, 30), drawn(random, 1e-2, 1e2)
     sharp, part = drawn(random, 0.02, 0.5), random.uniform(0.1, 1.5)
     case = {"shape": shape, "half_angle": np.degrees(np.arctan(1 / sharp)), "flat_radius": part * a}
@@ -50,7 +50,7 @@ def contact(shape: str, random: np.random.Generator) -> dict:
 
 
 def distance(answer, truth) -> float:
-    """Largest distance of an answer to the truth, in units of its `error`; NaN where the truth is not known enough."""
+    """Largest distance of an answer from the truth, in units of its `error`; NaN if the truth is not known enough."""
     ended = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
     if answer.status[0] not in ended or truth.status[0] not in ended or not truth.error[0] < 0.1 * answer.error[0]:
         return np.nan

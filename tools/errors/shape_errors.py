@@ -2,15 +2,15 @@
 [SEED]] [adhesion ...]`, a minute for a SIZE of 2.
 
 SIZE random contacts (2 by default) of each shape on each base, under each control, with each law of adhesion (all, or
-those that are named: none, jkr, maugis, dmt) are solved; and again, which is the truth, with half as many more
-functions in the basis, at all nodes of a finer quadrature, without tables of the kernel. The truth of a
-half-space is a layer of its own material. The tolerances are from 1e-4 to 1e-10. A line for each law and base:
+the named ones: none, jkr, maugis, dmt) are solved. They are solved again for the truth: with half as many more
+functions in the basis, at all nodes of a finer quadrature, without tables of the kernel. The truth of a half-space is a
+layer of its own material. The tolerances are from 1e-4 to 1e-10. It prints a line for each law and base:
 
-- how the answers end;
-- judged: how many have a truth; how many of them are farther from it than `error`, and the largest distance over it;
-- the same of `profile_error` and the pressures;
-- honest: the median of error over the distance, of answers farther than 1e-14 from the truth;
-- hard: how many are not at their tolerance though the truth is within it.
+- the statuses of the answers;
+- judged: the number with a truth; the number farther from it than `error`, and the largest distance over `error`;
+- the same for `profile_error` and the pressures;
+- honest: the median of error over distance, for answers farther than 1e-14 from the truth;
+- hard: the number that miss their tolerance although the truth is within it.
 """
 
 import sys
@@ -32,7 +32,7 @@ SHAPES = (
 BASES, LAWS = ("half_space", "layered", "stack"), ("none", "jkr", "maugis", "dmt")
 X = np.array([0.0, 0.3, 0.6, 0.9, 0.99])
 ENDED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
-#: Distances that are rounding of the numbers themselves.
+#: Smaller distances are rounding of the numbers themselves.
 ROUNDING = 1e-15
 
 
@@ -41,7 +41,7 @@ def drawn(random: np.random.Generator, low: float, high: float, size: int) -> np
 
 
 def shape_of(name: str, a: np.ndarray, random: np.random.Generator, folder: Path) -> tuple[dict, np.ndarray]:
-    """Parameters of shapes, and radii about `a` at which they can be touched."""
+    """Parameters of shapes, and possible contact radii near `a`."""
     size, sharp, part = len(a), drawn(random, 0.02, 0.8, len(a)), random.uniform(0.05, 1.2, len(a))
     b = np.minimum(part, 0.97) * a
     half_angle = np.degrees(np.arctan(1 / sharp))
@@ -77,7 +77,7 @@ def body_of(base: str, a: np.ndarray, random: np.random.Generator) -> dict:
 
 
 def cases(name: str, base: str, control: str, law: str, size: int, seed: int, folder: Path) -> dict:
-    """Arguments of ``Problem.of`` of random contacts; those under a load or depth are of about the radius."""
+    """Arguments of ``Problem.of`` of random contacts; a load or depth makes a contact of about the radius."""
     random = np.random.default_rng([seed, SHAPES.index(name), BASES.index(base), "aPD".index(control), LAWS.index(law)])
     a = drawn(random, 1e-3, 0.4, size)
     shape, a = shape_of(name, a, random, folder)
@@ -93,7 +93,7 @@ def cases(name: str, base: str, control: str, law: str, size: int, seed: int, fo
 
 
 def finer() -> None:
-    """From here on the solver takes more functions, all nodes and finer rules."""
+    """Let the solver take more functions, all nodes and finer rules from now on."""
     wave_rule._LESS, wave_rule._MORE, wave_rule._LEAST = 0.0, 16, (18, 22)
     wave_rule._END, wave_rule._END_MIDDLE = 30.0, 26.0
     wave_rule.quadrature.cache_clear()

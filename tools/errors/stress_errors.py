@@ -1,7 +1,7 @@
 """Is `error` of `solver.fields.contact` honest? `python tools/errors/stress_errors.py [CONTACTS [SEED]]`.
 
-Random contacts are solved at their rtol, and again with many times the nodes and the smallest rtol. Of each contact the
-largest difference of any stress at some points, over the largest stress, is compared with the error that it states.
+Random contacts are solved at their rtol, and again with many times the nodes and the smallest rtol. For each contact
+the largest difference of any stress at some points, over the largest stress, is compared with its stated error.
 """
 
 import sys
@@ -13,7 +13,7 @@ from solver.fields.contact import of_contacts
 
 R, Z = np.array([0.0, 0.3, 0.6, 0.9, 1.0, 1.1, 1.5]), np.array([0.0, 0.05, 0.2, 0.5, 1.0])
 STRESSES = ("sr", "st", "sz", "trz")
-#: A difference is rounding below this.
+#: Smaller differences are rounding.
 ROUNDING = 1e-13
 
 

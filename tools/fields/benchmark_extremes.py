@@ -1,7 +1,7 @@
-"""How long extremes and first yield take: `python tools/fields/benchmark_extremes.py [CHECKOUT]`.
+"""The time of extremes and first yield: `python tools/fields/benchmark_extremes.py [CHECKOUT]`.
 
-Processor times of one process: the first call, and the shortest of the next ones. With another checkout of this
-repository the two take turns, and ratios follow.
+It prints processor times of one process: the first call, and the shortest of the next ones. With another checkout of
+this repository the two take turns, and it prints ratios as well.
 """
 
 import subprocess
@@ -10,7 +10,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 ROUNDS = 3
-#: What runs in a process whose path begins with a checkout; it prints a name and two times a line.
+#: The program of a process whose path begins with a checkout; it prints lines of a name and two times.
 PROGRAM = """
 import sys, time, warnings
 sys.path.insert(0, sys.argv[1])

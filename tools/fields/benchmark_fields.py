@@ -1,7 +1,8 @@
-"""How long stresses take: `python tools/fields/benchmark_fields.py`.
+"""The time of stresses: `python tools/fields/benchmark_fields.py`.
 
-Shortest processor times, of maps of one rough contact with 60 x 60 points, its pressure found again; of the stresses of
-many contacts at 15 depths and 14 radii each; and of extremes and first yield of many, once, with what 1,000 would take.
+It prints shortest processor times: of maps of one rough contact with 60 x 60 points, including the solution of its
+pressure; of the stresses of many contacts at 15 depths and 14 radii each; and, of a single run, of extremes and first
+yield of many contacts, with the time for 1,000.
 """
 
 import time
@@ -27,7 +28,7 @@ EACH, YIELDS = 10, 200
 
 
 def seconds_of(action) -> float:
-    """Of three times, with nothing kept of transforms before."""
+    """The shortest of three times, with empty caches of transforms."""
     times = []
     for _ in range(3):
         tables._moments.cache_clear()
@@ -67,7 +68,7 @@ def main() -> None:
 
 
 def told(what, action, count) -> None:
-    """Print the processor time of each of `count`, and of 1,000."""
+    """Print the processor time per contact, of `count` contacts, and that of 1,000."""
     start = time.process_time()
     action()
     each = (time.process_time() - start) / count

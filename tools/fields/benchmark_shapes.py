@@ -1,6 +1,7 @@
-"""What smooth contacts of shapes, and such that stick, take: `python tools/fields/benchmark_shapes.py`.
+"""The time of smooth contacts of all shapes, also with adhesion: `python tools/fields/benchmark_shapes.py`.
 
-Shortest processor times by turns of warm batches on a layer, in all and a case, over that of spheres under a depth.
+It prints shortest processor times of warm batches on a layer that take turns: in all, per case, and over that of
+spheres under a depth.
 """
 
 import sys

@@ -1,5 +1,5 @@
-"""Fits of curves and scans of surfaces: time and memory, beside a numpy reader and the fit of nanite, if it is
-installed.
+"""Fits of curves and scans of surfaces: time and memory, compared with a numpy reader and, if it is installed, with the
+fit of nanite.
 
     python tools/fit/benchmark_fits.py
 
@@ -24,7 +24,7 @@ GEL = {"R": "5 um", "punch": "rigid", "nu1": 0.45, "E2": "rigid", "h": "3 um", "
 SOFT = {"E2": "20 kPa", "nu2": 0.45}
 BARE = {"R": "5 um", "punch": "rigid", "nu2": 0.45, "base": "half_space", "micro": "smooth"}
 RING = {"adhesion": "maugis", "sigma0": "2 kPa"}
-#: What is fitted -> the contact, the free inputs and their values, and how many curves.
+#: Name of a fit -> the contact, the free inputs and their values, and the number of curves.
 FITS = {
     "E on a half-space": (BARE, {"E2": "5 kPa"}, 1),
     "E1 of a layer on a rigid base": (GEL, {"E1": "5 kPa"}, 1),
@@ -35,7 +35,7 @@ FITS = {
     "E1 and w, Maugis, sphere": (GEL | RING | {"shape": "sphere"}, {"E1": "5 kPa", "w_adhesion": "0.4 mJ/m^2"}, 1),
 }
 DEPTHS = np.linspace(-0.5e-6, 1e-6, 80)
-#: Of so many times the least counts, after a first one.
+#: After a first call the shortest of so many times counts.
 TIMES = 3
 
 
@@ -59,7 +59,7 @@ def curves(inputs: dict, true: dict, count: int) -> np.ndarray:
 
 
 def fits() -> list[dict]:
-    """The seconds of a curve."""
+    """A row for each of FITS: the seconds of a curve."""
     rows = []
     for name, (inputs, true, count) in FITS.items():
         loads, begin = curves(inputs, true, count), dict(true)
@@ -77,7 +77,7 @@ def fits() -> list[dict]:
 
 
 def nanite_fit() -> list[dict]:
-    """The same of Hertz's model by nanite, through lmfit; nothing if it is not installed."""
+    """The same for Hertz's model by nanite, through lmfit; no row if it is not installed."""
     if find_spec("nanite") is None:
         return []
     import lmfit
@@ -91,7 +91,7 @@ def nanite_fit() -> list[dict]:
 
 
 def scans(points: int = 1024) -> list[dict]:
-    """The time of text over that of numpy, and the memory of a map in arrays of its size."""
+    """The time of reading a text over that of numpy, and the memory of reading a map, in arrays of its size."""
     z = 1e-7 * np.random.default_rng(1).standard_normal((points, points))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "map.txt"

@@ -1,16 +1,17 @@
-"""How right is `study.fit`, and how fast? `python tools/fit/coverage.py [CURVES [PART ...]]`, some ten minutes with
-10,000; the parts are hertz, bias, known, prior, free and times.
+"""The errors and the speed of `study.fit`: `python tools/fit/coverage.py [CURVES [PART ...]]`, some ten minutes with
+10,000 curves; the parts are hertz, bias, known, prior, free and times.
 
-Curves P(D) of a rigid ball on a bonded layer, of random E1*/E2*, 0.01 to 100, and random a/h at the deepest point,
+Curves P(D) of a rigid ball on a bonded layer have random E1*/E2*, 0.01 to 100, and random a/h at the deepest point,
 0.05 to 5: exact loads from `solver.solve`, at 200 depths from -0.2 to 1 of the largest. The contact point is off by up
 to 5 % of the largest depth, the baseline by up to 5 % of the largest load, the noise has a standard deviation of 1 %
-of the largest load. With a prior of ± 10 % the true thickness of each curve is drawn from it; where h is free it is a
-factor of up to 3 off the value in the call, about which its bounds are a decade each way. Printed are:
+of the largest load. With a prior of ± 10 % the true thickness of each curve is drawn from the prior. If h is free, the
+true thickness differs from the value in the call by a factor of up to 3, and its bounds are a decade to either side.
+It prints:
 
-- bias: |E1/true E1 - 1| without noise, of E1*/E2* from 1e-3 to 100 and a/h from 0.05 to 10;
-- covered: of how many curves the 95 % interval of E1 has the true one, with one standard deviation of that share;
-- statuses, and the processor time, of the fits alone;
-- Hertz: the same of a half-space, whose loads are Hertz's formula.
+- bias: |E1/true E1 - 1| without noise, for E1*/E2* from 1e-3 to 100 and a/h from 0.05 to 10;
+- covered: the share of curves whose 95 % interval of E1 contains the true E1, with the share's standard deviation;
+- statuses, and the processor time of the fits alone;
+- Hertz: the same for a half-space, whose loads follow Hertz's formula.
 """
 
 import os
@@ -27,13 +28,13 @@ import study
 from solver import Problem, solve
 from study.work import engine
 
-START = engine.START  # seconds of work from which on a process is started
+START = engine.START  # a process is started for so many seconds of work
 R, E2, NU1, NU2 = 1e-4, 70e9, 0.4, 0.2
 H = 1e-6  # in the call
 SCENE = {"R": "100 um", "nu1": NU1, "E2": "70 GPa", "nu2": NU2, "bonding": "bonded", "micro": "smooth"}
 POINTS, TIMED = 200, 4096
 NODES, EXACT = 40, 120  # depths that are solved: loads are right to 1e-5 of the largest, and to 2e-9
-#: What is known of h -> the intervals that are counted.
+#: Knowledge of h -> the intervals that are counted.
 KINDS = {"known": ("fisher",), "prior": ("fisher", "profile"), "free": ("profile", "fisher")}
 
 
@@ -42,9 +43,9 @@ def between(random: np.random.Generator, low: float, high: float, count: int) ->
 
 
 def exact(n: np.ndarray, wide: np.ndarray, h: np.ndarray, nodes: int) -> tuple[np.ndarray, np.ndarray]:
-    """Depths and loads (curves, POINTS) in SI of layers of E1* = n E2*, of a/h = wide at the deepest point.
+    """Depths and loads (curves, POINTS) in SI of layers with E1* = n E2*, and with a/h = wide at the deepest point.
 
-    The solver's loads over D^1.5 at some depths are a polynomial of the root of the depth.
+    The solver's loads over D^1.5 at some depths are interpolated by a polynomial in the root of the depth.
     """
     scene = {"nu1": NU1, "nu2": NU2, "bonding": "bonded", "micro": "smooth", "base": "layered", "rtol": 1e-9}
     center = np.array([0.0])
@@ -82,7 +83,7 @@ def curves(
 
 
 def fitted(measured: xr.Dataset, h="known", intervals="fisher", alone=True) -> tuple[xr.Dataset, float]:
-    """The fit, and its processor time in this process, which computes `alone` or not."""
+    """The fit, and its processor time in this process; alone : whether no other process may help."""
     engine.START = np.inf if alone else START
     given = SCENE | {"h": "1 ± 0.1 um" if h == "prior" else "1 um"}
     begun = time.process_time()
@@ -139,7 +140,7 @@ def report_hertz(count: int = 100) -> None:
 
 
 def speed() -> float:
-    """Milliseconds of processor time of 1,000 solutions of 17 unknowns, for comparing machines."""
+    """Milliseconds of processor time of 1,000 solutions of 17 unknowns, to compare machines."""
     A, b = np.random.default_rng(0).random((17, 17)) + 17 * np.eye(17), np.ones(17)
     begun = time.process_time()
     for _ in range(1000):

@@ -1,17 +1,17 @@
-"""How right are fits of curves that stick, and how fast? `python tools/fit/sticking.py [CURVES [FREE ...]]`, FREE of w,
-contact, h: what is unknown beside E1 and w_adhesion; some five minutes with 210 curves.
+"""The errors and the speed of fits of curves that stick: `python tools/fit/sticking.py [CURVES [FREE ...]]`. FREE is w,
+contact or h: the unknown besides E1 and w_adhesion. It takes some five minutes with 210 curves.
 
-Curves P(D) of paraboloids, spheres and cones, to 0.2 R deep, at most h/2: on half-spaces, and on gels of h = 0.1, 0.5
-and 3 R on a rigid base and on one of E2* = 3 E1*. A third of the curves are approaches, 0 before the surfaces meet, the
-others go back to pull-off and beyond. The pull-off load is 1 to 100 % of the largest load, 80 points have noise of 0.5
-to 5 % of it, and contact point (not of the part w) and baseline are off. Exact loads are those of `solver.solve`, each
-with five draws of noise. The call of `study.fit` has bounds of w_adhesion that are three times wider than the works of
-its curves, and no value of E1; of the part h it has a thickness a factor of up to 3 off. Printed are, for each shape
-and in all:
+Curves P(D) of paraboloids, spheres and cones are at most 0.2 R and h/2 deep: on half-spaces, and on gels of h = 0.1,
+0.5 and 3 R on a rigid base and on one of E2* = 3 E1*. A third of the curves are approaches, with load 0 before the
+surfaces meet; the others go back to pull-off and beyond. The pull-off load is 1 to 100 % of the largest load, the noise
+of the 80 points is 0.5 to 5 % of it, and contact point (not in the part w) and baseline are off. Exact loads come from
+`solver.solve`, each with five draws of noise. The call of `study.fit` has bounds of w_adhesion that are three times
+wider than the works of its curves, and no value of E1; in the part h its thickness is wrong by a factor of up to 3. It
+prints, for each shape and for all:
 
-- covered: of how many converged curves the 95 % intervals of E1, and of w_adhesion, have the true one, with one
-  standard deviation of that share;
-- far: converged curves that are more than five spreads and 1 % off, which should not be;
+- covered: the shares of converged curves whose 95 % intervals of E1, and of w_adhesion, contain the true value, with
+  their standard deviations;
+- far: converged curves that are more than five spreads and 1 % off, which should not happen;
 - statuses, and the processor time of a curve in its batch; of one curve alone.
 """
 
@@ -77,7 +77,7 @@ def curves(numbers: dict, shape: dict, share: np.ndarray, random: np.random.Gene
 
 
 def fitted(kind: str, count: int) -> dict[str, np.ndarray]:
-    """What comes out of `count` curves of each scene, over the curves."""
+    """The numbers of the fits of `count` curves of each scene, over the curves."""
     rows: list[dict] = []
     random, engine.START = np.random.default_rng(7), np.inf
     for name, shape in SHAPES.items():
@@ -100,7 +100,7 @@ def fitted(kind: str, count: int) -> dict[str, np.ndarray]:
 
 
 def of_scene(kind: str, inputs: dict, data: tuple) -> dict[str, np.ndarray]:
-    """What `study.fit` says of depths in m and loads and works of adhesion in units R = E1* = 1, and what is true."""
+    """The results of `study.fit` and the true values; data : depths in m, loads and works in units R = E1* = 1."""
     D, P, w = data
     unit = E1 / (1 - NU**2)
     low, middle, high = (

@@ -2,10 +2,10 @@
 
     python tools/fuzz/fuzz_files.py [FLIPS [SEED]]
 
-After each flip of a results file, or of a block of a run that was stopped: `status`, `open`, `verify` and `run` end
-without a traceback, and every number that is given out is the one that was computed. Half of the damaged results files
-get a seal that fits, so that netCDF and the digest alone stand between them and the user: of such a file HDF5 may end
-the interpreter, which is counted, and is no fault. Exit code 0 if there is none.
+After each flip in a results file, or in a block of a stopped run, `status`, `open`, `verify` and `run` must end without
+a traceback, and every number that they return must be the one that was computed. Half of the damaged results files get
+a seal that fits, so that only netCDF and the digest can find the damage. HDF5 may end the interpreter on such a file,
+which is counted but is no fault. Exit code 0 if there is no fault.
 """
 
 import json
@@ -47,7 +47,7 @@ STUDIES = {
     "scalars": CONTACT.format(model="", axes="P = {start = 1e-6, stop = 1e-4, num = 30}", block=10)
     + "[output]\nprofiles = false\n",
 }
-#: Seconds after which a process that looks into a damaged file is ended: HDF5 may read on for ever.
+#: A process that opens a damaged file is ended after so many seconds: HDF5 may read on for ever.
 ENDLESS = 60
 SEALED, ENDED = 0.5, "ended by HDF5"
 
@@ -66,7 +66,7 @@ class Example:
         self.blocks = {path.name: path.read_bytes() for path in inventory(store).blocks}
 
     def restore(self, with_results: bool) -> None:
-        """The folder as a run leaves it, or as one that was stopped before the end does."""
+        """Restore the folder as a finished run leaves it, or as a run that was stopped before its end."""
         shutil.rmtree(self.opened.results)
         self.folder.mkdir(parents=True)
         for name, data in self.blocks.items():
@@ -75,7 +75,7 @@ class Example:
             self.path.write_bytes(self.file)
 
     def check(self, found: xr.Dataset, what: str) -> None:
-        """All numbers, coordinates, units and meanings are those that were computed."""
+        """Check that all numbers, coordinates, units and meanings are those that were computed."""
         if set(found.variables) != set(self.expected.variables):
             raise AssertionError(f"{what}: other variables")
         # blocks of other sizes sum in another order: 1e-12; error and residual are differences of nearly equal numbers
@@ -152,7 +152,7 @@ def flip_block(example: Example, chance: random.Random, seen: Counter) -> None:
 
 
 def apart(flip, example: Example, seed: float, seen: Counter, said: Path) -> str:
-    """Do it in a process of its own; returns the fault or "". HDF5's memory suffers from damaged files: after some
+    """Run `flip` in a separate process; returns the fault or "". Damaged files corrupt the memory of HDF5: after some
     hundred of them in one process it ends the interpreter."""
     chance = random.Random(seed)
     may_end = flip is flip_results and random.Random(seed).random() < SEALED

@@ -1,13 +1,12 @@
-"""Random punches of every shape, smooth, rough and sticking: nothing silently wrong, no warning.
+"""Random punches of every shape, smooth, rough and sticking: no result may be silently wrong, and there is no warning.
 
     python tools/fuzz/fuzz_shapes.py [GROUPS [SEED]]
 
-Each group is a batch of one shape, base, control and way to touch: smooth, one of the models of adhesion, or rough.
-Numbers are drawn between the bounds that the solver allows, half of them near those of contacts that people have. What
-has converged must be a contact: its numbers are finite but for those that are infinite or not known under a point, at
-an edge or at pull-off, and from its radius the same contact follows. Of some smooth groups the stresses must be those
-of the pressure at the surface, and nowhere above the largest where there is one. What is wrong is printed with its
-case; the exit code is then 1.
+Each group is a batch of one shape, base, control and kind of contact: smooth, one of the models of adhesion, or rough.
+Numbers are drawn between the bounds of the solver, half of them near usual ones. A converged case must be a contact:
+its numbers are finite, except those that are infinite or unknown under a point, at an edge or at pull-off, and its
+radius gives the same contact. In some smooth groups the stresses at the surface must be those of the pressure, and
+nowhere above the largest stress if there is one. Violations are printed with their cases; the exit code is then 1.
 """
 
 import sys
@@ -29,9 +28,9 @@ from solver.shapes import SHAPES
 from solver.yields.contact import of_contacts as extremes_of
 
 X = np.array([0.0, 0.3, 0.7, 0.95, 1.0])
-#: A table of random rows, whose word is known once it is drawn.
+#: A table of random rows; its path is added when the rows are drawn.
 TABLE = "table:"
-#: Where random tables are written; it goes with the program.
+#: The folder of random tables; it is removed at the end of the program.
 FOLDER = tempfile.TemporaryDirectory()
 NAMES = (*(name for name in SHAPES if not name.startswith(TABLE)), TABLE)
 WAYS = ("smooth", *ADHESIONS, "rough")
@@ -39,16 +38,16 @@ BASES = ("half_space", "layered", "stack")
 LAWS = ("disc_cell", "power_law", "square_lattice")
 #: Cases of a group: a rough one takes a second.
 SIZES = {"smooth": 12, "jkr": 6, "dmt": 12, "maugis": 1, "rough": 2}
-#: About what numbers people have; the others are drawn between their bounds.
+#: Usual ranges; the other parameters are drawn between their bounds.
 USUAL = {"h": (1e-3, 10), "n": (1e-3, 1e3), "half_angle": (20, 88), "flat_radius": (1e-3, 0.3), "tip_radius": (1e-2, 1),
          "edge_radius": (1e-2, 1), "shape_power": (1, 8), "shape_coefficient": (1e-2, 10), "w_adhesion": (1e-9, 1e-2),
          "sigma0": (1e-5, 1), "z0": (1e-7, 1e-2), "k_machine": (1e-5, 10), "P": (1e-8, 1e-2), "D": (1e-6, 0.1),
          "a": (1e-4, 0.5), "Nbar": (1e3, 1e6), "Ra": (1e-5, 1e-2), "B": (0.02, 1), "beta": (0.3, 0.9)}  # fmt: skip
-#: One of so many groups of smooth cases is asked for its stresses, which take a second.
+#: In one of so many groups of smooth cases the stresses are computed, which takes a second.
 STRESSED = 4
-#: Layers that are thinner than this part of a are not asked for stresses: these take minutes and more.
+#: On layers that are thinner than this share of a no stresses are computed: they take minutes and more.
 THICK = 2e-3
-#: Errors by which a contact may differ from that of its radius.
+#: A contact may differ from the contact with its radius by so many errors.
 AGREE = 10.0
 
 
@@ -75,8 +74,8 @@ def table(random, seed, number):
 
 
 def stressed(s: Solution, problem: Problem) -> np.ndarray:
-    """(B,) bool: smooth converged cases whose stresses are not what they must be. The surface bears the pressure, and
-    von Mises' stress is nowhere larger than the largest."""
+    """(B,) bool: smooth converged cases with wrong stresses. The surface must bear the pressure, and von Mises' stress
+    must nowhere exceed the largest one."""
     thick = (problem.base == "half_space") | (problem.h > THICK * s.a)
     index = np.flatnonzero((s.status == Status.CONVERGED) & (s.a / problem.R > 1e-8) & thick)
     out = np.zeros(len(s.a), dtype=bool)
@@ -97,10 +96,10 @@ def stressed(s: Solution, problem: Problem) -> np.ndarray:
 
 
 def under(random, base, size, usual):
-    """What lies under the punch: the numbers of a layer, or one to three layers."""
+    """The parameters of the body under the punch: the numbers of a layer, or one to three layers."""
     if base == "layered":
         case = {name: drawn(random, name, size, usual) for name in ("h", "n")}
-        case["n"] *= random.random() > 0.1  # else on a rigid base
+        case["n"] *= random.random() > 0.1  # 0: on a rigid base
         case |= {name: random.uniform(-0.9, 0.5, size) for name in ("nu1", "nu2")}
         return case | {"bonding": random.choice(("bonded", "frictionless"), size)}
     if base == "stack":
@@ -150,7 +149,7 @@ def group(seed, number):
 
 
 def wrong_numbers(s: Solution, case: dict) -> np.ndarray:
-    """(B,) bool: converged cases whose numbers are not those of a contact."""
+    """(B,) bool: converged cases whose numbers cannot be those of a contact."""
     sticks, rough = "w_adhesion" in case, case["micro"] != "smooth"
     pointed = case["shape"] in ("cone", "berkovich", "vickers", "cube_corner", "power") or TABLE in case["shape"]
     bad = ~(s.a > 0) | ~(s.error <= case["rtol"]) | ~np.isfinite(s.P) | ~np.isfinite(s.D)
@@ -171,7 +170,7 @@ def wrong_numbers(s: Solution, case: dict) -> np.ndarray:
 
 
 def differs(s: Solution, case: dict, control: str) -> np.ndarray:
-    """(B,) bool: converged cases that are others when they are asked for by their radius."""
+    """(B,) bool: converged cases for which the solution with their radius is a different contact."""
     out, low = np.zeros(len(s.a), dtype=bool), ends(CONTROL["a"].interval)[0]
     index = np.flatnonzero((s.status == Status.CONVERGED) & (s.a >= low))
     if control == "a" or case["shape"] == "flat" or not len(index):
@@ -179,7 +178,7 @@ def differs(s: Solution, case: dict, control: str) -> np.ndarray:
     part = {name: v[index] if isinstance(v, np.ndarray) else v for name, v in case.items() if name != control}
     again = solve(Problem.of(**part, a=s.a[index]), X)
     by_radius = np.abs(getattr(again, control) - getattr(s, control)[index])
-    # by its radius P or D is off by what rounding of a does: a - b of a flat end, P near 0 of what sticks
+    # with the radius, P or D has an error from the rounding of a: a - b at a flat end, P near 0 with adhesion
     scale = np.abs(s.dP_dD if control == "P" else 1 / s.dP_dD)[index] * np.abs(s.D if control == "P" else s.P)[index]
     scale = np.maximum(np.abs(getattr(s, control)[index]), np.where(np.isfinite(scale), scale, np.inf))
     allowed = AGREE * (s.error[index] + again.error + 1e-9) * scale
@@ -188,7 +187,7 @@ def differs(s: Solution, case: dict, control: str) -> np.ndarray:
 
 
 def violations(seed, number, ended):
-    """Texts of what is wrong in a group; `ended` counts how its cases ended."""
+    """Texts about the violations in a group; `ended` counts the statuses of its cases."""
     case, control = group(seed, number)
     with warnings.catch_warnings():
         warnings.simplefilter("error")

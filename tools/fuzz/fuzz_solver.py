@@ -1,10 +1,10 @@
-"""Random calls of the solver within the bounds of every number: nothing silently wrong, no warning, no case above 10 s.
+"""Random calls of the solver within all bounds: no result silently wrong, no warning, no case longer than 10 s.
 
     python tools/fuzz/fuzz_solver.py [--cases 20000] [--seed 0] [--singles 0.1]
 
-Cases of every base, law, control, interface and scheme, from rtol 1e-12 to 0.1. They are drawn in groups and solved as
-batches; a random part of them once more, alone, and timed. Tables of one's own are drawn for each group, from files.
-What is wrong is printed with its case and table; the exit code is then 1.
+Cases of every base, law, control, interface and scheme, from rtol 1e-12 to 0.1, are drawn in groups and solved as
+batches. A random part of them is solved once more, alone, and timed. Random user's tables are written to files for each
+group. Violations are printed with their case and table; the exit code is then 1.
 """
 
 import argparse
@@ -21,31 +21,32 @@ from solver import Problem, Solution, Status, laws, solve
 from solver.known import PARAMETERS
 from solver.parameters import BONDINGS, CONTROL, MODEL_CHECKS, ends
 
-#: Under a plate nearly all of the load may lie in a narrow ring at the edge.
+#: Points of the profiles. On a plate nearly all of the load may lie in a narrow ring at the edge.
 X = np.unique([*np.linspace(0.0, 1.0, 9), *(1 - 2.0 ** -np.arange(4, 20))])
-#: Cases of a group, which is of one base, law, control and scheme: on the exact layer a case takes a hundred times as
+#: Cases of a group, which has one base, law, control and scheme: on the exact layer a case takes a hundred times as
 #: long as on the others. ROUND groups have every base, law and control, 5400 cases.
 SIZES = {"half_space": 90, "thin_layer": 90, "layered": 10, "auto": 10}
 BASES = tuple(SIZES)  # stacks of layers have random tests of their own: tests/stacks
-#: The last two are tables of one's own: rows of a law, and a histogram of heights.
+#: The last two are user's tables: rows of a law, and a histogram of heights.
 LAWS = ("smooth", "disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights",
         "rows", "histogram")  # fmt: skip
-#: Asperities of a group with a histogram: one table of many classes takes a second.
+#: Number of different asperities in a group with a histogram: one table of many classes takes a second.
 MOST_TABLES = 9
 ROUND = len(BASES) * len(LAWS) * len(CONTROL)
-#: Drawn by the logarithm between their bounds; the others are what a study may have.
+#: Drawn by the logarithm between their bounds; the other parameters have values as in studies.
 LOGARITHMIC = ("h", "n", "Nbar", "Ra", "B", "beta", "sigma", "cut")
-#: Share of the successive approximations: they are the slowest, and the least used.
+#: Share of cases with successive approximations, which are the slowest and the least used.
 PICARD = 0.1
 SLOWEST = 10.0
-#: What the same contact from its radius may differ by, in errors of both: the estimate is right to a few times.
+#: A contact may differ from the contact with its radius by so many errors of both: the estimate is good to a factor of
+#: a few.
 AGREE = 10.0
 
 
 def logarithmic(random, name, size):
     """Numbers (size,) between the bounds of a parameter, uniform in their logarithm; one in eight at an end."""
     low, high = ends((CONTROL | PARAMETERS)[name].interval)[:2]
-    least = low or 1e-9  # of m and sigma, which may be none at all
+    least = low or 1e-9  # for m and sigma, which may be 0
     values = np.exp(random.uniform(np.log(least), np.log(high), size)).clip(least, high)
     return np.where(random.random(size) < 1 / 8, random.choice([low, high], size), values)
 
@@ -72,8 +73,8 @@ def text(heading, *columns):
 
 
 def table(random, kind, file):
-    """Name of the law of a random table of a kind, "rows" or "histogram", which is written to the file. What is refused
-    is drawn again."""
+    """Write a random table of a kind, "rows" or "histogram", to the file; returns the name of its law. A table that is
+    refused is drawn again."""
     while True:
         file.write_text({"rows": rows, "histogram": histogram}[kind](random), encoding="utf-8")
         try:
@@ -104,7 +105,7 @@ def group(seed, number, folder, share=1):
 
 
 def wrong_numbers(s: Solution, rtol, bonded) -> np.ndarray:
-    """(B,) bool: a converged case whose numbers cannot be those of a contact, whatever the solver says of itself."""
+    """(B,) bool: converged cases whose numbers cannot be those of a contact, whatever error the solver states."""
     with np.errstate(all="ignore"):
         mean = s.P / (np.pi * s.a**2)
         error = AGREE * (s.error + rtol)
@@ -116,7 +117,7 @@ def wrong_numbers(s: Solution, rtol, bonded) -> np.ndarray:
         bad |= ~(s.error <= rtol) | (s.Ar_An > 1.0001)
         # Hertz has a² = D, springs a² = 2 D, an incompressible bonded film a² = 4 D; asperities add to D alone.
         bad |= s.a**2 > np.where(bonded, 4, 2) * s.D * (1 + error)
-        # No contact is stiffer to a step than it was on the way: dP/dD >= P/D.
+        # The stiffness of a contact grows with its depth: dP/dD >= P/D.
         bad |= s.dP_dD * s.D < s.P * (1 - error)
         # A spot carries more than the nominal pressure, and the mean is below the largest.
         bad |= (s.p_max < s.p0 * (1 - error)) | (mean > s.p.max(axis=1) * (1 + error))
@@ -124,7 +125,7 @@ def wrong_numbers(s: Solution, rtol, bonded) -> np.ndarray:
 
 
 def differs(s: Solution, case: dict, control: str) -> np.ndarray:
-    """(B,) bool: converged cases that are others when they are asked for by their radius."""
+    """(B,) bool: converged cases for which the solution with their radius is a different contact."""
     out = np.zeros(len(s.a), dtype=bool)
     low, high = ends(CONTROL["a"].interval)[:2]
     index = np.flatnonzero((s.status == Status.CONVERGED) & (s.a >= low) & (s.a <= high))
@@ -142,7 +143,7 @@ def differs(s: Solution, case: dict, control: str) -> np.ndarray:
 
 
 def fuzz(groups, seed, singles=0, share=1):
-    """Violations (list of text), how the cases ended (Counter), seconds of the cases solved alone (list).
+    """Violations (list of text), statuses of the cases (Counter), seconds of the cases solved alone (list).
 
     singles : part of the cases that are solved alone; share : groups are this many times smaller.
     """
@@ -156,7 +157,7 @@ def fuzz(groups, seed, singles=0, share=1):
 
 
 def violations(seed, number, folder, singles, share, ended, times):
-    """Yield the violations of a group; `ended` and `times` get how its cases ended, and the seconds of those alone."""
+    """Yield the violations of a group; `ended` gets the statuses, and `times` the seconds of cases solved alone."""
     case, control = group(seed, number, folder, share)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -184,7 +185,7 @@ def alone(case, i):
 
 
 def shown(s, i):
-    """What a case ended with."""
+    """The result of a case, as text."""
     names = ("status", "model_used", "a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD", "error", "nodes")
     return ", ".join(f"{name} {getattr(s, name)[i]:.6g}" for name in names)
 

@@ -1,9 +1,9 @@
 """Mutated study files through the command line: `python tools/fuzz/fuzz_studies.py [COUNT [SEED]]`, 5,000 by default.
 
-Each is a study of the repository, made small, with a few things done to it: bytes flipped, lines dropped, doubled and
-swapped, values replaced by nasty ones, keys misspelled, types changed. All are checked; of those that are accepted some
-are estimated (--dry-run) and some are run. Whatever the file: exit code 0 or 2, no exception, no warning, messages that
-one can read, and an answer in time and within bounded memory.
+Each is a study of the repository, made small, with a few changes: bytes flipped, lines dropped, doubled and swapped,
+values replaced by nasty ones, keys misspelled, types changed. All are checked; some of the accepted ones are estimated
+(--dry-run) and some are run. Every file must give exit code 0 or 2, no exception, no warning, readable messages, and an
+answer in time and within bounded memory.
 """
 
 import contextlib
@@ -21,11 +21,11 @@ from collections import Counter
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-PATIENCE = 60  # seconds of this process for one file, of which the slowest takes some; more is a hang
-MEMORY = 6_000_000_000  # bytes that the process may ask for: it needs half of it for its libraries and tables
-LONGEST = 31 * 1000  # characters of all messages: thirty, and how many more
+PATIENCE = 60  # seconds of this process for one file: the slowest file takes some seconds, and more than this is a hang
+MEMORY = 6_000_000_000  # bytes that the process may allocate: its libraries and tables need half of them
+LONGEST = 31 * 1000  # characters of all messages: thirty, and the number of further ones
 FEW = 100  # cases of a study that is estimated or run
-ESTIMATED, RUN = 10, 20  # one of so many that are accepted
+ESTIMATED, RUN = 10, 20  # one of so many accepted files is estimated, or run
 NASTY = (
     "1e308", "-1e308", "5e-324", "1e-300", "1e400", "nan", "inf", "-inf", "0", "-0.0", "-1", "1.5", "true", '""', '"x"',
     '"\\u001b[31m"', '"\\u0000"', "[]", "{}", "[[]]", "[1, [2]]", "[1e-6, nan]", "[true]", '["x", 1]', "1979-05-27",
@@ -41,7 +41,7 @@ LINES = (
     "edge_radius = 0.1", 'shape = "table:none.csv"', "w_adhesion = 1e-7", 'adhesion = "maugis"', "sigma0 = 1e-3",
     'branch = "unstable"', "k_machine = 0.1", "[[layers]]", 'base = "stack"', 'tip = "sphere"',
 )  # fmt: skip
-#: Studies of shapes, of what sticks and of stacks, beside those of the repository.
+#: Studies of shapes, adhesion and stacks, besides those of the repository.
 MORE = (
     '[model]\nbase = "half_space"\nmicro = "smooth"\nshape = "cone"\n[axes]\nP = [1e-5, 1e-4]\nhalf_angle = [60, 70]\n',
     '[model]\nh = 0.1\nn = 0.5\nmicro = "smooth"\nshape = "blunt_cone"\nhalf_angle = 75\ntip_radius = 0.1\n'
@@ -57,7 +57,7 @@ MORE = (
 
 
 class Hang(BaseException):
-    """No Exception: nothing on its way may take it for a fault of its own."""
+    """A hang. It is no Exception, so that no handler on its way can catch it."""
 
 
 def bases() -> list[str]:
@@ -72,7 +72,7 @@ def bases() -> list[str]:
 
 
 def mutated(chance: random.Random, text: str) -> bytes:
-    """The text with one to four things done to it."""
+    """The text with one to four changes."""
     changes = chance.choice((CHANGES, MILD))
     for _ in range(chance.randint(1, 4)):
         lines = text.split("\n")
@@ -102,7 +102,7 @@ def _key(chance, lines, at):
 
 
 def _number(chance, lines, at):
-    """Another number of about the size, or of another."""
+    """Another number, of about the same size or of another."""
     numbers = list(re.finditer(r"\d[\d_]*\.?\d*(?:e[-+]?\d+)?", lines[at]))
     if not numbers:
         return lines
@@ -113,7 +113,7 @@ def _number(chance, lines, at):
 
 
 def _word(chance, lines, at):
-    """Another word that the vocabulary knows in the place of a text."""
+    """Another word of the vocabulary in place of a text."""
     words = ("frictionless", "bonded", "layered", "thin_layer", "half_space", "auto", "disc_cell", "smooth", "newton",
              "cone", "sphere", "flat", "rounded_flat", "stack", "jkr", "dmt", "maugis", "unstable")  # fmt: skip
     return [*lines[:at], re.sub(r'"\w+"', f'"{chance.choice(words)}"', lines[at], count=1), *lines[at + 1 :]]
@@ -131,7 +131,7 @@ CHANGES = (
 
 
 def said(arguments: list[str]) -> tuple[int, str]:
-    """Exit code of a command and what it says on stderr."""
+    """Exit code of a command and its output on stderr."""
     from study.__main__ import main
 
     errors = io.StringIO()
@@ -141,13 +141,14 @@ def said(arguments: list[str]) -> tuple[int, str]:
 
 
 def fault(arguments: list[str]) -> tuple[int, str]:
-    """Exit code of a command, and what is wrong with how it ended; "" if nothing is."""
+    """Exit code of a command, and the fault in its end; "" without a fault."""
 
     def hang(*_):
         raise Hang
 
     before = signal.signal(signal.SIGVTALRM, hang)
-    # Of this process: others may be busy. Again and again: what is raised while an object is deleted is lost.
+    # Time of this process, since others may be busy. Repeated, since an error raised while an object is deleted is
+    # lost.
     signal.setitimer(signal.ITIMER_VIRTUAL, PATIENCE, PATIENCE)
     try:
         code, text = said(arguments)
@@ -162,7 +163,7 @@ def fault(arguments: list[str]) -> tuple[int, str]:
 
 
 def faults(count: int, seed: int, folder: Path, done: Counter) -> list[str]:
-    """What is wrong with how the commands end; counted in `done`: commands by their exit code."""
+    """The faults in the ends of the commands; `done` counts the commands by exit code."""
     from study.inputs.reading import read
 
     found, texts, file = [], bases(), folder / "mutated.toml"

@@ -2,9 +2,9 @@
 
     python tools/fuzz/kill_runs.py [KILLS [SEED [parts]]]
 
-A run that has ended before its kill is begun anew, from nothing or with its results removed. At the end the results
-must have the digest of those of an undisturbed run. Exit code 0 if so. With `parts` the study has many windows, and
-blocks on the disk of those that take more than a tenth of a second.
+A run that has ended before its kill is started anew, from nothing or with its results removed. At the end the results
+must have the same digest as those of an undisturbed run; the exit code is then 0. With `parts` the study has many
+windows, and blocks of more than a tenth of a second are on the disk.
 """
 
 import random
@@ -30,7 +30,7 @@ P = { start = 1e-6, stop = 1e-4, num = 2000 }
 [numerics]
 block = 20
 """
-#: What makes windows of a thousand cases, whose blocks are on the disk after a tenth of a second.
+#: Code for windows of a thousand cases, whose blocks are on the disk after a tenth of a second.
 IN_PARTS = """
 from study.store import windows
 from study.work import run

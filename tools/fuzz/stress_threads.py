@@ -1,9 +1,8 @@
-"""Eight threads that solve, run, open, read lazily and ask for the state of studies at once, for some seconds:
+"""Eight threads that solve, run, open, read lazily and query studies at the same time, for some seconds:
 
     python tools/fuzz/stress_threads.py SECONDS
 
-Exit code 0 if nothing crashed and every number was right. As a process of its own, for what it looks for ends the
-interpreter.
+Exit code 0 if nothing crashed and every number was right. It is a separate process, since a crash ends the interpreter.
 """
 
 import shutil
@@ -27,7 +26,7 @@ TEXT = '[model]\nmicro = "smooth"\nbase = "half_space"\n[axes]\nP = {}\n[numeric
 
 
 def right(found) -> bool:
-    """Hertz: a = (3P/4)^(1/3); rtol 1e-6 allows the solver so much, and the iteration more than closes."""
+    """Whether a is that of Hertz, (3P/4)^(1/3), within rtol 1e-6, which the iteration more than reaches."""
     exact = (0.75 * found.P.values) ** (1 / 3)
     return bool((found.status.values == 0).all() and np.allclose(found.a.values, exact, rtol=1e-6, atol=0))
 
@@ -37,7 +36,7 @@ def solving(folder: Path, number: int) -> None:
 
 
 def running(folder: Path, number: int) -> None:
-    """A study of this thread's own, begun anew each time, then extended."""
+    """Run a study of this thread alone, started anew each time, then extended."""
     opened = written(folder, f"own{number}", AXES["P"][:20])
     (opened.results / f"own{number}.nc").unlink(missing_ok=True)
     shutil.rmtree(opened.results / f".own{number}.blocks", ignore_errors=True)
@@ -48,7 +47,7 @@ def running(folder: Path, number: int) -> None:
 
 
 def reading(folder: Path, number: int) -> None:
-    """A study that is done, eagerly and from its file."""
+    """Read a finished study, eagerly and from its file."""
     assert right(opened_of(folder, "shared").open())
     assert right(study.open_results(folder / "results" / "shared.nc"))
 
@@ -68,7 +67,7 @@ def asking(folder: Path, number: int) -> None:
 
 
 def written(folder: Path, name: str, loads: list) -> study.Study:
-    """The study of this file, written beside it and moved: `asking` may read it at any time and finds it whole."""
+    """The study of a file that is written under another name and moved: `asking` may read it at any time, but whole."""
     beside = folder / f"{name}.toml.new"
     beside.write_text(TEXT.format(loads), encoding="utf-8")
     beside.replace(folder / f"{name}.toml")

@@ -15,15 +15,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 
-# Not the repository either: in a worktree it is a pointer, and a test that ends in the middle would lock the real one.
+# .git is not copied either: in a worktree it is a pointer, and an interrupted test would lock the real repository.
 NOT_COPIED = {"results", "figures", "tables", "build", "dist", ".git", ".venv", ".hypothesis", ".pytest_cache"}
-NIGHT = 40_000.0  # seconds for what has no measure
-MEMORY = 8_000_000_000  # bytes that a mutant may write to; of addresses alone a browser takes more
+NIGHT = 40_000.0  # seconds for a task without a known duration
+MEMORY = 8_000_000_000  # bytes that a mutant may write to; a browser reserves more addresses than that
 
 
 @dataclass(frozen=True)
 class Task:
-    """What a child does: `action(folder)` gives its answer (JSON). `change`: files and their bytes while it runs."""
+    """A task of a child: `action(folder)` gives its answer (JSON). `change`: files and their bytes while it runs."""
 
     key: object
     action: Callable[[Path], object]
@@ -32,7 +32,7 @@ class Task:
 
 
 def answers(tasks: list[Task], folders: list[Path]) -> Iterator[tuple[Task, object]]:
-    """Tasks and their answers as they come, one child in each folder at a time; a text when a child gave none."""
+    """Tasks and their answers as they come, one child in each folder at a time; a text if a child gave no answer."""
     free, running, left, clock, last = list(folders), {}, tasks[::-1], 0.0, time.monotonic()
     try:
         while left or running:
@@ -41,7 +41,7 @@ def answers(tasks: list[Task], folders: list[Path]) -> Iterator[tuple[Task, obje
                 running[_begun(task, folder)] = task, folder, clock + task.seconds
             time.sleep(0.01)
             last, before = time.monotonic(), last
-            clock += min(last - before, 1.0)  # it stands while this process is stopped or the machine asleep
+            clock += min(last - before, 1.0)  # the clock stands while this process is stopped or the machine asleep
             for child, (task, folder, end) in list(running.items()):
                 late = clock > end
                 if late or os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT):
@@ -62,9 +62,13 @@ def _begun(task: Task, folder: Path) -> int:
     answer.unlink(missing_ok=True)
     for number, (name, content) in enumerate(task.change.items()):
         path = folder / name
-        shutil.copy2(path, folder.with_suffix(f".kept{number}"))  # beside the tree: tests ask which files a package has
+        shutil.copy2(
+            path, folder.with_suffix(f".kept{number}")
+        )  # outside the tree, since tests list the files of a package
         path.write_bytes(content)
-        os.utime(path, (315_619_200,) * 2)  # 1980, the first year of zip; else a compiled form of this second may count
+        os.utime(
+            path, (315_619_200,) * 2
+        )  # 1980, the first year of zip; otherwise a compiled form of this second may be used
     child = os.fork()
     if child:
         return child
@@ -76,12 +80,12 @@ def _begun(task: Task, folder: Path) -> int:
         os.dup2(log, 1), os.dup2(log, 2)
         os.chdir(folder)
         tests = folder / "tests"
-        # The first was that of this file.
+        # The first entry was the folder of this file.
         sys.path[:] = [str(folder), *(str(tests / name) for name in ("", "shared", "suite")), *sys.path[1:]]
         sys.modules["__main__"] = ModuleType("__main__")  # which worker processes import
         for name in ("kept", "mutate", "trials", "operators", "copies"):  # tests import those in the folder
             sys.modules.pop(name, None)
-        sys.dont_write_bytecode = True  # nor may that of the mutant before, of the same size
+        sys.dont_write_bytecode = True  # nor may a compiled form of the mutant before be used
         os.environ |= {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
         answer.write_text(json.dumps(task.action(folder)))
     except BaseException:
@@ -91,7 +95,7 @@ def _begun(task: Task, folder: Path) -> int:
 
 
 def _swept(child: int) -> None:
-    """End a child and what it has begun."""
+    """End a child and the processes that it has started."""
     for kill in (os.killpg, os.kill):  # it may not lead its group yet
         with suppress(ProcessLookupError):
             kill(child, signal.SIGKILL)
@@ -106,7 +110,7 @@ def _answer(folder: Path) -> object:
 
 
 def copy(root: Path, folder: Path) -> None:
-    """Copy what the tests need of a tree."""
+    """Copy the part of a tree that the tests need."""
     shutil.copytree(root, folder, ignore=lambda at, names: NOT_COPIED & set(names) if Path(at) == root else [])
     for package in ("solver", "study", "studies"):
         compileall.compile_dir(folder / package, quiet=1)

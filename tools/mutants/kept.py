@@ -7,12 +7,12 @@ from pathlib import Path
 from operators import Change
 
 ROOT = Path(__file__).resolve().parents[2]
-MOST = 150  # a longer list says no more, and each has to be kept in step with the code
+MOST = 150  # a longer list tells no more, and each entry must follow the code
 
 
 def read(root: Path = ROOT) -> Iterator[tuple[str, str, str, str]]:
-    """Name, file, old and new text of each mistake of a tree: [PACKAGE.ROOM.MODULE.NAME], of the file MODULE.py, or of
-    the `file` that it names."""
+    """Name, file, old and new text of each mistake of a tree: [PACKAGE.ROOM.MODULE.NAME], in the file MODULE.py, or in
+    the `file` that the entry names."""
     return _within(tomllib.loads((root / "tests/mutants/kept.toml").read_text(encoding="utf-8")), ())
 
 
@@ -25,7 +25,7 @@ def _within(tables: dict, path: tuple[str, ...]) -> Iterator[tuple[str, str, str
 
 
 def changes(root: Path = ROOT) -> list[Change]:
-    """The list as changes of the files. Raises ValueError for an old text that is not in its file exactly once."""
+    """The list as changes of the files. Raises ValueError if an old text is not in its file exactly once."""
     found = []
     for name, file, old, new in read(root):
         source = (root / file).read_bytes()

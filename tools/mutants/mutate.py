@@ -1,9 +1,9 @@
-"""Would the tests notice? `make mutants SEED=20261129 N=100`: mistakes drawn by a seed, and what the tests say of each.
+"""Would the tests notice? `make mutants SEED=20261129 N=100`: mistakes drawn by a seed, and whether tests notice them.
 
-operators.py makes them; each kind of mistake is drawn equally often, of the files that have changed since --base, or of
-all. Every test that runs the file of a mistake is tried, those that run its function first, the quickest first.
+operators.py makes them. Each kind of mistake is drawn equally often, in the files that have changed since --base, or in
+all files. Every test that runs the file of a mistake is tried: first those that run its function, the quickest first.
 
-Exit code: 0 when at least 90 % of those in the solver, in the study and in the explorer are noticed, otherwise 1.
+Exit code: 0 if at least 90 % of the mistakes in the solver, in the study and in the explorer are noticed, otherwise 1.
 """
 
 import argparse
@@ -24,12 +24,12 @@ from operators import Change, changes
 from trials import LIBRARIES, Verdict, compiled, judged, known_of
 
 ROOT = kept.ROOT
-WANTED = 0.9  # share of each part that is noticed
+WANTED = 0.9  # share of the mistakes in each part that must be noticed
 SUFFIXES = {".py", ".js", ".c", ".h"}
 
 
 def files_of(root: Path, base: str | None) -> list[str]:
-    """The files of the program, or those of them that have changed since a commit."""
+    """The files of the program, or only those that have changed since a commit."""
     tops = ("solver", "study", "studies")
     names = [str(path.relative_to(root)) for top in tops for path in sorted((root / top).rglob("*"))]
     if base:
@@ -39,7 +39,7 @@ def files_of(root: Path, base: str | None) -> list[str]:
 
 
 def drawn(root: Path, files: list[str], seed: int) -> Iterator[Change]:
-    """Mistakes without end, in the order that a seed gives; each once, each kind as often as the others."""
+    """Mistakes in the order that a seed gives; each once, and each kind as often as the others."""
     kinds = defaultdict(list)
     for name in files:
         for change in changes(name, (root / name).read_text(encoding="utf-8")):
@@ -55,12 +55,12 @@ def drawn(root: Path, files: list[str], seed: int) -> Iterator[Change]:
 
 
 def part(file: str) -> str:
-    """What a file counts for: the explorer is a program of its own."""
+    """The part of the program to which a file belongs: the explorer is a separate program."""
     return "explorer" if file.startswith("study/explorer/") else file.partition("/")[0]
 
 
 def table(verdicts: list[Verdict]) -> list[str]:
-    """Lines: of each part how many are noticed, of each room how many are not."""
+    """Lines: the number of noticed mistakes in each part, and of others in each room."""
     parts, rooms = defaultdict(list), defaultdict(list)
     for verdict in verdicts:
         parts[part(verdict.change.file)].append(verdict.killed)
@@ -71,7 +71,7 @@ def table(verdicts: list[Verdict]) -> list[str]:
 
 
 def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
-    """Draw mistakes, try each, and print what became of it; returns the exit code."""
+    """Draw mistakes, try each, and print the verdict; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--seed", type=int, default=0, help="another seed, other mistakes; say, the date")
     parser.add_argument("--number", type=int, default=100, metavar="N", help="how many (default: 100)")

@@ -1,9 +1,9 @@
-"""Small mistakes that a program makes in a file of Python, C or JavaScript: all there are, as changes of its text.
+"""All small mistakes that a program can make in a file of Python, C or JavaScript, as changes of its text.
 
 In Python they come from the syntax tree: comparisons, arithmetic, signs, numbers, truth values, branches, arguments,
 returns, names that go in pairs. In C and JavaScript they come from the tokens: comparisons, arithmetic, logic, numbers.
-Left alone are annotations, decorators, docstrings and texts, formats, and what stands at the level of a module except
-numbers.
+Annotations, decorators, docstrings, texts and formats are left alone, and so is code at the level of a module except
+its numbers.
 """
 
 import ast
@@ -44,11 +44,11 @@ class Change:
         return (source[: self.start] + self.new.encode() + source[self.stop :]).decode()
 
     def line(self, text: str) -> int:
-        """Number of the line on which it stands."""
+        """Number of the line of the change."""
         return 1 + text.encode()[: self.start].count(b"\n")
 
     def shown(self, text: str) -> str:
-        """The change on one line of text, with what stands around it."""
+        """The change on one line of text, with the text around it."""
         source = text.encode()
         begin = source.rfind(b"\n", 0, self.start) + 1
         end = source.find(b"\n", self.stop)
@@ -146,7 +146,7 @@ def _walked(tree: ast.AST) -> Iterator[tuple[ast.AST, bool]]:
 
 
 def _is_message(raised) -> bool:
-    """Whether what is raised is an error with one text."""
+    """Whether the raised object is an error with a single text."""
     return isinstance(raised, ast.Call) and all(isinstance(part, ast.Constant | ast.JoinedStr) for part in raised.args)
 
 
@@ -163,7 +163,7 @@ def _swapped(file: str, source: bytes, first: tuple[int, int], second: tuple[int
 
 
 def _without(file: str, source: bytes, place: tuple[int, int]) -> Change:
-    """A call without one of its keywords, and without the comma before or behind it."""
+    """A call without one of its keywords, and without the comma before or after it."""
     start, stop = place
     if comma := re.search(rb",\s*$", source[:start]):
         return Change(file, comma.start(), stop, "", "argument")

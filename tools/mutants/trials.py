@@ -1,7 +1,7 @@
-"""Which tests may notice a mistake, and whether they do: in a copy of the tree, in a process forked from this one.
+"""The tests that may notice a mistake, and whether they do: in a copy of the tree, in a process forked from this one.
 
-This process has imported the libraries, and nothing of the project. A mistake is noticed when a test fails, or takes
-far longer than it does without it.
+This process has imported the libraries, but nothing of the project. A mistake is noticed if a test fails, or takes far
+longer than without the mistake.
 """
 
 import ast
@@ -30,17 +30,17 @@ LIBRARIES = (
     "numpy", "scipy.special", "scipy.optimize", "scipy.interpolate", "scipy.sparse", "scipy.integrate", "dask.array",
     "xarray", "netCDF4", "matplotlib.pyplot", "matplotlib.backends.backend_pdf", "mpmath", "hypothesis", "pytest",
 )  # fmt: skip
-PATIENCE, SLOWER = 60.0, 10.0  # seconds that a test gets, and times what it takes without the mistake
-#: Audit events of a process that begins. What runs in it is not seen: such a test may run any file.
+PATIENCE, SLOWER = 60.0, 10.0  # a test may take so many seconds more than so many times its usual duration
+#: Audit events of a process that starts. Its code is not traced: such a test may run any file.
 BEGIN = {"subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "socket.connect"}
-#: Tests of what no trace of Python sees: the page of the explorer, and the compiled core.
+#: Tests of code that no trace of Python sees: the page of the explorer, and the compiled core.
 UNSEEN = {".js": ["tests/explorer"], ".h": ["tests/compiled", "tests/rough"], ".c": ["tests/compiled"]}
 CORE = "solver/compiled/_core" + sysconfig.get_config_var("EXT_SUFFIX")
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What became of a mistake. by : the first test that failed, or why none did"""
+    """The verdict on a mistake. by : the first test that failed, or the reason why none did"""
 
     change: Change
     killed: bool
@@ -51,7 +51,7 @@ class Verdict:
 
 
 class Watch:
-    """Plugin of pytest: which tests fail, and the seconds of each."""
+    """Plugin of pytest: the tests that fail, and the seconds of each."""
 
     def __init__(self):
         self.failed, self.seconds = [], defaultdict(float)
@@ -65,8 +65,8 @@ class Watch:
 
 
 class Trace:
-    """Plugin of pytest: the functions of the project that each test runs, as places in `functions` (file, first line);
-    whether it starts processes, and whether it asks for the results of the studies."""
+    """Plugin of pytest: the functions of the project that each test runs, as indices of `functions` (file, first line);
+    whether it starts processes, and whether it uses the results of the studies."""
 
     def __init__(self, folder: Path):
         self.inside, self.functions, self.tests = f"{folder}/", {}, {}
@@ -93,8 +93,8 @@ class Trace:
         self.tests |= {node: {"results": True} for node in asking}
 
     def _profile(self, *_):
-        """Profile the thread that calls, from now on: a profiler in C, which takes a fifth more where a trace in Python
-        takes several times as long."""
+        """Profile the calling thread from now on, with a profiler in C: it costs a fifth of the time, but a trace in
+        Python several times as much."""
         profiler = Profile(subcalls=False, builtins=False)
         self._profilers.append(profiler)
         profiler.enable()
@@ -104,12 +104,12 @@ class Trace:
 
 
 class Chosen:
-    """Plugin of pytest: runs some tests in this order, and ends the process at one that takes far longer than usual."""
+    """Plugin of pytest: runs some tests in this order, and ends the process if one takes far longer than usual."""
 
     def __init__(self, seconds: dict[str, float]):
         self.seconds, self.place = seconds, {node: place for place, node in enumerate(seconds)}
 
-    def pytest_collection_finish(self, session):  # conftest.py has sorted them in its own way before
+    def pytest_collection_finish(self, session):  # after conftest.py, which sorts them in another order
         chosen = [item for item in session.items if item.nodeid in self.place]
         session.items[:] = sorted(chosen, key=lambda item: self.place[item.nodeid])
 
@@ -122,7 +122,8 @@ class Chosen:
 
 
 def tested(folder: Path, tests: list[str], results: Path | None, *options: str, plugins=()) -> dict:
-    """Run tests: exit code, those that failed, seconds of each. results: of the studies, if they are as always."""
+    """Run tests: exit code, failed tests, seconds of each. results: of the studies, if the mistake cannot change
+    them."""
     import hypothesis
     import pytest
 
@@ -138,7 +139,8 @@ def tested(folder: Path, tests: list[str], results: Path | None, *options: str, 
 
 
 def results_in(folder: Path) -> list[str]:
-    """Compute the studies of the tests into a folder; returns the files that this runs: their mistakes change them."""
+    """Compute the studies of the tests into a folder; returns the files that this runs: a mistake there changes
+    results."""
     from conftest import compute_results
 
     compute_results(folder)
@@ -148,7 +150,7 @@ def results_in(folder: Path) -> list[str]:
 
 
 def mapped(folders: list[Path], results: Path) -> dict:
-    """What each test runs: every room of the tests on the code as it is, in a process of its own."""
+    """The functions that each test runs on the unchanged code, with a process for every room of the tests."""
     rooms = sorted(path.name for path in (folders[0] / "tests").iterdir() if [*path.rglob("test_*.py")])
     tops = ["solver", "study", *(f"tests/{room}" for room in rooms)]
 
@@ -173,9 +175,9 @@ def mapped(folders: list[Path], results: Path) -> dict:
 def order(file: str, line: int, text: str, known: dict) -> dict[str, float]:
     """Tests that may notice a change at a line -> their seconds, in the order in which they are tried.
 
-    A test counts for what any test of its file runs: they share fixtures and what is cached. For the same reason a test
-    that asks for the results of the studies counts for what any of these runs, and what the studies run. The tests of
-    `make verify` alone come last: what they notice and no other does is told by the name of the test.
+    A test counts for all that any test of its file runs: they share fixtures and caches. For the same reason a test
+    that uses the results of the studies counts for all that any such test runs, and for all that the studies run. The
+    tests of `make verify` alone come last: if only they notice a mistake, the name of the test tells it.
     """
     if Path(file).suffix != ".py":
         tops = tuple(f"{top}/" for top in UNSEEN.get(Path(file).suffix, []))
@@ -217,7 +219,8 @@ def first(seconds: dict[str, float], most: float) -> dict[str, float]:
 
 
 def known_of(folders: list[Path], kept: Path | None) -> dict:
-    """What each test runs, which files the studies run, and where their results are; from the file `kept`, if it is."""
+    """The functions that each test runs, the files that the studies run, and the folder of their results; from the file
+    `kept`, if it exists."""
     results = folders[0].with_name("kept-results")
     ((_, computing),) = answers([Task("results", lambda _: results_in(results))], folders[:1])
     if isinstance(computing, str):
@@ -229,7 +232,7 @@ def known_of(folders: list[Path], kept: Path | None) -> dict:
 
 
 def compiled(change: Change, root: Path, folder: Path) -> dict[str, bytes] | None:
-    """The files that a mistake changes, with the core that is built of them; None if it does not compile."""
+    """The files that a mistake changes, with the core that is built from them; None if it does not compile."""
     text = (root / change.file).read_text(encoding="utf-8")
     new = change.applied(text)
     match Path(change.file).suffix:
@@ -254,7 +257,7 @@ def compiled(change: Change, root: Path, folder: Path) -> dict[str, bytes] | Non
 
 
 def judged(changes: dict[Change, dict[str, bytes]], folders: list[Path], known: dict, most: float) -> Iterator[Verdict]:
-    """Verdicts as they come. changes : each with the files that it changes; most : seconds of tests of each"""
+    """Verdicts as they come. changes : mistake -> the files that it changes; most : seconds of tests for each"""
     tasks = []
     for change, files in changes.items():
         text = (folders[0] / change.file).read_text(encoding="utf-8")
@@ -274,7 +277,7 @@ def judged(changes: dict[Change, dict[str, bytes]], folders: list[Path], known: 
 
 
 def judge(change: Change, found) -> Verdict:
-    """The verdict of what the tests gave: a dict of :func:`tested`, or a text where there is none."""
+    """The verdict from the result of the tests: a dict of :func:`tested`, or a text without one."""
     if isinstance(found, str):
         return Verdict(change, True, found.strip().splitlines()[-1])
     by = (found["failed"] or [f"pytest, which ends with {found['code']}"])[0]

@@ -1,7 +1,7 @@
-"""Write explorer.npz: what the solver answers to the 20,700 contacts of explorer_cases.py.
+"""Write explorer.npz: the solver's results for the 20,700 contacts of explorer_cases.py.
 
-Status quo, not independent: the page of the explorer solves the same equation (tests/explorer/test_core.py). NaN where
-the program has no solution. float32 has a rounding of 6e-8, far below what is tested. It takes a minute:
+They are no independent reference: the page of the explorer solves the same equation (tests/explorer/test_core.py). NaN
+if the program has no solution. Rounding of float32, 6e-8, is far below the tested differences. It takes a minute:
 ``python tools/references/make_explorer_reference.py``.
 """
 

@@ -1,7 +1,7 @@
 """Write film_reference.csv: rough contacts on films, with the whole quadrature in k in place of the convolution.
 
-It is this solver, with octaves of h/a down to 2^-13 instead of 2^-8 and on 96 nodes: a far finer answer, independent of
-film.py alone. The cases are those of a random search where the error of the convolution is largest beside the others.
+It uses this solver, with octaves of h/a down to 2^-13 instead of 2^-8 and with 96 nodes: a far finer answer, but
+independent only of film.py. A random search chose the cases for which the error of the convolution is largest.
 Run it from anywhere: ``python tools/references/make_film_reference.py``.
 """
 
@@ -12,7 +12,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 COLUMNS = ("micro", "bonding", "h", "n", "nu1", "nu2", "Nbar", "Ra", "P", "D", "p0", "p_max", "Ar_An")
-#: The first columns; a = 0.04, B = 0.3 and beta = 0.5 besides.
+#: The first columns; also a = 0.04, B = 0.3 and beta = 0.5.
 CASES = (
     ("disc_cell", "bonded", 3.90625e-05, 0.00411, 0.3, 0.0, 416448.2, 2.586e-4),
     ("disc_cell", "bonded", 6.7214e-05, 1.705e-05, 0.45, 0.3, 392855942.7, 3.455e-05),
@@ -34,8 +34,8 @@ def main():
     assert Path(solver.__file__).is_relative_to(folder)
     lines = [",".join(COLUMNS)]
     for case in CASES:
-        given = dict(zip(COLUMNS, case, strict=False))
-        s = solver.solve(solver.Problem.of(a=0.04, B=0.3, beta=0.5, base="layered", rtol=1e-9, nodes=96, **given))
+        inputs = dict(zip(COLUMNS, case, strict=False))
+        s = solver.solve(solver.Problem.of(a=0.04, B=0.3, beta=0.5, base="layered", rtol=1e-9, nodes=96, **inputs))
         lines.append(",".join([*map(str, case), *(f"{getattr(s, name)[0]:.15g}" for name in COLUMNS[8:])]))
     path = ROOT / "tests/references/film_reference.csv"
     path.write_text("\n".join([*lines, ""]), encoding="utf-8")

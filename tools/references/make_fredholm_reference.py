@@ -1,4 +1,4 @@
-"""Write fredholm_reference.csv: smooth spheres on layers that bend as plates, and on a rigid base, without the solver.
+"""Write fredholm_reference.csv: smooth spheres on layers that bend like plates, or on a rigid base, without the solver.
 
 The equation is the one derived in tools/resolved/layered_independent.py, for f(t) on 0 ≤ t ≤ 1 in units of the contact
 radius a: f(t) + (2/π) ∫₀^∞ (L(kη) - 1) cos(kt) f̂(k) dk = d - t², with f̂(k) = ∫₀¹ f(t) cos(kt) dt, η = h/a and
@@ -6,7 +6,7 @@ f(1) = 0. Here it is solved by Galerkin in long double: f is made of Legendre po
 the edge, f̂ of spherical Bessel functions. The columns are P R/(E1* a³), D R/a² and p(0) R/(E1* a).
 
 Two meshes are compared. The last column is the largest relative difference of the three numbers between them. All are
-written with 18 digits; the difference says how many of them count. It is what rounding adds: the smallest eigenvalue
+written with 18 digits; the difference tells how many of them are right. It is due to rounding: the smallest eigenvalue
 of the equation is 5e-9 at h/a = 2^-10.
 Two minutes on one processor: ``python tools/references/make_fredholm_reference.py``. It needs a long double of 64 bits.
 """
@@ -59,7 +59,7 @@ def kernel(u, bonding, n):
 
 
 def waves(eta, n, nodes):
-    """k and weights of ∫₀^∞ (L(kη) - 1) (…) dk: panels that double from below kη = 1/n, then are of one width."""
+    """k and weights of ∫₀^∞ (L(kη) - 1) (…) dk: panels that double from below kη = 1/n, then have one width."""
     widest = min(16.0, 0.5 / eta)
     ends = [0.0, min(widest, 2.0**-8 / eta / max(1.0, n))]
     while ends[-1] < 26 / eta:
@@ -71,7 +71,8 @@ def waves(eta, n, nodes):
 
 
 def bessel(z, count):
-    """Spherical Bessel functions j_l(z), l < count: upwards where z > count, by a series below 1, else downwards."""
+    """Spherical Bessel functions j_l(z), l < count: recurrence upwards for z > count, otherwise downwards; for z < 1 a
+    series."""
     values = np.empty((count, len(z)), dtype=real)
     up, series = z > count, z < 1
     down = ~up & ~series
@@ -88,12 +89,12 @@ def bessel(z, count):
             total = total + term
         values[j, series] = total
     x = z[down]
-    above, here, squares = np.zeros_like(x), np.full_like(x, 1e-300), np.zeros_like(x)
+    above, current, squares = np.zeros_like(x), np.full_like(x, 1e-300), np.zeros_like(x)
     for j in range(3 * count + 40, -1, -1):
         if j < count:
-            values[j, down] = here
-        squares = squares + (2 * j + 1) * here * here
-        above, here = here, (2 * j + 1) / x * here - above
+            values[j, down] = current
+        squares = squares + (2 * j + 1) * current * current
+        above, current = current, (2 * j + 1) / x * current - above
     values[:, down] /= np.sqrt(squares)  # Σ (2 l + 1) j_l² = 1
     return values
 

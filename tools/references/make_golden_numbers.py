@@ -1,7 +1,7 @@
-"""Write golden_numbers.csv: what the solver answers to some 80 cases of every kind. Status quo, not independent.
+"""Write golden_numbers.csv: the solver's results for some 80 cases of every kind. They are no independent reference.
 
-Its first line names the NUMERICS_VERSION that made it. test_golden_numbers.py solves the cases again; where a change of
-the solver moves the numbers, that is a new NUMERICS_VERSION, and this script is run again:
+Its first line names the NUMERICS_VERSION that made it. test_golden_numbers.py solves the cases again. If a change of
+the solver moves the numbers, it needs a new NUMERICS_VERSION, and this script must run again:
 ``python tools/references/make_golden_numbers.py``. Read the difference before you commit it.
 """
 
@@ -14,7 +14,7 @@ FOLDER = Path(__file__).parents[2] / "tests/references"
 FILE = FOLDER / "golden_numbers.csv"
 #: Radii r/a of the profiles.
 X = (0.3, 0.95)
-#: The case that the others differ from; every parameter is named, so that no default counts.
+#: The case from which the others differ; every parameter is named, so that no default counts.
 MAIN = {
     "control": "P", "value": 2.7e-5, "h": 0.02, "n": 0.5, "nu1": 0.3, "nu2": 0.3, "bonding": "frictionless",
     "Nbar": 250000.0, "Ra": 0.004, "base": "layered", "accuracy": 0.01, "model_check": "closed_form",
@@ -30,7 +30,7 @@ NUMBERS = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", *(f"{name}_{x:g
 SMOOTH, POWER = {"micro": "smooth"}, {"micro": "power_law"}
 SQUARE, HEX = {"micro": "square_lattice"}, {"micro": "hex_lattice"}
 NORMAL, EVEN = {"micro": "normal_heights"}, {"micro": "uniform_heights"}
-#: Tables of one's own, which lie beside the numbers: rows of a law, and a histogram of heights.
+#: A user's tables, which lie beside the numbers: rows of a law, and a histogram of heights.
 TABLE, BINS = {"micro": "table:golden_law.csv"}, {"micro": "table:golden_histogram.csv"}
 RIGID = {"n": 0.0}
 HALF, THIN, AUTO = {"base": "half_space"}, {"base": "thin_layer"}, {"base": "auto"}
@@ -54,12 +54,12 @@ CASES = [
     {"h": 1.0, "n": 0.01, "nu1": 0.49} | BONDED, STIFF | {"h": 0.04}, STIFF | {"h": 0.012} | SMOOTH,
     FILM, FILM | SMOOTH | {"n": 0.01, "nodes": 48}, FILM | POWER | BONDED | {"n": 300.0}, FILM | {"h": 4e-8},
     {"R": 0.01, "E2": 2e11, "value": 540.0, "h": 2e-4, "Ra": 4e-5, "Nbar": 2.5e9},
-    # asperities that saturate, that are all or nothing; a power law that is springs
+    # asperities that saturate, or touch fully or not at all; a power law that acts like springs
     THIN | CORNER, THIN | CORNER | {"nodes": 32}, {"Ra": 0.1, "Nbar": 1.0, "value": 1e-7}, FINE_ASPERITIES,
     HALF | POWER | {"beta": 1.0, "B": 3.0}, THIN | SMOOTH | {"h": 1e-6, "nodes": 12},
-    # as many nodes, as many steps as are given
+    # a fixed number of nodes or steps
     THIN | {"nodes": 8}, THIN | {"max_iterations": 2, "rtol": 1e-9}, {"nodes": 10},
-    # the cheapest model that will do, and how far a thin layer is off
+    # the cheapest sufficient model, and the error of a thin layer
     AUTO | {"accuracy": 0.9, "h": 0.05}, AUTO | {"accuracy": 0.1, "h": 0.003}, AUTO | {"h": 3e-4} | SMOOTH,
     AUTO | {"h": 5.0, "n": 2.0}, AUTO | {"accuracy": 0.1, "h": 1e-5} | FINE_ASPERITIES, AUTO | {"h": 1.0} | SMOOTH,
     AUTO | {"accuracy": 0.1} | FINE_ASPERITIES, AUTO | {"accuracy": 3e-5, "h": 1e-4} | SMOOTH,
@@ -74,7 +74,7 @@ CASES = [
     HALF | SMOOTH | RADIUS | {"m": 0.5}, THIN | SMOOTH | DEPTH | {"m": 2.0, "n": 1e-9}, {"m": 0.3} | RADIUS | BONDED,
     THIN | SMOOTH | RIGID | DEPTH, THIN | RIGID | BONDED | {"m": 0.2}, RIGID, RIGID | DEPTH | SMOOTH | {"m": 3.0},
     THIN | RIGID | RADIUS | {"h": 0.002, "model_check": "first_order"}, AUTO | RIGID | {"h": 3e-4, "m": 1.0},
-    # lattices; heights of one, little and large spread, and of other cuts
+    # lattices; heights with no, small and large spread, and with other cuts
     HALF | SQUARE, SQUARE | RADIUS | BONDED, HALF | HEX | {"m": 0.5}, THIN | HEX | DEPTH,
     HALF | NORMAL | {"sigma": 0.0}, HALF | NORMAL, NORMAL | RADIUS | {"cut": 3.0, "sigma": 1e-3},
     THIN | NORMAL | DEPTH | {"cut": 5.0, "sigma": 1e-5}, HALF | EVEN, EVEN | DEPTH | BONDED | {"m": 0.3},
@@ -89,16 +89,16 @@ CASES = [
 
 def answers(problem):
     """EXACT, ERRORS and NUMBERS (dict of arrays) for the arguments of ``Problem.of``, `micro` one name or a list."""
-    found = solve(Problem.of(**problem | {"micro": known(problem["micro"])}), X)
-    profiles = {f"{name}_{x:g}": getattr(found, name)[:, i] for name in ("p", "lam") for i, x in enumerate(X)}
-    values = vars(found) | profiles | {"nodes_used": found.nodes}
+    solution = solve(Problem.of(**problem | {"micro": with_paths(problem["micro"])}), X)
+    profiles = {f"{name}_{x:g}": getattr(solution, name)[:, i] for name in ("p", "lam") for i, x in enumerate(X)}
+    values = vars(solution) | profiles | {"nodes_used": solution.nodes}
     return {name: values[name] for name in (*EXACT, *ERRORS, *NUMBERS)}
 
 
-def known(micro):
+def with_paths(micro):
     """The name of a law, or a list of them, with the path of each table."""
     if isinstance(micro, list):
-        return [known(name) for name in micro]
+        return [with_paths(name) for name in micro]
     return micro.replace(PREFIX, f"{PREFIX}{FOLDER}/")
 
 
@@ -107,10 +107,10 @@ def main():
     lines = [f"# NUMERICS_VERSION {NUMERICS_VERSION}", ",".join([*MAIN, *EXACT, *ERRORS, *NUMBERS])]
     for change in CASES:
         case = MAIN | change
-        given = [str(value) for value in case.values()]
-        found = answers({case.pop("control"): case.pop("value")} | case)
-        texts = [str(found[name][0]) for name in EXACT] + [f"{found[name][0]:.15g}" for name in (*ERRORS, *NUMBERS)]
-        lines.append(",".join([*given, *texts]))
+        inputs = [str(value) for value in case.values()]
+        results = answers({case.pop("control"): case.pop("value")} | case)
+        texts = [str(results[name][0]) for name in EXACT] + [f"{results[name][0]:.15g}" for name in (*ERRORS, *NUMBERS)]
+        lines.append(",".join([*inputs, *texts]))
     FILE.write_text("\n".join([*lines, ""]), encoding="utf-8")
 
 

@@ -1,7 +1,7 @@
-"""Print p(0) and a_eff of rough spheres as Greenwood and Tripp (1967) have them, over those of Hertz.
+"""Print p(0) and a_eff of rough spheres by the equations of Greenwood and Tripp (1967), over those of Hertz.
 
-python tools/references/make_greenwood_tripp.py: for each μ and α = σ R/a_H², on two meshes. They stand in
-studies/literature/formulas.py. Nothing of the solver is used: p*(ρ) = μ F(d* + ρ² + w*), F(h) = ∫ (z - h)^(3/2) φ(z) dz
+python tools/references/make_greenwood_tripp.py: for each μ and α = σ R/a_H², on two meshes. The numbers are in
+studies/literature/greenwood_tripp.csv. Without the solver: p*(ρ) = μ F(d* + ρ² + w*), F(h) = ∫ (z - h)^(3/2) φ(z) dz
 over z > h, lengths in sqrt(2 R σ), heights in σ, pressures in E* sqrt(σ/(8 R)), and
 w* = (2/π) ∫ p* t/(ρ + t) K(4 ρ t/(ρ + t)²) dt.
 """
@@ -9,17 +9,17 @@ w* = (2/π) ∫ p* t/(ρ + t) K(4 ρ t/(ρ + t)²) dt.
 import numpy as np
 from scipy.special import ellipkm1
 
-GIVEN = {
+MU_AND_ALPHAS = {
     1: (3.257, 0.4124, 0.05),
     4: (3.257, 1.168, 0.4124, 0.1953, 0.0682, 0.05, 0.0255),
     17: (3.257, 0.4124, 0.05, 0.0255),
 }
-#: Gap in σ at which the pressure is left out: F is 1e-12 there.
+#: Gap in σ from which on the pressure is neglected: F is 1e-12 there.
 FAR = 6.6
 
 
 def rule(count):
-    """Nodes and weights of Gauss and Legendre on [0, 1]."""
+    """Gauss-Legendre nodes and weights on [0, 1]."""
     x, w = np.polynomial.legendre.leggauss(count)
     return (x + 1) / 2, w / 2
 
@@ -34,7 +34,7 @@ def summits(gap):
 
 
 def displacement(s, basis):
-    """w* (n, n) over R at ρ = R sqrt(1 - s²) of the polynomials in s, by rules that crowd at the ring t = ρ."""
+    """w* (n, n) over R at ρ = R sqrt(1 - s²) for polynomials in s, by rules whose nodes crowd at the ring t = ρ."""
     x, w = rule(60)
     rows = []
     for rho in np.sqrt(np.maximum((1 - s) * (1 + s), 1e-20)):
@@ -82,6 +82,6 @@ def sphere(mu, alpha, n):
 
 
 if __name__ == "__main__":
-    for mu, spreads in GIVEN.items():
+    for mu, spreads in MU_AND_ALPHAS.items():
         for alpha in spreads:
             print(mu, alpha, *(f"{value:.6f}" for n in (40, 56) for value in sphere(mu, alpha, n)))

@@ -3,17 +3,17 @@
 In units E = Ra = l = 1, l = 1/sqrt(Nbar): a rigid surface, r²/2 about each point of the lattice, under the mean
 pressure p. A is its approach, the mean displacement of the half-space dropped; lam is the share of the area in contact,
 p_max the pressure under a summit.
-The pressures are those of equal steps of t, as the law has it (tabulated.py), and three small ones.
+The pressures belong to equal steps of t, the variable of the law (tabulated.py), and to three small values of t.
 
-- Small spots ("series"): the field of the others about a summit is a sum of even powers of r, whose coefficients are
-  lattice sums times the moments of the pressure; a circular spot answers it in closed form (Sneddon 1965). What is left
-  out makes the spot not round, of the order (b/l)^5, and changes A and p_max by its square.
+- Small spots ("series"): the field of the other spots about a summit is a sum of even powers of r, whose coefficients
+  are lattice sums times the moments of the pressure; a circular spot has a closed form in such a field (Sneddon 1965).
+  The neglected terms, of the order (b/l)^5, make the spot not round, and change A and p_max by their square.
 - Larger ones ("cell"): conjugate gradients of Polonsky and Keer (Wear 231, 1999, 206) on a grid over a quarter of the
   periodic cell, the displacement 2 p/k by cosine transforms. The edge of the contact is where cosh(2π p/J) comes down
   to 1 along rays: there p falls as a root, and near full contact as (J/2π) arccosh(x/w) at a distance x from a ridge
   with the change of slope J, along which there is a gap of 2 w.
 
-The columns *_change are the relative changes from a grid of half as many points a side: what the table may err.
+The columns *_change are the relative changes from a grid of half as many points a side: bounds of the table's errors.
 Eleven minutes on one processor: ``python tools/references/make_lattices.py``.
 """
 
@@ -30,19 +30,19 @@ from scipy.optimize import brentq
 FILE = Path(__file__).resolve().parents[2] / "solver/laws/lattices.csv"
 COLUMNS = ("lattice", "p", "A", "lam", "p_max", "A_change", "lam_change", "p_max_change", "by")
 SIDES = {"square": (1.0, 1.0), "hex": (np.sqrt(2 / np.sqrt(3)), np.sqrt(2 * np.sqrt(3)))}
-#: Points of half a side of the cells, the finer grid; its halves have nearly square meshes too.
+#: Points along half a side of the cells on the finest grid; grids of half as many also have nearly square meshes.
 POINTS = {"square": (512, 512), "hex": (384, 672)}
-#: The values of t, 0.76 the last; and the largest spot of the series.
+#: The values of t, up to 0.76; and the largest spot of the series.
 T, ROUND = (0.002, 0.005, 0.01, *(round(0.02 * i, 2) for i in range(1, 39))), 0.2
 #: Terms of the series, and the change of pressure that ends an iteration.
 TERMS, CLOSED = 12, 1e-9
-#: The edge along a ray: cosh(2π p/J) at these distances inside, in meshes, and the degree of the polynomial through it.
+#: The edge along a ray: a polynomial of this degree through cosh(2π p/J) at these distances inside, in meshes.
 INSIDE, DEGREE = np.linspace(4, 12, 9), 2
 
 
 @cache
 def lattice_sum(lattice, s):
-    """Sum of 1/R^s over the other points; for s = 1 less its integral (the zeta functions continue it)."""
+    """Sum of 1/R^s over the other points; for s = 1 less its integral (by continuation of the zeta functions)."""
     x = mp.mpf(s) / 2
     if lattice == "square":
         return float(4 * mp.zeta(x) * mp.power(4, -x) * (mp.zeta(x, mp.mpf(1) / 4) - mp.zeta(x, mp.mpf(3) / 4)))
@@ -51,13 +51,13 @@ def lattice_sum(lattice, s):
 
 
 def series(lattice, b):
-    """p, A, lam, p_max of round spots of radius b: the shape under a summit is r²/2 + sum_k f_k r^2k of the others."""
+    """p, A, lam, p_max of round spots of radius b: the shape under a summit is r²/2 plus the others' sum_k f_k r^2k."""
     orders = range(TERMS + 1)
     k, i = np.arange(1, TERMS + 1), np.arange(TERMS + 1)
     depth = np.array([4**j * factorial(j) ** 2 / factorial(2 * j) for j in orders])
     arm, field = depth / (2 * i + 1), np.array([lattice_sum(lattice, 2 * j + 1) for j in orders]) / np.pi / depth**2
     depth = depth[1:]
-    # moments of r^2i of the pressure under the shape r^2k, and what they are in the shape
+    # moments of r^2i of the pressure under the shape r^2k, and their contribution to the shape
     moments = 4 * k * depth * b ** (2.0 * k + 2 * i[:, None] + 1) * arm[:, None] / (2 * k + 2 * i[:, None] + 1)
     shape = [[field[n + j] * comb(n + j, n) ** 2 if n + j <= TERMS else 0.0 for j in orders] for n in orders[1:]]
     powers = np.linalg.solve(np.eye(TERMS) - np.array(shape) @ moments, 0.5 * (k == 1))
@@ -79,7 +79,7 @@ def quarter(lattice, shape):
 
 
 def cell(lattice, p, shape, q=None):
-    """A, lam, p_max and the pressure at the points of a quarter of the cell, ends included; `q` to begin with."""
+    """A, lam, p_max and the pressure at the points of a quarter of the cell, ends included; `q` : first pressure."""
     height, wave, weight = quarter(lattice, shape)
     compliance = np.divide(2.0, wave, out=np.zeros_like(wave), where=wave > 0) / (4 * shape[0] * shape[1])
 
@@ -124,7 +124,7 @@ def area(lattice, q):
     steps = [side / 2 / (n - 1) for side, n in zip(SIDES[lattice], q.shape, strict=True)]
     mesh, angle = max(steps), np.pi / (6 if lattice == "hex" else 4)
     points, weights = np.polynomial.legendre.leggauss(48)
-    # no more than the edge needs: else its rounding and its waves would be large there
+    # cut off far inside the edge: otherwise rounding and waves would be large there
     falling = np.cosh(np.minimum(2 * np.pi * q / SIDES[lattice][0], 12.0)) - 1
     falling = np.pad(falling, ((6, 0), (6, 0)), mode="reflect")
     radii = np.arange(0, 0.75 / mesh, 0.5) * mesh
@@ -156,7 +156,7 @@ def small(lattice, p):
 
 
 def large(lattice, p):
-    """A, lam, p_max on a grid that begins coarse, and their relative changes by its last refinement."""
+    """A, lam, p_max on a grid that is refined step by step, and their relative changes in the last step."""
     fine, q, found = np.array(POINTS[lattice]), None, []
     for parts in (8, 4, 2, 1):
         *values, q = cell(lattice, p, tuple(fine // parts), q if q is None else finer(q))

@@ -1,10 +1,10 @@
-"""Write moved_spreads.csv: the ± of the contacts of tests/shared/spread_contacts.py as they were made of moved inputs.
+"""Write moved_spreads.csv: the ± of the contacts of tests/shared/spread_contacts.py, computed with moved inputs.
 
 git worktree add ../before e9acde5c && PYTHONPATH=../before python tools/references/make_moved_spreads.py
 
-In that commit each contact was solved as given, and with each input that has a spread moved up and down by a tenth of
-it; ± is the root of the sum of the squares of the central differences. Only there does this script make sense: later
-commits make ± of derivatives. rtol is 1e-9, so that what is left is the curvature, some 1e-4 of ± at most.
+That commit solved each contact as given, and with each input that has a spread moved up and down by a tenth of it; ± is
+the root of the sum of the squares of the central differences. The script makes sense only there: later commits compute
+± from derivatives. rtol is 1e-9, so that only the curvature remains as an error, at most some 1e-4 of ±.
 """
 
 import csv
@@ -22,7 +22,7 @@ from spread_contacts import AT, CONTACTS  # noqa: E402
 
 
 def main() -> None:
-    warnings.simplefilter("ignore")  # of validity, which is not the question here
+    warnings.simplefilter("ignore")  # about validity, which does not matter here
     with open(TESTS / "references/moved_spreads.csv", "w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["contact", "result", "point", "spread"])

@@ -1,8 +1,8 @@
-"""Write studies/evidence/picard_cycle.csv, which the last panel of the figure `picard_domain` shows.
+"""Write studies/evidence/picard_cycle.csv for the last panel of the figure `picard_domain`.
 
 python tools/references/make_picard_cycle.py: two successive iterates of Eq. (8) with k = 0 for the main case at
 a = 0.04 on 64 nodes, long after the load has settled, and the solution, near the edge.
-The scheme is written out anew; tests/evidence/test_picard_domain.py compares with the solver's.
+The scheme is written out here once more; tests/evidence/test_picard_domain.py compares it with the solver's.
 """
 
 from pathlib import Path
@@ -23,12 +23,12 @@ def iterates(last: int) -> list[np.ndarray]:
         mesh_of(NODES),
         LAWS["power_law"].bind(np.array([N]), **{name: np.array([v]) for name, v in CASE.items()}),
     )
-    found = [np.zeros(mesh.n)]
+    pair = [np.zeros(mesh.n)]
     for _ in range(last):
-        p = found[-1]
+        p = pair[-1]
         left = A**2 / 2 * mesh.s**2 - 4 / np.pi * A * mesh.K @ p
-        found = [p, np.maximum(left - law.at(p[None])[0][0], 0) / (H / N)]  # C = 2 A2 h/E1*, A2 = 1/2
-    return found
+        pair = [p, np.maximum(left - law.at(p[None])[0][0], 0) / (H / N)]  # C = 2 A2 h/E1*, A2 = 1/2
+    return pair
 
 
 def main() -> None:

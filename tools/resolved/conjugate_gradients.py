@@ -1,22 +1,22 @@
 """A rigid shape pressed on an elastic grid by conjugate gradients: Polonsky and Keer, Wear 231, 1999, 206.
 
-For grids that are not periodic; those that are have :func:`solver.laws.cell.periodic.pressed`.
+For grids that are not periodic; for periodic ones there is :func:`solver.laws.cell.periodic.pressed`.
 """
 
 import numpy as np
 
-#: Most steps; the tests take some 100.
+#: Largest number of steps; the tests take some 100.
 _STEPS = 500
 
 
 def pressed(displaced, height, p, mean, tolerance):
-    """Approach of the shape, and the pressure at the points of the grid, of its size.
+    """Approach of the shape, and the pressure at the points of the grid.
 
-    displaced : displacement of the surface under a pressure
+    displaced : function pressure -> displacement of the surface
     height : of the shape above its lowest point
-    p : pressure to begin with, of any size
-    mean : of the pressure over the grid, which is the load
-    tolerance : change of the pressure in a step, over it, that ends the search
+    p : first pressure, whose size does not matter
+    mean : of the pressure over the grid, which gives the load
+    tolerance : relative change of the pressure in a step that ends the search
     """
     p = p * mean / p.mean()
     way, size, conjugate = np.zeros_like(p), 1.0, 0.0

@@ -1,8 +1,8 @@
 """Displacement of an elastic body under square elements of constant pressure: a half-space, and a layer on one.
 
-The half-space is Love's closed form. The layer adds what its kernel L differs by from 1, which decays as e^(-2kh): a
-smooth function of the distance, by a Hankel transform. The kernel is that of layered_independent.py, which shares
-nothing with the solver. E2* = 1.
+The half-space has Love's closed form. The layer adds the Hankel transform of its kernel's L - 1, which decays like
+e^(-2kh): a smooth function of the distance. The kernel is that of layered_independent.py, which shares nothing with the
+solver. E2* = 1.
 """
 
 from collections.abc import Callable
@@ -14,7 +14,7 @@ from scipy import fft
 from scipy.interpolate import CubicSpline
 from scipy.special import j0
 
-#: Knots of the remainder in a thickness: 16 change it by 2e-6 of its largest, 64 by 1e-7.
+#: Knots of the remainder per thickness: with 16 it changes by 2e-6 of its largest value, with 64 by 1e-7.
 _KNOTS = 32
 
 
@@ -38,7 +38,7 @@ def coefficients(side: float, count: int, layer: Layer | None = None) -> np.ndar
     found = (_corner(high, high) - _corner(low, high) - _corner(high, low) + _corner(low, low)) / np.pi
     if layer is None:
         return found
-    points = np.array([-1.0, 1.0]) * side / np.sqrt(12)  # Gauss, two a side
+    points = np.array([-1.0, 1.0]) * side / np.sqrt(12)  # Gauss points, two along a side
     beside = away[:, None] + points
     far = np.hypot(beside[:, None, :, None], beside[None, :, None, :])
     return found / layer.n + side**2 * remainder(far, layer).mean(axis=(2, 3))
@@ -66,8 +66,8 @@ def remainder(r: np.ndarray, layer: Layer) -> np.ndarray:
 def convolution(influence: np.ndarray, even: bool) -> Callable[[np.ndarray], np.ndarray]:
     """The function pressure -> displacement on `count` elements a side, not periodic: padded to twice as many.
 
-    even : the pressure is the same on both sides of the two axes, and only the quarter where both are positive is
-    given. Transforms of cosines then do with a quarter of the numbers.
+    even : whether the pressure is the same on both sides of the two axes, and its argument only the quarter where both
+        are positive. Cosine transforms then need a quarter of the numbers
     """
     count = len(influence) - 1
     waves = fft.dctn(influence, type=1)  # of the even kernel of period 2 count

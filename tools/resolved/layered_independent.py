@@ -1,4 +1,4 @@
-"""Two formulations of the layered base that share nothing with the solver: used by the tests of `base="layered"`.
+"""Two formulations of the layered base that share nothing with the solver; the tests of `base="layered"` use them.
 
 Smooth: the Fredholm equation of the second kind of the dual integral equations. With p̂(k) = ∫ p J0(kr) r dr and
 p(r) = -∫_r^a φ'(t)/sqrt(t² - r²) dt, φ(a) = 0 (no pressure at the edge), p̂(k) = ∫₀^a φ(t) cos(kt) dt. The displacement
@@ -18,7 +18,7 @@ same φ,
     φ(t) = (2/π) ∫_t^a r p dr/sqrt(r² - t²),
     u(r) = (2/E1*) [∫₀^{π/2} φ(r sin θ) dθ + ∫₀^∞ (L(kh) - 1) p̂(k) J0(kr) dk],
 
-which is the half-space by two smooth integrals without an elliptic one, and the layer by cosine transforms of φ.
+which has the half-space as two smooth integrals instead of an elliptic one, and the layer as cosine transforms of φ.
 """
 
 from functools import cache, lru_cache
@@ -26,7 +26,7 @@ from functools import cache, lru_cache
 import numpy as np
 from scipy.special import factorial, j0, sici
 
-#: What :func:`rough` computes.
+#: Results of :func:`rough`.
 NAMES = ("P", "D", "p0", "p_max", "Ar_An")
 
 _rule = lru_cache(maxsize=None)(np.polynomial.legendre.leggauss)
@@ -39,8 +39,7 @@ def legendre(count, low=0.0, high=1.0):
 
 
 def kernel(u, n, nu1, nu2, bonded):
-    """L(u) - 1 at u (m,) from the closed forms, regrouped so that nothing cancels; for a check of this see
-    test_layered.py."""
+    """L(u) - 1 at u (m,) from the closed forms, regrouped so that nothing cancels; test_layered.py checks this."""
     if bonded:
         return bonded_kernel(u, n, nu1, nu2)
     s = np.sinh(u)  # above the line (n - 1)(sc + u - s²) + nu² with c - s = e^-u
@@ -48,7 +47,8 @@ def kernel(u, n, nu1, nu2, bonded):
 
 
 def bonded_kernel(u, n, nu1, nu2):
-    """As printed; beyond n = 100, where a and b near 1 cancel, in A = 1 - a and B = 1 - b and over e = e^-2u."""
+    """The bonded L - 1: as printed, but above n = 100, where a and b near 1 cancel, with A = 1 - a and B = 1 - b, and
+    over e = e^-2u."""
     alpha, g1, g2, e = n * (1 - nu1) / (1 - nu2), 3 - 4 * nu1, 3 - 4 * nu2, np.exp(-2 * u)
     if n <= 100:
         a, b = (alpha * g2 - g1) / (1 + alpha * g2), (alpha - 1) / (alpha + g1)
@@ -100,7 +100,7 @@ def fredholm(eta, n, nu1, nu2, bonded, count=None, m=0.0, radii=()):
 
 
 def polynomial_basis(nodes, s):
-    """Lagrange polynomials of the nodes and of s = 0 (where all vanish) at s: of the shape of s and one more axis."""
+    """Lagrange polynomials of the nodes and of s = 0 (where all vanish) at s: the shape of s and one more axis."""
     t = np.concatenate([[0.0], nodes])
     gaps = 4 * (t[:, None] - t)
     np.fill_diagonal(gaps, 1.0)
@@ -113,7 +113,8 @@ def polynomial_basis(nodes, s):
 
 @cache
 def collocation(count):
-    """Nodes s and weights of ∫ · ds, x; of the basis functions: centre, t with weights, Φ(t), ∫ Φ(x sin θ) dθ at x."""
+    """Nodes s and weights of ∫ · ds, x; and for the basis functions: centre, t with weights, Φ(t), ∫ Φ(x sin θ) dθ at
+    x."""
     s, w = legendre(count)
     x = np.sqrt((1 - s) * (1 + s))
     psi, psi_w = legendre(count // 2 + 30, 0, np.pi / 2)
@@ -134,7 +135,7 @@ def collocation(count):
 
 
 def spot(v, E, Nbar, Ra):
-    """p, A of Eqs (7), (6), v = b/B̄ of any number type."""
+    """p, A of Eqs (7), (6); v = b/B̄ may have any type of number."""
     cell = 1 / np.sqrt(np.pi * Nbar)
     b, rest = cell * v, cell * np.sqrt(1 - v * v)
     p = 2 * E * b**3 / (3 * Ra) / (cell**2 * np.arccos(v) + b * rest)
@@ -142,7 +143,7 @@ def spot(v, E, Nbar, Ra):
 
 
 def spot_radius(p, E, Nbar, Ra):
-    """b/B̄ (m,) at the pressures p (m,), Eq. (7), by halving; 0 where there is no pressure."""
+    """b/B̄ (m,) at the pressures p (m,), Eq. (7), by halving; 0 for no pressure."""
     low, high = np.zeros_like(p), np.ones_like(p)
     for _ in range(80):
         middle = (low + high) / 2
@@ -158,7 +159,7 @@ def rough(count, micro, a, h, n, nu1, nu2, bonded, Nbar, Ra, B=0.1, beta=0.5, ba
         k, kw = wave_rule(h / a, n)
         transform = (np.cos(np.outer(k, t)) * tw) @ potential
         layer = (j0(np.outer(x, k)) * (kw * kernel(k * h / a, n, nu1, nu2, bonded) / (1 + m))) @ transform
-        n = n / (1 + m)  # from here on of both surfaces together
+        n = n / (1 + m)  # from here on n is that of both surfaces together
         u, springs = 4 * a / (np.pi * n) * (H + layer), 0.0
     else:  # (3) with A1 = n: a half-space of E2* and springs
         n = 1.0 if base == "half_space" else n

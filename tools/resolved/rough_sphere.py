@@ -7,8 +7,8 @@ import numpy as np
 from conjugate_gradients import pressed
 from influence import Layer, coefficients, convolution
 
-#: Yastrebov, Anciaux and Molinari, Tribology International 114 (2017) 161: a contact of elements is too large by this
-#: times its edge along the elements, times their side, if they lie on the contact's edge at random.
+#: Yastrebov, Anciaux and Molinari, Tribology International 114 (2017) 161: a contact made of elements is too large by
+#: this factor times the length of its edge along the elements, times their side, if they lie on the edge at random.
 OUTSIDE = (np.pi - 1 + np.log(2)) / 24
 
 
@@ -36,8 +36,9 @@ class Resolved(NamedTuple):
 def resolved(punch: Punch, P, half, points, layer: Layer | None = None, start=None, tolerance=1e-5) -> Resolved:
     """The punch pressed by P on a half-space, or on a layer on one.
 
-    Square elements of constant pressure over a square of 2 `half`, `points` a side, not periodic; of summits of one
-    height a quarter of them. conjugate_gradients.py solves it, from the pressure `start` (points, points).
+    Square elements of constant pressure cover a square of side 2 `half`, `points` a side, not periodic; for summits of
+    one height a quarter of them is enough. conjugate_gradients.py solves it, from the pressure `start` (points,
+    points).
     """
     side = 2 * half / points
     middle = (np.arange(points) + 0.5) * side - half
@@ -53,18 +54,18 @@ def resolved(punch: Punch, P, half, points, layer: Layer | None = None, start=No
 
 
 def height(punch: Punch, x, y) -> np.ndarray:
-    """Height of the punch over the mean plane of its summits where that is lowest."""
+    """Height of the punch over the mean summit in the middle, where the mean surface of the summits is lowest."""
     macro = (x**2 + y**2) / 2
     if punch.heights is None:
         near = [v - np.round(v / punch.pitch) * punch.pitch for v in (x, y)]
         return macro + (near[0] ** 2 + near[1] ** 2) / (2 * punch.Ra)
-    summits = np.pad(punch.heights, 1, constant_values=-np.inf)  # there is none beside the lattice
+    summits = np.pad(punch.heights, 1, constant_values=-np.inf)  # there are none outside the lattice
     return macro + asperities(x, y, punch.pitch, punch.Ra, summits)
 
 
 def asperities(x, y, pitch, Ra, summits) -> np.ndarray:
-    """Height over their mean plane of the lowest of the paraboloids nearby; `summits` (n, n) has the one above x = y =
-    0 in its middle, and one more on each side than there are cells below."""
+    """Height of the lowest of the paraboloids nearby over their mean plane. summits : (n, n) heights; the middle one is
+    above x = y = 0, and a row surrounds those of the cells on each side."""
     near, middle = [np.round(v / pitch).astype(int) for v in (x, y)], len(summits) // 2
 
     def one(i, j):
@@ -88,19 +89,19 @@ def cell_means(found: Resolved, pitch) -> tuple[np.ndarray, np.ndarray]:
 
 
 def real_area(found: Resolved) -> float:
-    """Area of the elements with pressure, less what they stand out over the edge of the contact."""
+    """Area of the elements with pressure, less their excess over the edge of the contact."""
     touched = found.p > 0
     edge = sum(np.count_nonzero(np.diff(touched, axis=axis)) for axis in (0, 1))
     return (np.count_nonzero(touched) - OUTSIDE * edge) * found.side**2
 
 
 def touched_share(pressure) -> float:
-    """Share of the elements of a period with pressure, less what they stand out over the edges of the spots."""
+    """Share of the elements of a period with pressure, less their excess over the edges of the spots."""
     touched = pressure > 0
     edge = sum(np.count_nonzero(touched != np.roll(touched, 1, axis)) for axis in (0, 1))
     return (np.count_nonzero(touched) - OUTSIDE * edge) / touched.size
 
 
 def width(r, p, area) -> float:
-    """sqrt(5/2 <r²>) of a pressure at r: the contact radius of Hertz's."""
+    """sqrt(5/2 <r²>) of a pressure at r, which is the contact radius for Hertz's pressure."""
     return float(np.sqrt(2.5 * (p * r**2 * area).sum() / (p * area).sum()))

@@ -1,11 +1,11 @@
-"""`make validate`: the two scales against one. Rough spheres with every asperity resolved, on a half-space and on
-layers, of one height and of random heights, and cells of a lattice on layers, beside the predictions: docs/validate.nc,
-.md, .png, validate_cells.png, validate_limits.md, .png.
+"""`make validate`: the model of two scales against resolved asperities. Rough spheres with every asperity resolved, on
+a half-space and on layers, of one height and of random heights, and cells of a lattice on layers, are compared with the
+predictions: docs/validate.nc, .md, .png, validate_cells.png, validate_limits.md, .png.
 
     python tools/resolved/validate.py
 
-Each contact is kept in results/validate as soon as it is solved; what is there is not solved again. Delete that folder
-where this code has changed.
+Each contact is stored in results/validate as soon as it is solved, and is not solved again. Delete that folder after a
+change of this code.
 """
 
 import sys
@@ -22,7 +22,7 @@ from validate_rates import rates
 
 
 def found(folder: Path) -> dict[str, xr.Dataset]:
-    """Everything that is shown, solved where it is missing."""
+    """All data of the pages and figures; contacts that are missing in the folder are solved."""
     spheres = xr.concat([compared(sphere, folder) for sphere in SPHERES], "case")
     spheres["finer"] = "quantity", finer(folder)
     return {
@@ -41,7 +41,7 @@ def found(folder: Path) -> dict[str, xr.Dataset]:
 
 
 def main(docs: Path, folder: Path) -> None:
-    """Solve what is missing, and write the files."""
+    """Solve the missing contacts, and write the files."""
     parts = found(folder)
     tree = xr.DataTree.from_dict({"/": xr.Dataset(attrs={"command": "make validate"}), **parts})
     small = {"zlib": True, "dtype": "float32"}

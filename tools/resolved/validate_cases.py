@@ -1,4 +1,4 @@
-"""The contacts of `make validate` whose asperities have one height: resolved, predicted by two scales, and compared."""
+"""The contacts of `make validate` whose asperities have one height: resolved, predicted on two scales, and compared."""
 
 import hashlib
 from pathlib import Path
@@ -12,19 +12,19 @@ from rough_sphere import Punch, Resolved, cell_means, real_area, resolved, width
 import study
 
 RA = 0.004
-#: What asperities may feel, and the laws that are compared on several bases, and as these and those asperities.
+#: Values of `asperities_on`, and the laws that are compared over bases, and over `asperities_on`.
 ON = ("layer", "half_space")
 LAWS = {"base": ("power_law", "disc_cell", "square_lattice"), "asperities_on": ("disc_cell", "square_lattice")}
-#: What is compared, and its name in the results of the two scales.
+#: Compared quantity -> its name in the results of the two scales.
 QUANTITIES = {"D": "D", "a": "width", "p_max": "p_max", "Ar_An": "area"}
-#: Change of the pressure in the last step of the conjugate gradients, over it.
+#: Relative change of the pressure in the last step of the conjugate gradients.
 TOLERANCE = 1e-6
 
 
 class Case(NamedTuple):
     """A sphere under the load P with asperities of RA at this pitch; R = E2* = 1. Cells a side, an odd number, and
-    elements a side on each mesh, each twice as many. They are no multiple of the cells: so each spot lies differently
-    on the elements, and what the edges of the spots err in the area differs too."""
+    elements a side on each mesh, twice as many as on the mesh before. They are no multiple of the cells: each spot lies
+    differently on the elements, and so the errors of the area at the edges of the spots differ as well."""
 
     name: str
     P: float
@@ -44,8 +44,8 @@ LAYERED = (
     Case("a soft bonded film", 2e-5, 0.003, 27, (336, 672, 1344), Layer(0.006, 0.2, bonded=True)),
     Case("a hard bonded coating", 4e-5, 0.002, 29, (360, 720, 1440), Layer(0.015, 4.0, bonded=True)),
 )
-#: Layers thinner than the pitch: one that becomes ever thinner, and four of other stiffness, of which the hardest also
-#: with four times as many spots.
+#: Layers thinner than the pitch: one in ever smaller thickness, and four of other stiffness; the hardest also with four
+#: times as many spots.
 THINNER = tuple(
     Case(f"h = {h:g}", 2e-5, 0.0054, 15, (366, 732), Layer(h, 0.5)) for h in (0.016, 0.008, 0.004, 0.002, 0.001)
 )
@@ -59,7 +59,7 @@ THIN = (
 
 
 def kept(folder: Path, key: tuple, solve) -> dict[str, np.ndarray]:
-    """The arrays that `solve` returns, from the folder, where they are if a run before this one had the same key."""
+    """The arrays that `solve` returns. They come from the folder if an earlier run had the same key."""
     name = hashlib.sha256(repr(key).encode()).hexdigest()[:16]
     path = folder / f"{name}.npz"
     if not path.exists():
@@ -73,7 +73,7 @@ def kept(folder: Path, key: tuple, solve) -> dict[str, np.ndarray]:
 
 
 def solved(case: Case, folder: Path) -> list[Resolved]:
-    """The contact on each of its meshes, from the folder or solved now; each begins with the one before."""
+    """The contact on each of its meshes, from the folder or solved now; each solution starts from the coarser one."""
     found, start = [], None
     for points in case.points:
 
@@ -89,8 +89,8 @@ def solved(case: Case, folder: Path) -> list[Resolved]:
 
 
 def given(layer: Layer | None, over: str = "base") -> dict:
-    """The layer in the words of the two scales, with every base that is claimed for it, or all that its asperities may
-    feel, the best first."""
+    """The layer as parameters of the two scales, with every base that may be used for it, or with every
+    `asperities_on`; the best first."""
     if layer is None:
         return {"base": ["half_space"]}
     words = {"bonding": "bonded" if layer.bonded else "frictionless", "base": ["layered", "thin_layer"]}
@@ -99,7 +99,7 @@ def given(layer: Layer | None, over: str = "base") -> dict:
 
 
 def predicted(case: Case, over: str) -> xr.Dataset:
-    """The two scales, over the bases, or what the asperities feel, and the laws, in the quantities of `measured`."""
+    """The QUANTITIES on two scales, over the bases or `asperities_on`, and the laws."""
     asked = {"P": case.P, "Nbar": case.pitch**-2, "Ra": RA, "x": 801, "rtol": 1e-6, "micro": list(LAWS[over])}
     found = study.solve(**asked, **given(case.layer, over)).load().transpose(over, "micro", "x")
     x, p = found["x"].values, found["p"].values
@@ -110,21 +110,21 @@ def predicted(case: Case, over: str) -> xr.Dataset:
 
 
 def measured(found: Resolved) -> dict[str, float]:
-    """The QUANTITIES of one mesh; the area in R². p_max is of the central spot, whose summit is a corner of elements on
-    every mesh; elsewhere the largest comes nearer to a summit on one mesh than on the next."""
+    """The QUANTITIES of one mesh; the area in R². p_max is that of the central spot, whose summit is a corner of
+    elements on every mesh; in other spots the distance from the summit to the elements varies with the mesh."""
     middle = len(found.p) // 2
     r = np.hypot(found.middle[:, None], found.middle[None, :])
     return {"D": found.D, "a": width(r, found.p, 1.0), "p_max": found.p[middle, middle], "Ar_An": real_area(found)}
 
 
 def richardson(coarse: float, fine: float, order: int) -> float:
-    """The limit of values on meshes each twice as fine, if the error is of this order."""
+    """The limit of the values on a mesh and on one twice as fine, if the error has this order."""
     return fine + (fine - coarse) / (2**order - 1)
 
 
 def compared(case: Case, folder: Path, over: str = "base") -> xr.Dataset:
-    """All that is shown of a case: errors over (base, law), or over (asperities_on, law), the means of the cells, and
-    the nominal pressures."""
+    """All data of a case: errors over (base, law), or over (asperities_on, law), the means of the cells, and the
+    nominal pressures."""
     meshes, two = solved(case, folder), predicted(case, over)
     coarse, fine = (measured(mesh) for mesh in meshes[-2:])
     finest = {name: richardson(coarse[name], fine[name], 1 if name == "Ar_An" else 2) for name in QUANTITIES}
@@ -146,10 +146,11 @@ def compared(case: Case, folder: Path, over: str = "base") -> xr.Dataset:
 
 
 def cell_errors(r, mean, two: xr.Dataset, case: Case) -> np.ndarray:
-    """Largest difference of a cell's mean from p(r), over p(0), of each base and law, a pitch inside the contact."""
+    """Largest difference of a cell's mean from p(r), over p(0), for each base and law, at least a pitch inside the
+    contact."""
     errors = np.full(two["a"].shape, np.nan)
     for place, a in np.ndenumerate(two["a"].values):
-        inside = r < a - case.pitch  # none where the base is not claimed, and a is NaN
+        inside = r < a - case.pitch  # no cell if the base may not be used, since a is NaN
         if inside.any():
             p = two["p"].values[place]
             errors[place] = np.abs(np.interp(r[inside], two["x"].values * a, p) - mean[inside]).max() / p[0]

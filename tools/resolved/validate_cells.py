@@ -1,9 +1,9 @@
-"""Cells of a lattice on a coated body with every point resolved, beside the law of asperities that feel the layer alone
-("half_space") and of asperities that feel the coated body ("layer").
+"""Cells of a lattice on a coated body with every point resolved, compared with the laws of asperities that feel the
+layer alone ("half_space") and of asperities that feel the coated body ("layer").
 
-The pressures are those of :func:`solver.laws.cell.periodic.pressed`, the solver of `periodic_rows`; the kernel is that
-of layered_independent.py. So nothing but conjugate gradients is shared with the equation of one spot, which is a mean
-over the angle. Units E = Ra = l = 1, in which l = 1/sqrt(Nbar) and E = E1*/(1 + m).
+The pressures come from :func:`solver.laws.cell.periodic.pressed`, the solver of `periodic_rows`; the kernel from
+layered_independent.py. They share only the conjugate gradients with the equation of one spot, which is a mean over the
+angle. Units E = Ra = l = 1, in which l = 1/sqrt(Nbar) and E = E1*/(1 + m).
 """
 
 from itertools import product
@@ -21,12 +21,12 @@ from solver.laws import LAWS, cell_rows
 from solver.laws.cell.periodic import pressed, response_of
 from solver.laws.cell.sums import LATTICES
 
-#: L - 1 is below e^-60 beyond this kh.
+#: L - 1 is below e^-60 above this kh.
 _SHORTEST = 40.0
-#: Order of the errors of A and p_max in the side of an element. That of λ, whose edges are corrected, is random and
-#: falls about as fast.
+#: Order of the errors of A and p_max in the side of an element. The error of λ, which has corrected edges, is random
+#: and falls about as fast.
 ORDER = 2
-#: What is compared.
+#: Compared quantities.
 QUANTITIES = ("A", "lam", "p_max")
 
 
@@ -42,7 +42,8 @@ class Cell(NamedTuple):
 
 
 def _chosen() -> tuple[Cell, ...]:
-    """Six pitches by four contact fractions; the rest is dealt out in turn, so that each value meets many others."""
+    """Six pitches times four contact fractions; the other parameters take turns, so that each value meets many
+    others."""
     chosen, grid = [], product(enumerate((1.0, 1.7, 3.0, 5.5, 10.0, 16.0)), enumerate((0.02, 0.1, 0.25, 0.4)))
     for i, ((row, pitch), (column, lam)) in enumerate(grid):
         n, nu1 = (0.2, 0.5, 2.06, 5.0, 20.0)[i % 5], (0.2, 0.28, 0.35, 0.4, 0.47)[(i + i // 5) % 5]
@@ -51,7 +52,7 @@ def _chosen() -> tuple[Cell, ...]:
     return tuple(chosen)
 
 
-#: Cells on two meshes, of elements along a period of the lattice.
+#: Cells, and the numbers of elements along a period of the lattice on the two meshes.
 CELLS, MESHES = _chosen(), (256, 512)
 #: Layers, pitches over h, and contact fractions of the map; elements along a period.
 MATERIALS = {
@@ -116,7 +117,7 @@ def laws(cell: Cell) -> tuple[float, np.ndarray]:
 
 
 def cells(folder: Path) -> xr.Dataset:
-    """Of CELLS what is resolved, ± half the change from the finest mesh, and the errors of both laws."""
+    """The resolved numbers of CELLS, ± half the change between the meshes, and the errors of both laws."""
     parts = []
     for cell in CELLS:
         p, known = laws(cell)
@@ -132,8 +133,8 @@ def cells(folder: Path) -> xr.Dataset:
 
 
 def films() -> xr.Dataset:
-    """Over (material, λ, pitch/h): A, λ and p_max of resolved cells over those on a half-space, less 1, and what both
-    laws err; over (material, λ, fine): A by the law over that on a half-space, less 1."""
+    """Over (material, λ, pitch/h): A, λ and p_max of resolved cells over those on a half-space, less 1, and the errors
+    of both laws; over (material, λ, fine): A by the law over that on a half-space, less 1."""
     shape = (len(MATERIALS), len(LAMS), len(PITCHES))
     change, error, law = np.empty((*shape, 3)), np.empty((*shape, 2, 3)), np.empty((*shape[:2], len(FINE)))
     for i, layer in enumerate(MATERIALS.values()):

@@ -15,12 +15,12 @@ LOOKS = {"power_law": ("C1", (0, (1, 1.2))), "disc_cell": ("C2", (0, (4, 2))), "
 
 #: Colours of five stiffnesses, from hard to soft.
 COLOURS = ("#8c2d04", "#dd5f21", "#E69F00", "#2878b8", "#08306b")
-#: Errors below this, near that of the resolved cells, are drawn there.
+#: Smaller errors, which are near that of the resolved cells, are drawn here.
 LEAST = 1e-6
 
 
 def draw_means(half_space: xr.Dataset, layer: xr.Dataset, path: Path) -> None:
-    """Means of the cells over r/a with the nominal pressure of each law, and below what the laws are off by."""
+    """Draw means of the cells over r/a with the nominal pressure of each law, and below them the errors of the laws."""
     from matplotlib.figure import Figure
 
     with style():
@@ -57,7 +57,7 @@ def _means(one: xr.Dataset, top, below) -> None:
 
 
 def draw_limits(parts: dict[str, xr.Dataset], path: Path) -> None:
-    """Where the layer is thin against the pitch, and random heights."""
+    """Draw the contacts on layers that are thin against the pitch, and those with random heights."""
     from matplotlib.figure import Figure
 
     with style():
@@ -105,7 +105,7 @@ def _films(found: xr.Dataset, panel) -> None:
 
 
 def draw_cells(found: xr.Dataset, path: Path) -> None:
-    """What both laws err in A and p_max of the cells, over pitch/h."""
+    """Draw the errors of both laws in A and p_max of the cells, over pitch/h."""
     from matplotlib.figure import Figure
 
     with style():

@@ -1,7 +1,7 @@
 """The contacts of `make validate` whose asperities have random heights: draws of a sphere, and of periodic cells.
 
 Both have their summits on a square lattice. Cells are in units E = Ra = pitch = 1. Depths count from the mean plane of
-all summits that could be drawn, which the micro laws have c σ deeper than the touch of the highest.
+the law's heights, which is c σ below its highest summit; the micro laws count from the touch of that summit.
 """
 
 from itertools import product
@@ -23,7 +23,7 @@ from solver.laws.cell.periodic import pressed, response_of
 from solver.laws.heights import UNIFORM
 
 CUT = 4.0
-#: How many draws of a sphere, and of a periodic cell: their means are then known to a third of the scatter of a sphere.
+#: Numbers of draws of a sphere, and of a periodic cell: means are then known to a third of the scatter of a sphere.
 DRAWS, CELLS_DRAWN = 8, 8
 #: Orders of the errors of depth, width, area and largest pressure in the side of an element.
 ORDERS = np.array([2, 2, 1, 2])
@@ -31,7 +31,7 @@ ORDERS = np.array([2, 2, 1, 2])
 RINGS = 8
 #: Summits a side of a periodic cell, elements a side, no multiple of them, and the nominal pressures in E pitch/Ra.
 SUMMITS, MESHES, PRESSURES = 15, (124, 248), (0.01, 0.03, 0.1, 0.3)
-#: σ over A* = 1/(π N̄ Ra), by which equal asperities give way at full contact three times.
+#: σ over A* = 1/(π N̄ Ra), which is three times the displacement of equal asperities at full contact.
 SPREADS = (0.0, 0.1, 0.3)
 ONES = {"Nbar": 1.0, "Ra": 1.0}
 #: Layers under periodic cells, of a pitch of 6 h, their spreads and nominal pressures.
@@ -67,7 +67,7 @@ SPHERES = (
 
 
 def drawn(micro: str, sigma: float, count: int, seed: list[int]) -> np.ndarray:
-    """Heights (count, count) of summits above the mean, as the law has them."""
+    """Random heights (count, count) of summits above the mean, distributed as in the law."""
     share = np.random.default_rng(seed).uniform(size=(count, count))
     if micro == "uniform_heights":
         return sigma * UNIFORM * (2 * share - 1)
@@ -94,7 +94,7 @@ def sphere(case: Sphere, draw: int) -> dict[str, np.ndarray]:
 
 
 def finer(folder: Path) -> np.ndarray:
-    """What elements half as large change of depth, width, area and largest pressure (4,), over them, in one draw."""
+    """Relative changes of depth, width, area and largest pressure (4,) in one draw, with elements half as large."""
     case = SPHERES[0]._replace(counts=(*SPHERES[0].counts, 2 * SPHERES[0].counts[-1]))
     meshes = kept(folder, ("heights", RA, CUT, case[1:], 0), lambda: sphere(case, 0))["meshes"]
     return richardson(meshes[1], meshes[2], ORDERS) / richardson(meshes[0], meshes[1], ORDERS) - 1
@@ -110,7 +110,7 @@ def draws(case: Sphere, folder: Path) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
 
 def rings(r, mean, a) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mean r, mean and its standard error (RINGS,), of the cells (draw, cell) in rings of equally many within a."""
+    """Mean r, mean and its standard error (RINGS,) for the cells (draw, cell) within a, in rings with equal numbers."""
     inside = r < a
     ring = np.arange(np.count_nonzero(inside)) * RINGS // np.count_nonzero(inside)  # r ascends
     count = np.bincount(ring)
@@ -119,7 +119,7 @@ def rings(r, mean, a) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def compared(case: Sphere, folder: Path) -> xr.Dataset:
-    """All that is shown of a sphere: over the laws, that of its heights, and those of one height at their mean."""
+    """All data of a sphere, over the laws: the law of its heights, and the laws of one height, at the mean height."""
     values, r, mean = draws(case, folder)
     laws = [case.micro, "disc_cell"]
     asked = {"P": case.P, "Nbar": case.pitch**-2, "Ra": RA, "x": 401, "rtol": 1e-5}

@@ -23,7 +23,7 @@ from validate_tables import (
     thinner_table,
 )
 
-#: Of one processor, an AMD EPYC, measured with nothing kept.
+#: On one processor, an AMD EPYC, measured without stored contacts.
 MINUTES = 7
 PAGE = """# Two scales against one
 
@@ -178,7 +178,7 @@ the layer's material and on the layer:
 {height_cells}
 """
 
-#: Name in the text -> the part of the results that it shows, and its table.
+#: Name in the text -> the part of the results, and the function of its table.
 TABLES = {
     "half_space": ("half_space", half_space_table),
     "layer": ("layer", layer_table),

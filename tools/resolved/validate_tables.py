@@ -12,7 +12,7 @@ from solver.laws import LAWS as KNOWN
 
 HEADS = {"D": "depth", "a": "width", "p_max": "largest pressure", "Ar_An": "real area"}
 BASES = {"half_space": "", "layered": "", "thin_layer": "thin layer, "}
-#: What asperities press on, in tables of thin layers.
+#: Value of `asperities_on` -> its words in tables of thin layers.
 FELT = {"half_space": "half-space, ", "layer": "layer, "}
 
 
@@ -22,7 +22,7 @@ def table(heads: list[str], rows: list[list[str]]) -> str:
 
 
 def predictions(one: xr.Dataset, over: str = "base") -> list[list[str]]:
-    """What is known of a resolved contact, and the errors of every law, over the bases or what the asperities feel."""
+    """The properties of a resolved contact, and the errors of every law, over the bases or `asperities_on`."""
     rows = [["resolved", *(f"± {float(one[f'{name}_uncertain']):.3%}" for name in QUANTITIES), ""]]
     for way in one[over].values:
         for law in LAWS[over]:
@@ -50,7 +50,7 @@ def spots(one: xr.Dataset) -> float:
 
 
 def off_by(share: float) -> float:
-    """λ at which A of the disc cell is larger by this share than that of the square lattice."""
+    """λ at which A of the disc cell is larger than A of the square lattice by this share."""
     p = np.geomspace(1e-6, 0.3, 400)
     disc, lattice = (KNOWN[name].at(p, 1.0, Nbar=1.0, Ra=1.0) for name in ("disc_cell", "square_lattice"))
     return float(np.interp(share, disc.A / lattice.A - 1, lattice.lam))
@@ -80,7 +80,7 @@ def spot_over_h(one: xr.Dataset) -> float:
 
 
 def thin_table(found: xr.Dataset) -> str:
-    """The errors, by layer and by what the asperities press on, beside `model_error`."""
+    """The errors, by layer and `asperities_on`, with `model_error`."""
     rows = []
     for case in THIN:
         one = found.sel(case=case.name)
@@ -109,7 +109,7 @@ def thinner_table(found: xr.Dataset) -> str:
 
 
 def cell_table(found: xr.Dataset) -> str:
-    """What is known of each resolved cell, and the errors of both laws."""
+    """The properties of each resolved cell, and the errors of both laws."""
     rows = []
     for i in range(found.sizes["cell"]):
         one = found.isel(cell=i)
@@ -165,7 +165,7 @@ def heights_table(found: xr.Dataset) -> str:
 
 
 def cells_table(found: xr.Dataset) -> str:
-    """What the mean field is off, by σ and p."""
+    """The errors of the mean field, by σ and p."""
     rows = []
     for spread in found["spread"].values:
         one = found.sel(spread=spread)
@@ -180,7 +180,7 @@ def cells_table(found: xr.Dataset) -> str:
 
 
 def layer_cells_table(found: xr.Dataset) -> str:
-    """What the mean field is off on a half-space and on the layer, by layer, σ and p."""
+    """The errors of the mean field on a half-space and on the layer, by layer, σ and p."""
     rows = []
     for layer, spread in product(found["layer"].values, found["spread"].values):
         some = found.sel(layer=layer, spread=spread)
@@ -197,7 +197,7 @@ def layer_cells_table(found: xr.Dataset) -> str:
 
 
 def thick_table(found: xr.Dataset) -> str:
-    """What A is off from the half-space of the layer's material, and that over L(Gh) - 1, by pitch over h."""
+    """The difference of A from the half-space of the layer's material, also over L(Gh) - 1, by pitch over h."""
     off, over = (found[name].sel(quantity="A") for name in ("thick", "over"))
     rows = []
     for n in found["n"].values:
@@ -207,7 +207,7 @@ def thick_table(found: xr.Dataset) -> str:
 
 
 def alike_table(found: xr.Dataset) -> str:
-    """What p, A and p_max are off from those of the body, by n - 1."""
+    """The differences of p, A and p_max from those of the body, by n - 1."""
     rows = [
         [name, *(f"{value:+.1e}" for value in found["alike"].sel(quantity=name).values)] for name in ("p", "A", "p_max")
     ]
@@ -215,7 +215,7 @@ def alike_table(found: xr.Dataset) -> str:
 
 
 def thin_rates_table(found: xr.Dataset) -> str:
-    """What p, A and p_max are off from those of the body alone, by pitch over h."""
+    """The differences of p, A and p_max from those of the body alone, by pitch over h."""
     rows = []
     for n in found["n"].values:
         for name in ("p", "A", "p_max"):

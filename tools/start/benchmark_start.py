@@ -1,9 +1,9 @@
-"""What people wait for before anything is computed: processor time of new Pythons, over that of `import xarray`.
+"""The time before anything is computed: processor time of new Pythons, over that of `import xarray`.
 
 python tools/start/benchmark_start.py [ROUNDS]
 
-By turns, so that all are measured on the same machine; the median of the rounds, of user and system time with that of
-the processes that they start. Compiled modules are kept, and one round before is not counted.
+The calls take turns, so that the load of the machine is the same for all. The median of the rounds counts, of user and
+system time with that of child processes. Compiled modules are stored, and a first round does not count.
 """
 
 import os
@@ -35,7 +35,7 @@ def seconds(arguments: tuple[str, ...]) -> float:
 
 
 def starts(rounds: int) -> list[tuple[str, float, float]]:
-    """(what, seconds, ratio) of each call."""
+    """(name, seconds, ratio) of each call."""
     for arguments in CALLS.values():
         seconds(arguments)
     times = [[seconds(arguments) for arguments in CALLS.values()] for _ in range(rounds)]

@@ -1,6 +1,6 @@
-"""What units cost: 1,000 calls of study.solve with physical values beside the same contacts without units.
+"""The cost of units: 1,000 calls of study.solve with physical values, and for the same contacts without units.
 
-python tools/start/physical_calls.py      prints processor times and their ratio, which is to be at most 1.2
+python tools/start/physical_calls.py      prints processor times and their ratio, which must be at most 1.2
 """
 
 import statistics
@@ -27,7 +27,7 @@ def seconds(given: dict, loads: list) -> float:
 
 
 def compare(name: str, units: dict, plain: dict) -> None:
-    """Both in turn, round by round, for the machine may have other work: the median of the ratios."""
+    """Print the median of the ratios. Both take turns, round by round, since the machine may have other work."""
     ratios, times = [], [0.0, 0.0]
     for first in range(0, CALLS, ROUND):
         newtons = [5.0 + 0.01 * i for i in range(first, first + ROUND)]

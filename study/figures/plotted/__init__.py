@@ -1,1 +1,1 @@
-"""What `plot` draws besides curves: fits, bars of the inputs, and maps."""
+"""Figures of `plot` other than curves: fits, bars of the inputs, and maps."""

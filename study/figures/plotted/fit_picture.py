@@ -12,13 +12,13 @@ from ...specimen.quantities import readable
 from ..labels import axis_label, multiple
 from ..registry import Columns, joined
 
-MOST = 4  # curves in a figure
+MOST = 4  # largest number of curves in a figure
 
 
 def fits(fitted: xr.Dataset, where: dict, new: Callable[..., Figure]) -> tuple[Figure, Columns]:
-    """The points of each curve, its fit, and the residuals below; the points beyond the model's assumptions are open.
+    """The points of each curve, its fit, and the residuals below; points that violate the model's assumptions are open.
 
-    Raises StudyError for more than 4 curves, and for a plan, which has none.
+    Raises StudyError for more than 4 curves, and for a plan, which has no curves.
     """
     fitted = fitted if "curve" in fitted.dims else fitted.expand_dims("curve")
     x, y = fitted.attrs["x"], fitted.attrs["y"]
@@ -40,8 +40,8 @@ def fits(fitted: xr.Dataset, where: dict, new: Callable[..., Figure]) -> tuple[F
         across, up, drawn = (curve[name].values for name in (x, y, f"{y}_fit"))
         valid = ~(across > float(curve[f"{x}_valid"]))  # NaN where nothing is fitted
         order = np.argsort(across)
-        order = order[np.isfinite(drawn[order])]  # a gap among the points is none of the fit
-        for face, here in (("C0", valid), ("none", ~valid)):
+        order = order[np.isfinite(drawn[order])]  # a gap among the points is not a gap of the fit
+        for face, is_shown in (("C0", valid), ("none", ~valid)):
             style = {
                 "linestyle": "none",
                 "marker": "o",
@@ -49,8 +49,8 @@ def fits(fitted: xr.Dataset, where: dict, new: Callable[..., Figure]) -> tuple[F
                 "markeredgewidth": 0.5,
                 "markeredgecolor": "C0",
             }
-            above.plot(across[here] / sizes[0], up[here] / sizes[1], markerfacecolor=face, **style)
-            below.plot(across[here] / sizes[0], (up - drawn)[here] / sizes[1], markerfacecolor=face, **style)
+            above.plot(across[is_shown] / sizes[0], up[is_shown] / sizes[1], markerfacecolor=face, **style)
+            below.plot(across[is_shown] / sizes[0], (up - drawn)[is_shown] / sizes[1], markerfacecolor=face, **style)
         above.plot(across[order] / sizes[0], drawn[order] / sizes[1], color="C1", linestyle="-")
         below.axhline(0.0, color="C1", linestyle="-", linewidth=0.8)
         above.set_title(_title(curve, i, fitted.sizes["curve"]), fontsize=8)

@@ -13,15 +13,17 @@ from ..labels import axis_label, multiple, stated, with_units, wrapped
 from ..registry import Columns
 from ..style import spaced_by_factors, tick_decades
 
-HATCH = "////"  # of contacts of a map that are not valid
+HATCH = "////"  # over contacts that are not valid
 
 
 def map_of(
     contacts: xr.Dataset, x: str, y: str, colour: str, look: tuple, new: Callable[..., Figure]
 ) -> tuple[Figure, Columns]:
-    """The figure, and its numbers in columns. look : "linear", "log" or "", and the limits of the colour or None.
+    """The figure, and its numbers in columns.
 
-    Raises StudyError: x or y is no axis of the quantity, or there is a third one.
+    look : "linear", "log" or "", and the limits of the colour or None
+
+    Raises StudyError: x or y is not an axis of the quantity, or there is a third axis.
     """
     values = contacts[colour].squeeze(
         [dim for dim, n in contacts[colour].sizes.items() if n == 1 and dim not in (x, y)]
@@ -54,7 +56,7 @@ def map_of(
         axes.pcolor(*edges, hatched, cmap=nothing, edgecolor="0.6", linewidth=0, hatch=HATCH)
         figure.legend(handles=[Patch(facecolor="none", hatch=HATCH, label="not valid")], loc="outside lower center")
     figure.colorbar(
-        shades, label=axis_label(colour, contacts[colour]), extend=_beyond(values.values / unit, shades.norm)
+        shades, label=axis_label(colour, contacts[colour]), extend=_extended_ends(values.values / unit, shades.norm)
     )
     figure.suptitle(wrapped(stated([contacts]), 21 * figure.get_figwidth()), fontsize=7)
     across, up = np.meshgrid(values[x].values, values[y].values)
@@ -63,7 +65,7 @@ def map_of(
 
 
 def _edges(numbers: np.ndarray) -> np.ndarray:
-    """Edges of the cells around the values of an axis, (n + 1,), half way between these as the axis is scaled."""
+    """Edges of the cells around the values of an axis, (n + 1,), half-way between values on the scale of the axis."""
     if len(numbers) == 1:
         return numbers[0] + np.array([-0.5, 0.5]) * (abs(numbers[0]) or 1.0)
     log = spaced_by_factors(numbers)
@@ -76,18 +78,18 @@ def _edges(numbers: np.ndarray) -> np.ndarray:
 def _norm(numbers: np.ndarray, look: tuple, unit: float) -> Normalize:
     scale, limits = look
     low, high = (None, None) if limits is None else (limit / unit for limit in limits)
-    known = numbers[np.isfinite(numbers)]
-    if not len(known):
+    finite = numbers[np.isfinite(numbers)]
+    if not len(finite):
         raise StudyError(["nothing to draw: no case has a number"])
-    wide = known.min() > 0 and known.max() > 30 * known.min()
-    if scale == "log" and (known.min() if low is None else low) <= 0:
+    wide = finite.min() > 0 and finite.max() > 30 * finite.min()
+    if scale == "log" and (finite.min() if low is None else low) <= 0:
         raise StudyError(["scale = log: there are numbers that are not above 0; give limits above 0"])
     return (LogNorm if scale == "log" or (not scale and wide and (low is None or low > 0)) else Normalize)(
-        known.min() if low is None else low, known.max() if high is None else high
+        finite.min() if low is None else low, finite.max() if high is None else high
     )
 
 
-def _beyond(numbers: np.ndarray, norm: Normalize) -> str:
-    """At which ends of the scale there are numbers beyond it."""
+def _extended_ends(numbers: np.ndarray, norm: Normalize) -> str:
+    """The ends of the colour scale that numbers exceed, in the words of matplotlib."""
     low, high = np.nanmin(numbers) < norm.vmin, np.nanmax(numbers) > norm.vmax
     return "both" if low and high else "min" if low else "max" if high else "neither"

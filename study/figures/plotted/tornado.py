@@ -12,16 +12,20 @@ from ..labels import stated, symbol, wrapped
 from ..registry import Columns
 
 ORDINATE = "input"
-"""The y of `study.plot` that asks for these bars."""
-#: By which part of itself an input without a spread is larger, and a Poisson ratio by how much.
+"""The y of `study.plot` for these bars."""
+#: Relative change of an input without a spread, and change of a Poisson ratio.
 _STEP = 0.01
 
 
 def tornado(contact: xr.Dataset, name: str, new: Callable[..., Figure]) -> tuple[Figure, Columns]:
-    """The relative change of a result of one contact with each input, in %: larger by one standard deviation where
-    inputs have spreads, else by 1 %, and a Poisson ratio by 0.01; and as much smaller. `new` makes an empty figure.
+    """The relative change of a result of one contact with each input, in %.
 
-    Raises StudyError for several contacts, one that has not converged, and a result without sensitivities.
+    new : makes an empty figure
+
+    Each input is larger and smaller by one standard deviation where inputs have spreads, otherwise by 1 %, and a
+    Poisson ratio by 0.01.
+
+    Raises StudyError for several contacts, a contact that has not converged, and a result without sensitivities.
     """
     if name not in QUANTITIES:
         raise StudyError([f"y = {ORDINATE}: x must be one of {', '.join(QUANTITIES)}, not {name}"])
@@ -32,7 +36,7 @@ def tornado(contact: xr.Dataset, name: str, new: Callable[..., Figure]) -> tuple
     parts = {key: by_input[key] * part for key, part in relative_spreads(contact, by_input).items()}
     about = "one standard deviation" if parts else "1 % (a Poisson ratio by 0.01)"
     parts = parts or {key: by * _STEP for key, by in by_input.items()}
-    parts = dict(sorted(((key, 100 * part) for key, part in parts.items() if part), key=lambda one: abs(one[1])))
+    parts = dict(sorted(((key, 100 * part) for key, part in parts.items() if part), key=lambda item: abs(item[1])))
     if not parts or not np.isfinite([*parts.values()]).all():
         raise StudyError([f"nothing to draw: no input changes {name} of this contact, or it has not converged"])
     figure = new(figsize=(3.6, 0.9 + 0.24 * len(parts)), layout="constrained")

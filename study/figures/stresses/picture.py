@@ -1,4 +1,4 @@
-"""`plot_stresses`: where layer and body are stressed, and what surface and interface bear."""
+"""`plot_stresses`: the stresses in layer and body, at the surface and at the interface."""
 
 from collections.abc import Callable
 from typing import Any
@@ -19,11 +19,11 @@ from .regions import DEPTH, Stresses, of_one_contact
 from .sections import NAMES, Units, along, mark, outline, section
 from .spot_stresses import of_central_spot
 
-#: Layer and body have one scale of colours if their largest stresses differ by less than this factor.
+#: Layer and body share a scale of colours if their largest stresses differ by less than this factor.
 _ONE_SCALE = 2.0
-_BOTH, _MAPS = "viridis", {"layer": "Oranges", "body": "Blues"}  # of one scale, of two
-_SHARE = 0.3, 0.6  # of the height: the layer has no less, and no more
-_LETTERS = 130  # on a line above the figure
+_BOTH, _MAPS = "viridis", {"layer": "Oranges", "body": "Blues"}  # colours of a common scale, and of two scales
+_SHARE = 0.3, 0.6  # bounds of the layer's share in the height
+_LETTERS = 130  # number of letters on a line above the figure
 _BELOW = ("contact", "spot")
 
 
@@ -37,18 +37,18 @@ def plot_stresses(
     """A figure of the stresses of one contact: docs/stresses.md.
 
     Panels: von Mises' stress in a section of the layer and of the body under it, with a cross where it is largest; the
-    stresses on the surface; those at the interface, of a stack at that with the largest shear, on both of its sides.
-    Rings are the largest tension of the surface, and the largest tension and shear at the interface. A grey line is the
-    edge of the contact. Where the yield strength is known, from Y1, Y2 or the named material, a red line surrounds what
-    exceeds it. The figure is none of pyplot, as that of `study.plot`.
+    stresses on the surface; the stresses on both sides of the interface, in a stack of the interface with the largest
+    shear. Rings mark the largest tension on the surface, and the largest tension and shear at the interface. A grey
+    line is the edge of the contact. Where the yield strength is known, from Y1, Y2 or the named material, a red line
+    surrounds the part that exceeds it. Like the figure of `study.plot` it does not belong to pyplot.
 
     Parameters
     ----------
     contact : one contact of `study.solve` or of a results file: a dataset without dimensions, except for `x`
-    mu, sigma_res : as of `study.stresses`; with mu > 0 the section is the plane y = 0, and the punch moves to the right
-    below : "contact"; or "spot", the central spot of asperities that feel the layer, up to half of the pitch beside its
-        axis, where mu is 0. The stresses are then means over the angle, those of the nominal pressure included
-    parameters : those of `study.solve` of one contact, in place of it
+    mu, sigma_res : as in `study.stresses`; with mu > 0 the section is the plane y = 0, and the punch moves to the right
+    below : "contact"; or "spot", the central spot of asperities that feel the layer, up to half of the pitch from its
+        axis, with mu = 0. The stresses are then means over the angle, and include those of the nominal pressure
+    parameters : of `study.solve` for one contact, in place of `contact`
 
     Returns
     -------
@@ -56,8 +56,8 @@ def plot_stresses(
 
     Raises
     ------
-    StudyError : several contacts, one without a solution, a spot of asperities that do not feel the layer, or as
-        `study.stresses`
+    StudyError : several contacts, a contact without a solution, a spot of asperities that do not feel the layer, or as
+        in `study.stresses`
 
     Examples
     --------
@@ -82,7 +82,10 @@ def _checked(below: str, mu: float) -> str:
 def drawn(
     contact: xr.Dataset, mu: float, sigma_res: float | str, new: Callable[..., Figure], below: str = "contact"
 ) -> Figure:
-    """The figure of `plot_stresses`. `new` makes an empty figure."""
+    """The figure of `plot_stresses`.
+
+    new : makes an empty figure
+    """
     spot = below == "spot"
     contact, shown = of_central_spot(contact, sigma_res) if spot else of_one_contact(contact, mu, sigma_res)
     largest = {name: _shown_most(shown, name) for name in NAMES if getattr(shown, name)}
@@ -111,20 +114,29 @@ def drawn(
 
 
 def _shown_most(shown: Stresses, name: str) -> float:
-    """The largest von Mises stress of the layer or the body, or of the section where it is infinite."""
+    """The largest von Mises stress of the layer or the body, or that of the section where it is infinite."""
     largest = float(shown.largest[NAMES[name]])
     return largest if np.isfinite(largest) else float(getattr(shown, name).mises.max())
 
 
 def _draw_sections(panels, contact: xr.Dataset, shown: Stresses, largest: dict[str, float], sliding: bool) -> None:
-    """Layer and body, with one scale of colours or with two. largest : von Mises stress of each"""
+    """Draw layer and body, with one scale of colours or with two.
+
+    largest : largest von Mises stress of each
+    """
     top = max(largest.values())
     one_scale = len(largest) == 2 and top < _ONE_SCALE * min(largest.values())
-    for axes, (name, own_top) in zip(panels, largest.items(), strict=True):
+    for axes, (name, largest_of_part) in zip(panels, largest.items(), strict=True):
         region, Y = getattr(shown, name), shown.Y[name]
-        units = Units.of(contact, top if one_scale else own_top, sliding)
-        filled = section(axes, region, top if one_scale else own_top, _BOTH if one_scale else _MAPS[name], units)
-        limit = f"largest {units.text(own_top)}" if np.isfinite(shown.largest[NAMES[name]]) else "infinite at the cross"
+        units = Units.of(contact, top if one_scale else largest_of_part, sliding)
+        filled = section(
+            axes, region, top if one_scale else largest_of_part, _BOTH if one_scale else _MAPS[name], units
+        )
+        limit = (
+            f"largest {units.text(largest_of_part)}"
+            if np.isfinite(shown.largest[NAMES[name]])
+            else "infinite at the cross"
+        )
         said = [f"{'layers' if name == 'layer' and shown.inner else name}: {limit}"]
         if np.isfinite(Y):
             said.append(f"yields at {Units.of(contact, Y, units.sliding).text(Y)}")
@@ -146,10 +158,10 @@ def _draw_sections(panels, contact: xr.Dataset, shown: Stresses, largest: dict[s
 
 
 def _heights(shown: Stresses) -> list[float]:
-    """The heights of the panels of layer and body: to scale, where the layer is neither very thin nor very thick."""
+    """The heights of the panels of layer and body, to scale unless the layer is very thin or very thick."""
     if not (shown.layer and shown.body):
         return [1.0]
-    depth = DEPTH if shown.edge == 1 else shown.body.z[-1] - shown.h  # of a spot in pitches
+    depth = DEPTH if shown.edge == 1 else shown.body.z[-1] - shown.h  # below a spot it is given in pitches
     share = np.clip(shown.h / (shown.h + depth), *_SHARE)
     return [share, 1 - share]
 
@@ -160,7 +172,7 @@ def _above(contact: xr.Dataset, mu: float, sigma_res: float | str) -> list[str]:
     sliding = [rf"$\mu$ = {mu:g}"] * (mu > 0) + [rf"$\sigma_{{\mathrm{{res}}}}$ = {stress}"] * bool(sigma_res != 0)
     bodies = [name for name in ("nu1", "nu2") if name in contact and not (name == "nu2" and is_rigid(contact, "base"))]
     ratios = [value_text(name, contact[name], contact[name].item()) for name in bodies]
-    texts = dict.fromkeys([*stated([contact]), *ratios, *sliding])  # the pressure may not depend on them
+    texts = dict.fromkeys([*stated([contact]), *ratios, *sliding])  # the pressure may not depend on the ratios
     violated = [name for name, where in broken(contact["validity"]).items() if where.any()]
     names = [RULES[name].text if name in RULES else name for name in violated]
     return [wrapped([*texts], _LETTERS), *([f"not valid: {', '.join(names)}"] if names else [])]

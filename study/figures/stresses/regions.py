@@ -16,18 +16,22 @@ from ...in_words.stated_inputs import is_rigid
 from ...inputs.definition import StudyError
 
 _NEAR = np.linspace(0, 0.4, 17) ** 2 / 0.4
-#: Radii that are shown, in a: 1, where the pressure ends, is among them, and they are closer there.
+#: Radii of the picture in a. They include 1, where the pressure ends, and are closer to each other there.
 _RADII = np.unique(np.concatenate([np.linspace(0, 2, 51), 1 - _NEAR, 1 + _NEAR]).round(12))
-_LAYER, _BODY = 41, 49  # depths that are computed in each
-_BESIDE = 1e-9  # below an interface between layers, over its depth
+_LAYER, _BODY = 41, 49  # number of depths in each
+_BESIDE = 1e-9  # distance below an interface between layers, over its depth
 _AT_INTERFACE = "trz_above", "sz_above", "sr_above", "sr_below"
-DEPTH = 1.6  # of the body, in a: where a half-space is stressed most, 0.48, is in the upper third
-THICKEST = 3.0  # layer in a that is shown as a whole; of a thicker one neither interface nor body are,
-_BENT = 0.3  # unless it bends: the tension at its lower side is more than this share of its largest stress
+DEPTH = 1.6  # of the body, in a: the largest stress of a half-space, at 0.48, is in the upper third
+THICKEST = 3.0  # thickest layer that is shown completely, in a; below a thicker one, interface and body are not shown,
+_BENT = 0.3  # unless it bends: the tension at its lower side exceeds this share of its largest stress
 
 
 class Region(NamedTuple):
-    """Layer or body in the section. r, z : in a; mises : (z, r)"""
+    """Layer or body in the section.
+
+    r, z : in a
+    mises : von Mises stress, (z, r)
+    """
 
     r: np.ndarray
     z: np.ndarray
@@ -37,14 +41,14 @@ class Region(NamedTuple):
 class Stresses(NamedTuple):
     """The stresses of a picture, in Pa or in units of the solver.
 
-    layer, body : Region or None where it is not there, or a rigid body
+    layer, body : None without a layer, and for a body that is rigid or not shown
     surface, interface : name -> values along r; the interface is {} without a layer, or under a thick one
-    largest : of `study.extremes`
-    Y : yield strength of "layer" and "body", that of the call or of the named material; NaN where it is not known
-    h : in a, None without a layer
-    edge : radius in a up to which there is contact: of the contact, or of a spot
+    largest : from `study.extremes`
+    Y : yield strength of "layer" and "body", from the call or the named material; NaN where it is not known
+    h : thickness in a; None without a layer
+    edge : radius of the contact, or of a spot, in a
     inner : depths in a of the interfaces between the layers of a stack
-    number : of the interface of a stack that is shown; 0: there is one
+    number : of the interface of a stack that is shown; 0: there is only one
     """
 
     layer: Region | None
@@ -61,7 +65,7 @@ class Stresses(NamedTuple):
 
 
 def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tuple[xr.Dataset, Stresses]:
-    """The contact without dimensions, and its stresses. Raises StudyError for several contacts, or one not solved."""
+    """The contact without dimensions, and its stresses. Raises StudyError for several contacts, or an unsolved one."""
     contact = one_contact(contact)
     contacts = Contacts.of(contact, "plot_stresses")
     contacts.refuse_without_stresses("plot_stresses")
@@ -77,7 +81,7 @@ def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tu
     inner = tuple(end for end in ends[:-1] if end < (h if whole else THICKEST))
     within = np.unique([*within, *inner, *(end * (1 + _BESIDE) for end in inner)])
     below = (h or 0.0) + np.linspace(0, DEPTH, _BODY) if not h or whole and not rigid else np.zeros(0)
-    inside = within[:-1] if whole else within  # the interface is on neither side
+    inside = within[:-1] if whole else within  # stresses at the interface are read from each side
     fields = stresses(contact, r, np.concatenate([inside, below[1:] if h else below]), mu, sigma_res)
     if len(ends) > 1:
         deepest, fields = fields.isel(interface=-1), fields.sel(interface=number)
@@ -85,7 +89,7 @@ def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tu
     elif "interface" in fields.dims:
         fields = fields.isel(interface=0)
     mises = fields["mises"].values.T
-    mises = np.where(np.isfinite(mises), mises, mises[np.isfinite(mises)].max())  # at a sharp tip it is infinite
+    mises = np.where(np.isfinite(mises), mises, mises[np.isfinite(mises)].max())  # it is infinite at a sharp tip
     above, under = (fields[f"mises_{side}"].values[None] for side in ("above", "below"))
     layer = np.concatenate([mises[: len(inside)], *([above] if whole else [])])
     body = np.concatenate([*([under] if h else []), mises[len(inside) :]])
@@ -100,33 +104,35 @@ def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tu
 
 
 def _ends(contacts: Contacts) -> list[float]:
-    """Depths of the interfaces of one contact in a; of a bare body none that counts."""
+    """Depths of the interfaces of one contact in a; meaningless for a bare body."""
     numbers = range(1, max(1, numbers_of(contacts.problem.parameters)) + 1)
     a = float(contacts.dataset["a"]) / contacts.units[1].item()
     return (np.cumsum([getattr(contacts.problem, full_name(number, "h"))[0] for number in numbers]) / a).tolist()
 
 
 def _of_several_layers(largest: xr.Dataset) -> tuple[dict[str, float], int]:
-    """The extremes of a stack by the names of one layer: those of the layer that bears most, and of the interface with
-    the largest shear; and the number of that interface."""
+    """The extremes of a stack under the names of a single layer, and the number of the chosen interface.
+
+    They come from the layer with the largest stress, and from the interface with the largest shear.
+    """
     layer, interface = (int(np.nanargmax(largest[name].values)) for name in ("mises_layer", "tau_interface"))
     layers, interfaces = largest.isel(layer=layer), largest.isel(interface=interface)
     names = {"mises1": "mises_layer", "sr_interface1": "sr_interface"}
-    made = {}
+    extremes_of_layer = {}
     for name in ("mises1", "mises2", "s1_surface", "sr_interface1", "tau_interface"):
         source = layers if name == "mises1" else interfaces
         for end in ("", "_r", "_z"):
-            made[f"{name}{end}"] = float(source[f"{names.get(name, name)}{end}"])
-    return made, interface + 1
+            extremes_of_layer[f"{name}{end}"] = float(source[f"{names.get(name, name)}{end}"])
+    return extremes_of_layer, interface + 1
 
 
 def yield_strengths(contact: xr.Dataset) -> dict[str, float]:
     """Yield strengths of layer and body, in Pa or in units of the solver; NaN where they are not known."""
     contacts = Contacts.of(contact, "plot_stresses")
-    (unit,), known = contacts.units[0].tolist(), strengths(contacts, {})
-    if numbers_of(contacts.problem.parameters) > 1:  # each layer has its own
-        known["layer"] = np.full(1, np.nan)
-    return {body: known[body].item() * unit for body in ("layer", "body")}
+    (unit,), strengths_of_bodies = contacts.units[0].tolist(), strengths(contacts, {})
+    if numbers_of(contacts.problem.parameters) > 1:  # each layer has another
+        strengths_of_bodies["layer"] = np.full(1, np.nan)
+    return {body: strengths_of_bodies[body].item() * unit for body in ("layer", "body")}
 
 
 def one_contact(contact: xr.Dataset) -> xr.Dataset:

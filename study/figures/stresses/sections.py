@@ -25,15 +25,16 @@ _CURVES = {
 _RINGS = {
     "surface": {"s1_surface": "sr"},
     "interface": {"sr_interface1": "sr_above", "tau_interface": "trz_above"},
-}  # line -> extreme -> the curve on which it is
-_BELOW = (0, (4, 1.5))  # dashes of what is in the body at the interface
+}  # line -> extreme -> the curve on which it lies
+_BELOW = (0, (4, 1.5))  # dashes of the stresses in the body at the interface
 
 
 class Units(NamedTuple):
-    """In which lengths and stresses are shown.
+    """The units in which lengths and stresses are shown.
 
-    a : the contact radius, in the `long` unit, "" for lengths in units of a
-    strong : name of the unit of stresses; one : its size, in that of the numbers
+    a : contact radius, in the unit `long`
+    long : name of the unit of lengths; "" for lengths in units of a
+    strong, one : name and size of the unit of stresses
     sliding : whether the plane y = 0 is shown
     """
 
@@ -45,8 +46,8 @@ class Units(NamedTuple):
 
     @classmethod
     def of(cls, contact: xr.Dataset, largest: float, sliding: bool) -> "Units":
-        """The units in which the radius of the contact and a stress are read most easily."""
-        largest = float(f"{largest:.6g}")  # else 1 GPa may be 1000 MPa
+        """The units in which the radius of the contact and a stress are easiest to read."""
+        largest = float(f"{largest:.6g}")  # otherwise 1 GPa may be 1000 MPa
         if "units" not in contact["a"].attrs:
             power = int(np.floor(np.log10(largest)))
             modulus = "E_1^*" if is_rigid(contact, "base") else "E_2^*"
@@ -82,19 +83,19 @@ def section(axes, region: Region, top: float, colours: str, units: Units) -> Qua
 
 
 def outline(axes, region: Region, Y: float, units: Units) -> None:
-    """A red line around what exceeds the yield strength."""
+    """Draw a red line around the part that exceeds the yield strength."""
     axes.contour(region.r * units.a, region.z * units.a, region.mises, [Y], colors="#CC0000", linewidths=1.2)
 
 
 def mark(axes, largest: xr.Dataset, name: str, units: Units) -> None:
-    """A cross where a stress is largest."""
+    """Draw a cross where a stress is largest."""
     r, z = (float(largest[f"{name}_{axis}"]) * units.a for axis in "rz")
     edge = [withStroke(linewidth=3, foreground="white")]
     axes.plot(r, z, "x", color="black", markersize=6, markeredgewidth=1.2, clip_on=False, zorder=5, path_effects=edge)
 
 
 def along(axes, name: str, values: dict[str, np.ndarray], shown: Stresses, units: Units) -> None:
-    """Stresses along the surface or along the interface; rings are the largest tension and shear."""
+    """Draw stresses along the surface or the interface; rings mark the largest tension and shear."""
     for key, stress in values.items():
         kind, _, side = key.partition("_")
         *symbols, colour, dashes = _CURVES[kind]
@@ -112,4 +113,4 @@ def along(axes, name: str, values: dict[str, np.ndarray], shown: Stresses, units
     axes.set_title(name, loc="left")
     place = {"loc": "lower right", "bbox_to_anchor": (1, 1), "borderaxespad": 0.2, "ncols": len(values)}
     legend = axes.legend(fontsize=7, handlelength=1.6, columnspacing=0.8, handletextpad=0.4, **place)
-    legend.set_in_layout(False)  # else a wide legend makes the panel narrow
+    legend.set_in_layout(False)  # otherwise a wide legend makes the panel narrow

@@ -1,4 +1,4 @@
-"""The stresses that the picture of a central spot shows: in a section below it, and along two lines."""
+"""The stresses in the picture of a central spot: in a section below it, and along two lines."""
 
 import numpy as np
 import xarray as xr
@@ -13,14 +13,16 @@ from ...in_words.stated_inputs import is_rigid
 from ...inputs.definition import StudyError
 from .regions import Region, Stresses, one_contact, yield_strengths
 
-#: Depths in the layer and in the body; radii, of which the edge of the spot is one; how deep the body is shown, in
-#: pitches.
+#: Number of depths in the layer and in the body; number of radii, which include the edge of the spot; depth of the body
+#: in the picture, in pitches.
 _LAYER, _BODY, _RADII, _DEPTH = 41, 41, 61, 0.6
 
 
 def of_central_spot(contact: xr.Dataset, sigma_res: float | str) -> tuple[xr.Dataset, Stresses]:
-    """The contact without dimensions, and the stresses below its central spot, up to half of the pitch beside the axis.
-    Raises StudyError for several contacts, one that is not solved, and asperities that do not feel the layer."""
+    """The contact without dimensions, and the stresses below its central spot, up to half of the pitch from the axis.
+
+    Raises StudyError for several contacts, an unsolved contact, and asperities that do not feel the layer.
+    """
     contact = one_contact(contact)
     contacts = Contacts.of(contact, "plot_stresses")
     contacts.refuse_without_stresses("plot_stresses")

@@ -1,1 +1,1 @@
-"""What a call or a study file says of the punch: its shape, its asperities, and how it sticks."""
+"""The punch in calls and study files: its shape, its asperities and its adhesion."""

@@ -1,4 +1,4 @@
-"""What the asperities of a study press on: the coated body itself, or a half-space of the layer's material."""
+"""The body under the asperities of a study: the coated body itself, or a half-space of the layer's material."""
 
 import math
 from functools import partial
@@ -15,22 +15,22 @@ from solver.problem import can_feel, far_apart, feels
 from ...terminal import shown
 from ..grid import Grid, along
 
-#: What asperities have pressed on, value of `asperities_used` -> its name.
+#: Names of the bodies that asperities have pressed on, in the order of the values of `asperities_used`.
 USED = ("none", "half_space", "layer")
 
-#: What the law of asperities that feel the body depends on, which takes some 10 ms for each. Where a body and a pitch
-#: have at least so many cases that is little.
+#: Parameters of the law of asperities that feel the coated body. A law takes some 10 ms for each set of them, which is
+#: little if a set has at least so many cases.
 _OF_BODIES, _FEW_CASES = ("h", "n", "m", "nu1", "nu2", "bonding", "Nbar"), 20
 
 
 def felt(grid: Grid) -> np.ndarray:
-    """bool, along the dimensions of the grid: the cases whose asperities feel what lies below the surface."""
+    """bool, along the dimensions of the grid: the cases whose asperities feel the coated body below the surface."""
     words = (along(grid, name) for name in ("base", "micro", "asperities_on", "Nbar", "h"))
     return feels(*words, grid.lexicon.known.laws)
 
 
 def many_bodies(grid: Grid) -> bool:
-    """Whether asperities feel bodies, or stand at pitches, of which there are more than a few for each case."""
+    """Whether asperities feel so many bodies, or have so many pitches, that each has only a few cases."""
     if not felt(grid).any():
         return False
     names = [name for name in grid.values if name in _OF_BODIES or name.startswith("layers.")]
@@ -39,7 +39,7 @@ def many_bodies(grid: Grid) -> bool:
 
 
 def is_said(grid: Grid) -> bool:
-    """Whether the results say what the asperities press on: some feel the layer, or the study names `asperities_on`."""
+    """Whether the results have `asperities_used`: some asperities feel the layer, or the study has `asperities_on`."""
     return "asperities_on" in grid.values or bool(felt(grid).any())
 
 
@@ -51,14 +51,14 @@ def used(grid: Grid) -> np.ndarray:
 
 
 def stand_apart(grid: Grid) -> np.ndarray:
-    """bool, along the dimensions of the grid: asperities stand farther apart than the layer is thick, and numbers of
-    the case depend on that."""
+    """bool, along the dimensions of the grid: the distance between asperities is larger than the thickness of the
+    layer, and numbers of the case depend on that."""
     if not {"h", "Nbar"} <= {*grid.values}:
         return np.False_
     base, micro, check = (along(grid, name) for name in ("base", "micro", "model_check"))
     laws, cases_with = grid.lexicon.known.laws, partial(grid.lexicon.cases_with, values=partial(along, grid))
     exact = is_exact(base) | is_chosen(base) & can_feel(base, micro, laws)
-    # the `model_error` of these is that of the exact layer, though asperities on them do not feel it
+    # these take the `model_error` of the exact layer, although their asperities do not feel it
     against = on_springs(base) & (is_stack(base) | (check == "first_order"))
     counts = exact | against & can_feel("layered", micro, laws)
     there = cases_with("Nbar") & cases_with("h")
@@ -66,7 +66,7 @@ def stand_apart(grid: Grid) -> np.ndarray:
 
 
 def mistakes(grid: Grid, sections: Any) -> list[str]:
-    """Messages about asperities that are to feel a layer and cannot, and about a choice where there is none."""
+    """Messages about asperities that are told to feel a layer but cannot, and about a choice that no case has."""
     if "asperities_on" not in sections:
         return []
     base, micro, on = np.broadcast_arrays(*(along(grid, name) for name in ("base", "micro", "asperities_on")))

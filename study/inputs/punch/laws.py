@@ -1,4 +1,4 @@
-"""Micro laws in studies: which results they have, and power laws that are fitted."""
+"""Micro laws in studies: their results, and the fits of power laws."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -17,8 +17,8 @@ from ..vocabulary import names
 MOST_FITS = 1000
 """Most different values of Nbar Ra² in a study. A law is fitted to each, in 2 ms."""
 DIGITS = 10
-"""Significant digits of B and beta that are kept. Results are found on disk by the values of their parameters, and the
-last digits of a fit depend on the processor."""
+"""B and beta are rounded to so many significant digits. Results are found on disk by the values of their parameters,
+and the last digits of a fit depend on the processor."""
 COMMENT = "fitted to Nbar and Ra by least squares over pressures from 1e-4 to 0.025 E1*, as in Section 4.1 of the paper"
 
 #: Results that only asperities which feel the layer have.
@@ -28,9 +28,9 @@ _OF_FELT = ("p_spot", "r_spot")
 def results_of(
     laws: Mapping[str, Law], micro: np.ndarray, sticking: bool = False, felt: bool = False
 ) -> tuple[str, ...]:
-    """Names of the results of the `laws` that `micro` names; plastic_share only if the spots of some law yield, those
-    of pull-off only of contacts that may be `sticking`, those of spots only where some asperities feel the layer
-    (`felt`)."""
+    """Names of the results of the `laws` that `micro` names. They include plastic_share if the spots of some law yield,
+    results of pull-off if contacts may be `sticking`, and results of spots if some asperities feel the layer (`felt`).
+    """
     yields = one_of(micro, [name for name, law in laws.items() if law.yielded]).any()
     left_out = ("plastic_share",) * (not yields) + _OF_FELT * (not felt)
     of_laws = tuple(name for name in names("result") if name not in left_out)
@@ -38,7 +38,7 @@ def results_of(
 
 
 def wants_a_fit(grid: Grid) -> bool:
-    """Whether some case has the power law, none has B and beta, and all with the power law have Nbar and Ra.
+    """Whether some case has the power law, no case has B and beta, and all cases with the power law have Nbar and Ra.
 
     A grid with only one of B and beta has been refused before.
     """
@@ -68,13 +68,13 @@ def fitted(grid: Grid) -> tuple[dict, list[str]]:
 
 
 def fits_to(products: list[float]) -> dict[str, dict[float, float]]:
-    """B and beta -> Nbar Ra² -> value of the law that is fitted to it, in full digits."""
+    """B and beta -> Nbar Ra² -> the fitted value, in full digits."""
     power_laws = {product: fit_power_law(product) for product in products}
     return {name: {product: getattr(law, name) for product, law in power_laws.items()} for name in ("B", "beta")}
 
 
-#: Nbar Ra^2 is moved by this part of itself. Fits are good to some 1e-12 (their root is sought to 1e-15), so that
-#: rounding changes a slope by some 1e-9. The curvature does as much.
+#: Nbar Ra^2 is moved by this share of itself. Fits are accurate to some 1e-12 (their root is sought to 1e-15), so that
+#: rounding changes a slope by some 1e-9. So does the curvature.
 _STEP = 1e-3
 
 

@@ -1,4 +1,4 @@
-"""Shapes of the punch in calls and study files: their names, angles in degrees, tables, and what each of them needs."""
+"""Shapes of the punch in calls and study files: their names, angles in degrees, tables, and their inputs."""
 
 from functools import partial
 from typing import Any
@@ -14,21 +14,21 @@ from ...terminal import shown
 from ..grid import Grid, along
 from ..lexicon import Lexicon
 
-#: Inputs besides the shape that are words, of which capitals, blanks and hyphens do not matter.
+#: Inputs besides the shape that are words: capitals, blanks and hyphens in them do not matter.
 WORDS = ("tip", "adhesion", "branch")
 #: Bases that take the paraboloid alone, and nothing that sticks.
 #: Angles of the punch: numbers of degrees.
 ANGLES = ("half_angle",)
 #: The shapes with a flat end, beyond which a contact reaches.
 WITH_A_FLAT = ("frustum", "rounded_flat")
-#: Inputs with a length of which the first that is given is the unit of length of a shape without a radius.
+#: Lengths: the first of them that is given is the unit of length for a shape without a radius.
 LENGTHS = ("flat_radius", "tip_radius", "h")
-#: That unit where no such input is given.
+#: That unit if none of them is given.
 MICROMETRE = "1 um"
 
 
 def as_written(values: list) -> list:
-    """The values; words of them as the solver writes them: "jkr" of "JKR", "cube_corner" of "Cube corner"."""
+    """The values, with words spelled as in the solver: "jkr" for "JKR", "cube_corner" for "Cube corner"."""
     return [_plain(value) if isinstance(value, str) else value for value in values]
 
 
@@ -40,7 +40,7 @@ def _plain(word: str) -> str:
 
 
 def in_degrees(name: str, values: Any) -> Any:
-    """The values of an angle as numbers of degrees: of "70.3 deg" 70.3, of "70.3 ± 0.5 deg" a Quantity.
+    """The values of an angle as numbers of degrees: 70.3 for "70.3 deg", a Quantity for "70.3 ± 0.5 deg".
 
     values : a list, a range or a DataArray
 
@@ -66,7 +66,7 @@ def _degrees(name: str, value: Any) -> Any:
 
 
 def left_out(name: str, sections: Any, lexicon: Lexicon) -> bool:
-    """Whether a parameter of shapes stays out of a grid: no shape is given; `sections` has the names that are."""
+    """Whether a parameter of shapes stays out of a grid, since no shape is given; `sections` : names that are given."""
     return "shape" not in sections and _of_shapes(name, lexicon)
 
 
@@ -80,14 +80,14 @@ def radius_needed(words: Any) -> bool:
 
 
 def in_metres(words: Any, lexicon: Lexicon) -> Any:
-    """Whether a shape is a table with units of length in its header, of the form of `words`: a text or an array."""
+    """Whether a shape is a table with units of length in its header; one bool, or an array, like the `words`."""
     tables = {word: table.rows_of(kind) for word, kind in lexicon.known.shapes.items()}
     there = [word for word, rows in tables.items() if rows and rows.metres]
     return words.isin(there) if hasattr(words, "isin") else np.isin(words, there) if np.ndim(words) else words in there
 
 
 def mistakes(grid: Grid, sections: Any, physical: bool) -> list[str]:
-    """Messages about shapes: numbers that no case has a use for, a radius under a flat punch, too wide a contact."""
+    """Messages about shapes: numbers that no case uses, a radius for a flat punch, a contact that is too wide."""
     messages, values = _without_use(grid, sections), partial(along, grid)
     if "shape" not in grid.values:
         return messages
@@ -101,7 +101,7 @@ def mistakes(grid: Grid, sections: Any, physical: bool) -> list[str]:
 
 
 def _of_the_radius(grid: Grid, words: np.ndarray, a: np.ndarray) -> list[str]:
-    """Messages for contact radii that the shapes `words` do not have."""
+    """Messages for contact radii that are impossible with the shapes `words`."""
     messages = []
     if (words == "flat").any():
         messages.append('a is given with shape = "flat": its contact radius is flat_radius; give P or D')

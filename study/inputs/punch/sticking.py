@@ -1,4 +1,4 @@
-"""Adhesion in calls and study files: which inputs go together, and what is refused."""
+"""Adhesion in calls and study files: inputs that go together, and inputs that are refused."""
 
 from functools import partial
 from typing import Any
@@ -17,8 +17,8 @@ from ..vocabulary import finite, names
 OF_ADHESION = names("adhesion")
 #: Bounds of load and depth under adhesion.
 _PULLED = "[-1000, 1000]"
-#: The asperities pull with at most 1.5 π w Ra on each summit: their adhesion is taken for negligible where that makes
-#: less than this part of the mean pressure.
+#: Each summit of the asperities pulls with at most 1.5 π w Ra: their adhesion counts as negligible if that makes less
+#: than this share of the mean pressure.
 _NEGLIGIBLE = 0.01
 
 
@@ -29,13 +29,13 @@ def row_of(name: str, sections: Any, lexicon: Lexicon) -> Parameter:
 
 
 def hint(name: str, value: Any, sections: Any) -> str:
-    """The end of a message about a load or depth that only a punch that sticks has; "" for others."""
+    """The end of a message about a load or depth that is possible only for a punch that sticks; "" for others."""
     pulls = name in ("P", "D") and "w_adhesion" not in sections and finite(value) and value <= 0
     return "; a pull needs w_adhesion, the work of adhesion" * pulls
 
 
 def left_out(name: str, sections: Any) -> bool:
-    """Whether a parameter of adhesion stays out of a grid: no work of adhesion is given."""
+    """Whether a parameter of adhesion stays out of a grid, since no work of adhesion is given."""
     return name in OF_ADHESION and "w_adhesion" not in sections
 
 
@@ -76,7 +76,7 @@ def _first(words: np.ndarray, but: str) -> str:
 
 
 def rough_and_sticking(grid: Grid, unit: Any) -> list[str]:
-    """The message for adhesion of a rough punch, with an estimate of what the asperities may pull.
+    """The message for adhesion of a rough punch, with an estimate of the pull of the asperities.
 
     unit : of pressures, in Pa, a number; None without units
     """

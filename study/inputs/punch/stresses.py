@@ -1,4 +1,4 @@
-"""Which contacts have no stresses yet."""
+"""Contacts that have no stresses yet."""
 
 import numpy as np
 
@@ -12,8 +12,8 @@ DECIDE = ("shape", "w_adhesion", "adhesion")
 
 
 def without_stresses(rough, shape=PARABOLOID, w_adhesion=0.0, adhesion="jkr", *, largest=False) -> str:
-    """Why some of the cases have no stresses, or no `largest` ones; "" where all have them. Values are texts and
-    numbers, or arrays; rough : whether the cases have asperities."""
+    """The reason why some of the cases have no stresses, or no `largest` ones; "" if all have them. Values are texts
+    and numbers, or arrays; rough : whether the cases have asperities."""
     shape, sticks = np.asarray(shape), np.asarray(w_adhesion) > 0
     flat = shape == "flat"
     reasons = (
@@ -32,7 +32,7 @@ def without_stresses(rough, shape=PARABOLOID, w_adhesion=0.0, adhesion="jkr", *,
 
 
 def none_in(grid: Grid, *, largest: bool = True) -> str:
-    """The same of the cases of a grid."""
+    """The same for the cases of a grid."""
     if np.any(is_stack(np.asarray(along(grid, "base")))):
         return "the largest stresses in stacks of layers are not stored: study.extremes has them, of any results"
     rough = ~np.isin(along(grid, "micro"), grid.lexicon.smooth_laws())

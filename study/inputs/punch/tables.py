@@ -1,4 +1,4 @@
-"""Tables of micro laws in studies: those whose A is a length, and those that hold on one body."""
+"""Tables of micro laws in studies: tables whose A is a length, and tables that hold on a single body."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from ...terminal import shown
 from ..grid import Grid, along
 from ..lexicon import Lexicon
 
-#: Numbers of a body that differ by less than this part are one: moduli and their ratios come by different ways.
+#: Numbers of a body count as equal if they differ by a smaller share: moduli and their ratios round differently.
 _SAME = 1e-6
 _WAY_OUT = "compute the law on the body of the contact, rc.roughness.law(scan, on=...)"
 
@@ -23,8 +23,8 @@ def in_metres(words: Any, lexicon: Lexicon) -> bool:
 
 
 def mistakes(grid: Grid, physical: bool) -> list[str]:
-    """Messages about tables with lengths in a call without units, and about contacts on another body than that on which
-    the law of a scan was computed."""
+    """Messages about tables with lengths in a call without units, and about contacts on a body that is not the body of
+    a scan's law."""
     laws = grid.lexicon.known.laws
     names = [name for name, law in laws.items() if own_table.in_metres(law)] if "micro" in grid.values else []
     if not names:
@@ -38,7 +38,7 @@ def mistakes(grid: Grid, physical: bool) -> list[str]:
 
 
 def _on_another_body(grid: Grid, law: Law, cases: np.ndarray) -> list[str]:
-    """A message where some of the `cases` of the law are on another body than the law; at most one."""
+    """At most one message, if some of the `cases` of the law are not on the law's body."""
     assert law.body is not None
     if (is_bare(along(grid, "base")) & cases).any():
         return [f"micro = {shown(law.name)}: is the law of a scan on a coated body, not a half-space: {_WAY_OUT}"]

@@ -16,14 +16,14 @@ from ..vocabulary import BODIES, absent, bodies_of, finite
 from .scene import RIGID_TEXTS
 
 _MAY_BE_RIGID = ("punch", "body")
-#: Shapes that people give as `punch`, which is a material. A proposal of materials with like names would mislead.
+#: Shapes that people give as `punch`, which is a material. To propose materials with similar names would mislead.
 _LINES = ("cylinder", "roller")
 _SHAPES = ("sphere", "ball", "paraboloid", "cone", "berkovich", "vickers", "flat", "pyramid", *_LINES)
 
 
 def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict, dict]:
     """The inputs with E and ν in place of materials; body -> (dimension or "", names of its materials); and the same
-    with their strengths, as a Scene has them.
+    table with strengths, as in a Scene.
 
     E and ν have the spreads of the table of materials; messages are appended to `errors`.
     """
@@ -51,7 +51,7 @@ def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict, dict]:
 
 
 def of_names(body: str, names: Any) -> list[tuple]:
-    """Names, E, ν and strengths of the materials of a body. Raises LookupError for what is no material.
+    """Names, E, ν and strengths of the materials of a body. Raises LookupError for a name that is no material.
 
     names : a list; a DataArray if they come from results
     """
@@ -67,15 +67,16 @@ def of_names(body: str, names: Any) -> list[tuple]:
 
 
 def layered(values: dict) -> bool:
-    """Whether some case may have a layer; values : as those of a Grid. A word that is no base is refused elsewhere."""
+    """Whether some case may have a layer; values : like those of a Grid. A word that is no base is refused
+    elsewhere."""
     _, base = values.get("base", ((), PACKAGE.parameter("base").default))
     return bool(np.isin(base, WITH_LAYERS).any())
 
 
 def assumed(names: set[str], values: dict, si_values: dict) -> tuple[str, ...]:
-    """Names of what has its default though it matters: Poisson ratios of elastic bodies, the interface of a layer.
+    """Names of inputs that have their defaults although they matter: Poisson ratios of elastic bodies, the interface.
 
-    names : of the inputs that the user gives; values : as those of a Grid; si_values : the inputs in SI units
+    names : of the inputs that the user gives; values : like those of a Grid; si_values : the inputs in SI units
     """
     ratios = [nu for E, nu, _ in bodies_of(names).values() if not np.isinf(si_values.get(E, np.inf)).all()]
     return tuple(name for name in [*ratios, *layered(values) * ["bonding"]] if name not in names)

@@ -1,4 +1,4 @@
-"""What an input of a scene changes: the numbers that the solver gets, and the units of its results."""
+"""The effects of an input of a scene: on the numbers that the solver gets, and on the units of its results."""
 
 from dataclasses import replace
 from typing import Any
@@ -16,16 +16,18 @@ from .scene import Scene, is_ratio
 from .stacks import moduli_of
 
 SCALES = ("length", "modulus")
-"""The radius and the modulus that are 1 for the solver; they stand beside the solver's inputs."""
-#: Inputs are moved by this part of themselves, Poisson ratios by this itself. What follows from them are closed forms,
-#: so that the slopes err by about the square of this. Poisson ratios stay twice this below 0.5.
+"""The radius and the modulus that are 1 for the solver; tables of changes have them besides the solver's inputs."""
+#: Inputs are moved by this share of themselves, Poisson ratios by this number itself. The formulas that follow from
+#: them are smooth, so that the slopes err by about its square. Poisson ratios stay at least twice this below 0.5.
 _STEP = 1e-4
 
 
 def changes(scene: Scene, name: str, fitted: bool = False) -> dict[str, Any]:
-    """Input of the solver, or scale -> d ln(it)/d ln(the input `name` of the scene), a number or a DataArray.
+    """s -> d ln s/d ln input, a number or a DataArray, for inputs s of the solver and scales s.
 
-    A Poisson ratio, on either side, stands without the logarithm.
+    A Poisson ratio, on either side, has no logarithm.
+
+    name : of the input of the scene
 
     fitted : whether B and beta follow from Nbar and Ra
     """
@@ -61,7 +63,7 @@ def _slope(key: str, up: Any, down: Any, step: Any) -> Any:
 
 
 def changes_by_spread(scene: Scene, fitted: bool) -> dict[str, dict[str, Any]]:
-    """Input with a spread -> {input of the solver, or scale: by how much it changes with one spread}, as `changes`."""
+    """Input with a spread -> {input of the solver, or scale: its change, as in `changes`, with one spread}."""
     table = {}
     for name, spread in scene.spreads.items():
         value = scene.values[name]

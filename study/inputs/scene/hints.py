@@ -1,4 +1,4 @@
-"""The names of the parameters of `study.solve` with their types, for editors. Registered laws have others besides."""
+"""The names of the parameters of `study.solve` with their types, for editors. Registered laws have further ones."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from solver.laws import Law
 from ...specimen.materials import Material
 
 Many = Sequence | np.ndarray | Any
-"""Several values: of a dimension called like the parameter, or over the dimensions of a DataArray."""
+"""Several values: along a dimension with the name of the parameter, or over the dimensions of a DataArray."""
 Value = float | str | Many | Any
 """A number, a text with a unit ("5 mm", "200 ± 10 GPa"), a quantity of pint, or several of these."""
 

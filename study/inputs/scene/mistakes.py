@@ -32,9 +32,9 @@ _RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a 
 
 
 def missing(request: Request, values: dict) -> list[str]:
-    """Messages for inputs that a physical scene needs and has not, and for inputs that exclude each other.
+    """Messages for inputs that a physical scene needs but lacks, and for inputs that exclude each other.
 
-    values : of the inputs without units, as those of a Grid
+    values : of the inputs without units, like those of a Grid
     """
     names, messages = {*request.sections}, []
     pair = [name for name in ("R1", "R2") if name in names]
@@ -90,7 +90,7 @@ def impossible(scene: Scene) -> list[str]:
 
 
 def moving_tables(scene: Scene) -> list[str]:
-    """A message if a table of the user's, whose lengths are in R, would change with the spread of a radius."""
+    """A message if a user's table with lengths in R would change with the spread of a radius."""
     words = [np.ravel(np.array(scene.parameters.get(name, ""), dtype=object)).tolist() for name in ("micro", "shape")]
     tables = [str(word) for word in sum(words, []) if str(word).startswith(PREFIX)]
     lengths = (in_metres, tables_of_laws.in_metres)

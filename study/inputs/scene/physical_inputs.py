@@ -30,17 +30,17 @@ _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1,
 _LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch", "flat_radius", "tip_radius"), _POSITIVE)
 _LIMITS |= dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
 _E1, _NU1 = ("E1", "E1_spread", "n"), ("nu1", "nu1_spread")
-#: What a case without a layer may leave out -> the coordinates that then have no value there, "" or NaN.
+#: Input that a case without a layer may leave out -> the coordinates that then have no value in this case, "" or NaN.
 _OF_LAYER = {"layer": ("layer", *_E1, *_NU1), "E1": _E1, "n": _E1, "h": ("h", "h_spread"), "nu1": _NU1, "bonding": ()}
 
 
 def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scene:
     """The physical scene that inputs describe. The dimensionless parameters go to the draft.
 
-    Mistakes become messages of the draft: no unit, a unit of something else, a missing R or modulus.
+    Mistakes become messages of the draft: a missing unit, a unit of another kind, a missing R or modulus.
 
     spreads : whether the results shall have spreads
-    axes : dimensions in the order that they shall have, behind `case`
+    axes : dimensions in the wanted order, after `case`
     """
     scene = Scene(same_piece=request.same_piece, labels=request.labels, lexicon=request.lexicon)
     errors = request.errors
@@ -78,7 +78,7 @@ def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scen
 
 
 def _measure(scene: Scene) -> None:
-    """Note what the unit of length is of shapes without a radius, and which tables of shapes have units."""
+    """Note the unit of length for shapes without a radius, and the tables of shapes that have units."""
     if "R" not in scene.values and "R1" not in scene.values:
         scene.scale = next((name for name in LENGTHS if name in scene.values), MICROMETRE)
     scene.metres = in_metres(scene.parameters.get("shape", ""), scene.lexicon)
@@ -101,7 +101,7 @@ def _read(scene: Scene, draft: Draft, entry: Input) -> None:
 
 
 def _material(entry: Input) -> str:
-    """The end of a message about a word in place of a modulus; "" for all else."""
+    """The end of a message about a word in place of a modulus; otherwise ""."""
     body = next((body for body, (modulus, _, _) in bodies_of([entry.name]).items() if modulus == entry.name), "")
     word = entry.array is None and not entry.dims and isinstance(entry.values[0], str) and entry.values[0][:1].isalpha()
     return f"; a material is given as {body}, in place of {entry.name}" if body and word else ""
@@ -110,8 +110,8 @@ def _material(entry: Input) -> str:
 def _filled(request: Request, scene: Scene) -> dict[str, Input]:
     """The inputs, with a value in each of [[cases]].
 
-    A case without a layer may leave out what belongs to the layer. It gets the value of another case: no answer depends
-    on it, and results do not show it.
+    A case without a layer may leave out the inputs of the layer. It gets their values from another case: no result
+    depends on them or shows them.
     """
     base = request.inputs.get("base")
     inputs, default = dict(request.inputs), request.lexicon.parameter("base").default
@@ -141,7 +141,7 @@ def _is_of_layer(name: str) -> bool:
 
 
 def _add(scene: Scene, entry: Input) -> None:
-    """Put the SI values and spreads of an input into the scene. Raises ValueError for values that it cannot have."""
+    """Put the SI values and spreads of an input into the scene. Raises ValueError for values that are not allowed."""
     name, unit = entry.name, scene.lexicon.all_rows[entry.name].unit
     dim = dim_of(name, scene.lexicon)
     if entry.array is not None:
@@ -171,7 +171,7 @@ def _add(scene: Scene, entry: Input) -> None:
 
 
 def _limits_of(name: str) -> tuple[float, float, str]:
-    """Bounds of an input: it must be above, at most, and words for a message."""
+    """Bounds of an input: it must be above the first, and at most the second; and words for a message."""
     of_layer = _POISSON if is_ratio(name) else _POSITIVE if name in SCENE else (-np.inf, np.inf, "must be a number")
     return _LIMITS.get(name, of_layer if name.startswith("layers.") else (-np.inf, np.inf, "must be a number"))
 

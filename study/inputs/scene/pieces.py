@@ -1,4 +1,4 @@
-"""Correlations of the spreads of inputs: of bodies that are one piece of material, and by the user."""
+"""Correlations of the spreads of inputs: of bodies that are cut from one piece, and those that the user gives."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from ...terminal import shown
 from ..vocabulary import BODIES, bodies_of, finite
 from .scene import Scene, over
 
-_RIGID = "rigid"  # the name of what has no modulus
-#: A matrix of correlations has eigenvalues >= 0; those of one with a correlation of 1 are 0 but for rounding.
+_RIGID = "rigid"  # the name of the material of a body without a modulus
+#: A matrix of correlations has eigenvalues >= 0; a correlation of 1 makes some of them 0 except for rounding.
 _ROUNDING = 1e-9
 FORM = 'must be a number from -1 to 1 for each pair of inputs, such as {("E1", "E2"): 0.5}'
 
@@ -36,8 +36,8 @@ def none_alike(names: dict) -> bool:
 
 
 def of_one_piece(scene: Scene) -> dict[tuple[str, str], Any]:
-    """The correlations of bodies that are one piece: their moduli are too high or too low together, and so
-    are their Poisson ratios."""
+    """The correlations of bodies that are cut from one piece: their moduli deviate equally, and so do their Poisson
+    ratios."""
     correlations = {}
     for body, other_body in combinations(bodies_of(scene.names), 2):
         same = alike(scene.names, body, other_body)

@@ -20,14 +20,14 @@ from ..vocabulary import SCENE
 from .scene import Scene
 from .stacks import moduli_of
 
-#: Default of the Poisson ratio of a punch, that of the other bodies.
+#: Default of the Poisson ratio of a punch, equal to that of the other bodies.
 _POISSON = PACKAGE.parameter("nu1").default
-#: The unit of length in m of a punch of which no length is given.
+#: The unit of length, in m, for a punch without any given length.
 _MICROMETRE = 1e-6
 
 
 def make_dimensionless(scene: Scene) -> None:
-    """Add to a scene what follows from its SI values: effective radius, unit of moduli, parameters of the solver."""
+    """Add the numbers that follow from a scene's SI values: effective radius, unit of moduli, solver's parameters."""
     values = scene.values
     if "R1" in values:
         values["R"] = 1 / (1 / values["R1"] + 1 / values["R2"])
@@ -39,7 +39,7 @@ def make_dimensionless(scene: Scene) -> None:
     for modulus, nu, ratio in moduli_of(values):
         scene.parameters[ratio] = _reduced(values, modulus, nu) / scene.unit
     if "E_punch" in values:
-        values.setdefault("nu_punch", _POISSON)  # results say which it was
+        values.setdefault("nu_punch", _POISSON)  # for the results to show it
         base = scene.parameters.get("base", "layered")
         surface = _where(is_bare(base), body, layer)
         scene.parameters["m"] = surface / _reduced(values, "E_punch", "nu_punch")

@@ -1,4 +1,4 @@
-"""A physical scene: its inputs in SI units, and what the solver gets."""
+"""A physical scene: its inputs in SI units, and the dimensionless inputs of the solver."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from ...arrays.labelled import Labelled
 from ...specimen.quantities import Quantity, quantity
 from ..lexicon import PACKAGE, Lexicon
 
-#: The texts that say that a body is rigid, and so its modulus infinite; or flat, and so its radius.
+#: Texts for an infinite modulus, that of a rigid body; and for an infinite radius, that of a flat one.
 RIGID_TEXTS, _FLAT_TEXTS = ("rigid", "inf", "infinite"), ("flat", "inf", "infinite")
-#: Input that may be infinite -> the texts that say so.
+#: Input that may be infinite -> the texts for infinity.
 INFINITE = {"E2": RIGID_TEXTS, "E_punch": RIGID_TEXTS, "R1": _FLAT_TEXTS, "R2": _FLAT_TEXTS, "k_machine": RIGID_TEXTS}
 
 
@@ -32,16 +32,16 @@ class Scene:
     dims : dimension while the cases are solved -> name of it in the results
     labels : of the dimension `case`
     names : punch, layer, body -> (dimension or "", names of materials along it)
-    strengths : likewise -> (dimension or "", (strength in Pa, its spread, whether it is from hardness) along it), NaN
-        of materials of which none is known; only of bodies with some that is known
+    strengths : likewise -> (dimension or "", (strength in Pa, its spread, whether it comes from hardness) along it);
+        NaN for materials without a known strength. Bodies without any known strength are left out
     cases_of : coordinate -> the cases that have it, a DataArray of bool; a case without a layer may lack it
-    assumed : Poisson ratios and the interface, where they matter and have their defaults since nobody gave them
-    same_piece : whether bodies of one material are one piece of it
-    correlations : pair of inputs with spreads -> their correlation, a number or a DataArray; 0 of all other pairs
-    scale : the input that is R, the unit of length, of shapes without a radius, or "1 um"; "": R, or R1 and R2, are
+    assumed : Poisson ratios and the interface if they matter but nobody gave them, so that they have their defaults
+    same_piece : whether bodies of one material are cut from one piece
+    correlations : pair of inputs with spreads -> their correlation, a number or a DataArray; 0 for all other pairs
+    scale : the input, or "1 um", that is the unit of length R for shapes without a radius; "" if R, or R1 and R2, are
         given
-    lexicon : what its words stand for
-    metres : bool, where the shape is a table with units of length in its header; False: nowhere
+    lexicon : of its words
+    metres : bool, for each case whether its shape is a table with units of length in its header; False: for none
     """
 
     values: dict = field(default_factory=dict)
@@ -62,7 +62,7 @@ class Scene:
     metres: Any = False
 
     def sizes(self, axes: list[str]) -> dict[str, int]:
-        """Dimension while the cases are solved -> its length; first `case`, then the axes in their order."""
+        """Dimension, named as during the solution -> its length; first `case`, then the axes in their order."""
         dim_of = {name: dim for dim, name in self.dims.items()}
         arrays = [v for v in (*self.values.values(), *self.parameters.values()) if xr.is_array(v)]
         sizes = {dim: size for array in arrays for dim, size in array.sizes.items()}
@@ -70,11 +70,11 @@ class Scene:
         return {dim: sizes[dim] for dim in order if dim in sizes}
 
     def radii(self) -> dict[str, Labelled]:
-        """R1 and R2 of two bodies in R, over the dimensions while the cases are solved; {} for a single R."""
+        """R1 and R2 of two bodies in R, with dimensions named as during the solution; {} for a single R."""
         return {name: bare_variable(self.values[name] / self.R) for name in ("R1", "R2") if name in self.values}
 
     def within(self, window: dict[str, slice]) -> Scene:
-        """The scene of the cases in a window, a slice for each dimension while the cases are solved."""
+        """The scene of the cases in a window, a slice for each dimension, named as during the solution."""
 
         def cut(value: Any) -> Any:
             if not xr.is_array(value):
@@ -113,9 +113,9 @@ def is_ratio(name: str) -> bool:
 
 
 def dim_of(name: str, lexicon: Lexicon) -> str:
-    """The dimension along which several values of a parameter lie while the cases are solved.
+    """The name of a parameter's own dimension during the solution.
 
-    For a parameter with a unit that is "h in SI". The name alone belongs to the dimensionless h/R, which may change
+    For a parameter with a unit it is "h in SI". The name alone belongs to the dimensionless h/R, which may change
     along the dimension of R too.
     """
     return name if lexicon.all_rows[name].unit == "1" else f"{name} in SI"
@@ -125,9 +125,9 @@ def si(name: str, value: Any, label: str = "", lexicon: Lexicon = PACKAGE) -> Qu
     """The SI value of a parameter or result: a text, a number, a quantity of pint or a Quantity.
 
     label : its name in messages
-    lexicon : that has the name
+    lexicon : it must have the name
 
-    Raises ValueError as `quantity` does.
+    Raises ValueError like `quantity`.
     """
     if type(value) is Quantity:
         return value

@@ -1,8 +1,7 @@
-"""Stacks of layers in calls and study files: where their numbers stand, of which :mod:`solver.layers` makes one name
-each.
+"""Stacks of layers in calls and study files: :mod:`solver.layers` gives each of their numbers one name.
 
 The first layer, at the surface, has the names of a case with one layer, h, n or E1, nu1, bonding, layer; the others
-have names like layers.2.h. Units and materials are read later, of each name.
+have names like layers.2.h. Units and materials are read later, by name.
 """
 
 import re
@@ -14,7 +13,7 @@ from solver.layers import RIGID, LayerWords, base_of_layers, is_of_layers
 from ...terminal import shown
 from ..vocabulary import FIRST_LAYER, OF_A_LAYER, name_in_stack, suggest
 
-#: The words of calls and study files, with which a layer has a modulus or is of a material.
+#: The words of calls and study files, in which a layer may have a modulus or a material.
 WORDS = LayerWords(
     keys=OF_A_LAYER,
     first=FIRST_LAYER,
@@ -44,7 +43,7 @@ def moduli_of(names: Any) -> list[tuple[str, str, str]]:
 def in_call(parameters: dict, rows: list[dict], errors: list[str]) -> tuple[dict, list[dict]]:
     """The parameters of a call, and its cases, with one name for each number of a layer.
 
-    Where `layers` holds for all cases, a number of a layer in a case stands in place of what the list says.
+    If `layers` holds for all cases, a number of a layer in a case replaces the number in the list.
     """
     parameters = _dotted(parameters)
     if not any(map(is_of_layers, parameters)):
@@ -94,12 +93,12 @@ def _flat(table: dict, errors: list[str], elsewhere: Collection[str] = (), liste
 
 
 def _short(tables: Iterable) -> list:
-    """Tables of parameters with the names that results have; what is no table stays as it is."""
+    """Tables of parameters with the names as in results; other values stay as they are."""
     return [{short(name): v for name, v in table.items()} if isinstance(table, dict) else table for table in tables]
 
 
 def _with_the_list(rows: list, numbers: dict) -> list:
-    """The cases; where some have a number of a layer the others have that of the list `layers`, which has `numbers`."""
+    """The cases. If some have a number of a layer, the others get it from `numbers`, those of the list `layers`."""
     of_some = {name: numbers[name] for row in rows if isinstance(row, dict) for name in row if name in numbers}
     return [of_some | row if isinstance(row, dict) else row for row in rows]
 

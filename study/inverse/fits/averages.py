@@ -1,8 +1,8 @@
-"""Long curves: searches take averages of neighbouring points, and end on all points.
+"""Long curves: searches begin with averages of neighbouring points, and end with all points.
 
-A search needs no more than some hundred points to come near the minimum. From there a step or two with all points end
-it, so that the unknowns are those of all points. Profiles take the averages too: at the minimum, by what the model is
-not straight within a block is taken off the averages, so that they have the same minimum and curvature.
+A search needs only some hundred points to come near the minimum. From there a step or two with all points complete it,
+so that the unknowns are those of all points. Profiles use the averages too. For these the averages are corrected at the
+minimum for the curvature of the model within a block, so that they have the same minimum and curvature.
 """
 
 from dataclasses import replace
@@ -13,33 +13,33 @@ import numpy as np
 from .curve import MeasuredCurves
 from .least_squares import Data, Minimum
 
-#: Curves of up to so many points are fitted as they are; of longer ones so many blocks.
+#: Largest number of points of a curve that is fitted as it is, and number of blocks of a longer curve.
 LONG, _BLOCKS = 1024, 512
 
 
 class Averages(NamedTuple):
-    """Averages (B, _BLOCKS) of the points of B curves, and the number (B, n) of the block of each point; points without
-    weight are in none, -1."""
+    """Averages (B, _BLOCKS) of the points of B curves, and the number (B, n) of the block of each point, -1 for points
+    without weight."""
 
     curve: MeasuredCurves
     data: Data
     blocks: np.ndarray
 
     def about(self, best: Minimum, curve: MeasuredCurves, data: Data) -> "Averages":
-        """The averages, so moved that their residuals from the model are the averages of those at `best`."""
+        """The averages, corrected so that their residuals are the averages of the residuals at `best`."""
         averages, _ = _averages(self.blocks, data.w**2, [data.y - best.model])
         model, _ = self.curve(best.p)
         return self._replace(data=self.data._replace(y=model + averages[0]))
 
 
 def averages_of(curve: MeasuredCurves, data: Data) -> Averages:
-    """The :class:`Averages` of curves with points in any order. Under Huber's loss one point stands for each block: an
-    average would spread an outlier."""
+    """The :class:`Averages` of curves with points in any order. Under Huber's loss a single point represents each
+    block, since an average would spread an outlier."""
     n = curve.x.shape[1]
     blocks = np.full((len(curve.x), n), -1)
     for row, x, w in zip(blocks, curve.x, data.w, strict=True):
-        there = np.flatnonzero(w > 0)
-        order = there[np.argsort(x[there], kind="stable")]
+        weighted = np.flatnonzero(w > 0)
+        order = weighted[np.argsort(x[weighted], kind="stable")]
         row[order] = np.arange(len(order)) * _BLOCKS // max(len(order), 1)
     if data.huber:
         some = np.array([[np.flatnonzero(row == block)[0] for block in range(_BLOCKS)] for row in blocks])

@@ -19,12 +19,12 @@ from .tables.ratio_table import RatioTable
 from .tables.sticking_points import StickingPoints
 from .tables.term_table import TermTable
 
-#: How sure a search from one of several starts is, some 0.03 of a spread; the best one goes on to the end.
+#: Precision of the search from one of several starts, some 0.03 of a spread. The best search goes on to the end.
 _ROUGHLY = 1e-4
-#: About the best work of adhesion of a retraction, its logarithm less that: searches begin there.
+#: Logarithms of works of adhesion at which searches for a retraction begin, relative to the best one.
 _ABOUT = np.linspace(-0.3, 0.3, 8)
 _SURE = 0.999  # level of the F test that there is a contact
-_SAME = 1e-3  # minima whose unknowns differ by less than this part of a spread are one
+_SAME = 1e-3  # minima whose unknowns differ by less than this share of a spread are one
 
 
 class FitStatus(Codes):
@@ -42,10 +42,10 @@ class FitStatus(Codes):
 class _LeastSquares(NamedTuple):
     """Curves as a problem of least squares.
 
-    few : averages of neighbouring points of long curves, with which searches begin; None: searches take all points
-    starts : unknowns (B, k) from which searches begin, one array for each start
+    few : averages of neighbouring points of long curves, with which searches begin; None: searches use all points
+    starts : unknowns (B, k) from which searches begin, an array for each start
     variance : (B,) of a point of weight 1, if it is known without a fit of all unknowns
-    prior : (B,), the variance that stands for it in the stiffness of priors
+    prior : (B,), the variance of a point that the stiffness of priors assumes
     """
 
     question: Question
@@ -58,13 +58,13 @@ class _LeastSquares(NamedTuple):
 
     @property
     def inputs(self) -> int:
-        """How many of the unknowns are inputs: the first ones."""
+        """The number of unknowns that are inputs; they come first."""
         return len(self.question.model.unknowns)
 
 
 class _Minima(NamedTuple):
-    """The best fits with all points; the costs (starts, B) and unknowns (starts, B, k) at which the searches from all
-    starts have ended, with fewer points if the curves are long."""
+    """The best fits with all points; and the costs (starts, B) and unknowns (starts, B, k) at the ends of the searches
+    from all starts, by averages if the curves are long."""
 
     best: Minimum
     costs: np.ndarray
@@ -72,7 +72,7 @@ class _Minima(NamedTuple):
 
 
 class _Spread(NamedTuple):
-    """How sure the unknowns of the best fits are.
+    """The uncertainty of the unknowns of the best fits.
 
     variance : (B,) of a point of weight 1
     share : (B, n), the depth of each point over that of the deepest
@@ -88,7 +88,7 @@ class _Spread(NamedTuple):
 
 
 class _Intervals(NamedTuple):
-    """The ends (B, k) of intervals, whether one of them is a bound, and whether another minimum lies within, (B,)."""
+    """The ends (B, k) of intervals; whether an end is a bound, and whether another minimum lies within them, (B,)."""
 
     low: np.ndarray
     high: np.ndarray
@@ -103,17 +103,17 @@ def fit_block(
 
     sigma : (B, n) standard deviations of y; None: from the residuals
 
-    Returns the unknowns p (B, k), the ends low and high of their intervals, their covariance (B, k, k) and what the
-    spreads of other inputs add to it (`propagated`), Student's t (B, k), status (B,), the fit of y (B, n), the units of
-    x and y (wide and top, (B,)) in which D0, P0 and tilt are, what the residuals say (:class:`.residuals.Worth`)
-    and the first unknown by parts of the contact (`parts`, (B, PARTS)).
+    Returns the unknowns p (B, k), the ends low and high of their intervals, their covariance (B, k, k) and the
+    covariance from the spreads of other inputs (`propagated`), Student's t (B, k), status (B,), the fit of y (B, n),
+    the units of x and y (wide and top, (B,)) for D0, P0 and tilt, the fields of :class:`.residuals.Worth`, and the
+    first unknown by parts of the contact (`parts`, (B, PARTS)).
     """
     problem = _problem(question, table, x, y, sigma)
     minima = _minima(problem)
     spread = _spread(problem, minima.best, sigma is None)
     intervals = _intervals(problem, minima, spread)
     curve, data, best = problem.curve, problem.data, minima.best
-    there = np.isfinite(x) & np.isfinite(y)
+    is_point = np.isfinite(x) & np.isfinite(y)
     return {
         "p": best.p,
         "low": intervals.low,
@@ -126,16 +126,16 @@ def fit_block(
         "top": curve.high,
         "parts": parts_of(curve, data, best, spread.share, spread.worth),
         **spread.worth._asdict(),
-        "fit": np.where(there, best.model * curve.high[:, None], np.nan),
+        "fit": np.where(is_point, best.model * curve.high[:, None], np.nan),
     }
 
 
 def _problem(
     question: Question, table: RatioTable | TermTable, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
 ) -> _LeastSquares:
-    there = np.isfinite(x) & np.isfinite(y)
+    is_point = np.isfinite(x) & np.isfinite(y)
     curve, data, least = _weighted(question, table, x, y, sigma)
-    few = averages_of(curve, data) if x.shape[1] > LONG and bool((there.sum(axis=1) > LONG).all()) else None
+    few = averages_of(curve, data) if x.shape[1] > LONG and bool((is_point.sum(axis=1) > LONG).all()) else None
     part, points = (few.curve, few.data) if few else (curve, data)
     starts, low, high = starts_of(question, part, points.w > 0, points.y * curve.high[:, None], curve.high, least)
     data, points = (each._replace(low=low, high=high) for each in (data, points))
@@ -153,15 +153,15 @@ def _problem(
 def _weighted(
     question: Question, table: RatioTable | TermTable, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None
 ) -> tuple[MeasuredCurves, Data, np.ndarray]:
-    """The curves in their units, their points with weights and without bounds, and the least x (B,) of each."""
-    there = np.isfinite(x) & np.isfinite(y)
-    top = np.where(there, y, -np.inf).max(axis=1) - np.where(there, y, np.inf).min(axis=1)
-    largest, least = np.where(there, x, -np.inf).max(axis=1), np.where(there, x, np.inf).min(axis=1)
+    """The curves in their units, their points with weights but without bounds, and the least x (B,) of each curve."""
+    is_point = np.isfinite(x) & np.isfinite(y)
+    top = np.where(is_point, y, -np.inf).max(axis=1) - np.where(is_point, y, np.inf).min(axis=1)
+    largest, least = np.where(is_point, x, -np.inf).max(axis=1), np.where(is_point, x, np.inf).min(axis=1)
     wide = np.where(largest - least > 0, largest - least, largest) if "D0" in question.shifts else largest
-    curve = MeasuredCurves(table, np.where(there, x, largest[:, None]), wide, top, question.shifts)
+    curve = MeasuredCurves(table, np.where(is_point, x, largest[:, None]), wide, top, question.shifts)
     with np.errstate(divide="ignore", invalid="ignore"):
-        w = np.where(there, 1.0 if sigma is None else top[:, None] / np.where(there, sigma, 1.0), 0.0)
-    y = np.where(there, y, 0.0) / top[:, None]
+        w = np.where(is_point, 1.0 if sigma is None else top[:, None] / np.where(is_point, sigma, 1.0), 0.0)
+    y = np.where(is_point, y, 0.0) / top[:, None]
     unknown = np.zeros((len(x), len(curve.names)))
     return curve, Data(y, w, unknown, unknown, unknown, unknown, question.loss == "huber"), least
 
@@ -174,11 +174,13 @@ def _with_sticking_points(curve: MeasuredCurves, data: Data) -> MeasuredCurves:
 def _priors(
     question: Question, curve: MeasuredCurves, data: Data, start: np.ndarray, unknown: bool
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """The centers and the stiffness (B, k) of priors, the variance (B,) of the points, if it is `unknown`, else 1, and
-    what a prior counts it as.
+    """The centers and the stiffness (B, k) of priors, the variance (B,) of the points, and the variance that priors
+    assume.
 
-    These are from a fit with the inputs at their priors. Points with correlated errors are worth fewer independent
-    ones, and must not overrule a prior.
+    unknown : whether the variance is not known; otherwise it is 1
+
+    They come from a fit with the inputs at their priors. Points with correlated errors are worth fewer independent
+    points, and must not overrule a prior.
     """
     columns = [question.model.unknowns.index(name) for name in question.priors]
     center, sd = np.array(list(question.priors.values())).T
@@ -195,7 +197,7 @@ def _priors(
 
 
 def _count(question: Question, data: Data) -> np.ndarray:
-    """The number (B,) of points, one less where the punch adheres: the point at which the contact begins counts like an
+    """The number (B,) of points, less one with adhesion, where the point at which the contact begins counts as an
     unknown."""
     return (data.w > 0).sum(axis=1) - question.model.sticks
 
@@ -204,7 +206,7 @@ def _minima(problem: _LeastSquares) -> _Minima:
     few = problem.few
     curve, data = (few.curve, few.data) if few else (problem.curve, problem.data)
     starts, B = problem.starts, len(data.y)
-    # all starts at once: a step costs its calls, hardly its numbers
+    # all starts at once: the time of a step is that of its calls, hardly that of its numbers
     every = np.tile(np.arange(B), len(starts))
     rough = SURE if len(starts) == 1 else _ROUGHLY
     fits = minimise(curve.take(every), data.take(every), np.concatenate(starts), sure=rough)
@@ -219,11 +221,11 @@ def _minima(problem: _LeastSquares) -> _Minima:
 
 
 def _to_the_ends(problem: _LeastSquares, few: tuple[MeasuredCurves, Data], p: np.ndarray, minima: tuple) -> tuple:
-    """The costs and unknowns of searches, for retractions of searches without a ramp beyond the end of the branch.
+    """The costs and unknowns of searches; for retractions, of searches without a ramp after the end of the branch.
 
-    Each point that passes the end makes the cost jump, and a search from one side does not see the other. So it begins
-    about the best unknowns p (B, k) of the search with a ramp: with other works of adhesion, or values of the first
-    unknown if that is known, for which the others are fitted first.
+    Each point that passes the end makes the cost jump, and a search on one side does not see the other side. So these
+    searches begin near the best unknowns p (B, k) of the search with a ramp: with other works of adhesion, or other
+    values of the first unknown if the work is known. The other unknowns are fitted to these first.
     """
     (curve, data), model, (costs, places) = few, problem.question.model, minima
     place = model.unknowns.index("w_adhesion") if "w_adhesion" in model.unknowns else 0
@@ -234,11 +236,11 @@ def _to_the_ends(problem: _LeastSquares, few: tuple[MeasuredCurves, Data], p: np
     begin[:, place] = np.clip(
         begin[:, place] + np.repeat(_ABOUT, B), *(end[every, place] for end in (data.low, data.high))
     )
-    of, to = curve.take(every), data.take(every)
-    begin = minimise(of, to, begin, fixed, sure=_ROUGHLY).p
-    for each in (of, curve, problem.curve):
+    curves, points = curve.take(every), data.take(every)
+    begin = minimise(curves, points, begin, fixed, sure=_ROUGHLY).p
+    for each in (curves, curve, problem.curve):
         each.ends = True
-    fits = minimise(of, to, begin, sure=_ROUGHLY)
+    fits = minimise(curves, points, begin, sure=_ROUGHLY)
     retracts = problem.curve.points.retracts
     more = np.where(retracts, fits.cost.reshape(count, B), np.inf)
     costs = np.concatenate([np.where(retracts, np.inf, costs), more])
@@ -246,7 +248,10 @@ def _to_the_ends(problem: _LeastSquares, few: tuple[MeasuredCurves, Data], p: np
 
 
 def _spread(problem: _LeastSquares, best: Minimum, unknown: bool) -> _Spread:
-    """The spread of the unknowns; `unknown` is the variance of the points, which the residuals then say."""
+    """The uncertainty of the unknowns.
+
+    unknown : whether the variance of the points is not known, and follows from the residuals
+    """
     question, curve, data = problem.question, problem.curve, problem.data
     variance = problem.variance
     if unknown and not question.priors:
@@ -262,17 +267,17 @@ def _spread(problem: _LeastSquares, best: Minimum, unknown: bool) -> _Spread:
 
 
 def _intervals(problem: _LeastSquares, minima: _Minima, spread: _Spread) -> _Intervals:
-    """Intervals of the inputs by profiles, if the question has these; the others from the covariance."""
+    """Intervals of the inputs by profiles, if the question wants these; other intervals from the covariance."""
     best, costs, places = minima
     inputs = problem.inputs
     sd = np.sqrt(np.einsum("bii->bi", spread.covariance))
-    # by how much the cost at the ends of the interval of an input is above the least one
+    # cost at the ends of the interval of an input, above the least cost
     above = (spread.t**2 * spread.variance[:, None] * spread.worth.factors)[:, :inputs]
     few = problem.few and problem.few.about(best, problem.curve, problem.data)
     least = costs.min(axis=0) if few else best.cost  # of the same points as the other minima
     within = costs <= least + above.max(axis=1)
-    apart = np.abs(places[:, :, :inputs] - best.p[:, :inputs]) > np.maximum(sd[:, :inputs], _SAME)
-    several = (within & apart.any(axis=2)).any(axis=0)
+    differ = np.abs(places[:, :, :inputs] - best.p[:, :inputs]) > np.maximum(sd[:, :inputs], _SAME)
+    several = (within & differ.any(axis=2)).any(axis=0)
     ends = _Intervals(best.p - spread.t * sd, best.p + spread.t * sd, np.zeros(len(best.p), bool), several)
     if problem.question.intervals != "profile" or problem.data.huber:
         return ends
@@ -287,7 +292,7 @@ def _intervals(problem: _LeastSquares, minima: _Minima, spread: _Spread) -> _Int
 def _by_profiles(curve: MeasuredCurves, data: Data, minima: _Minima, above: np.ndarray, ends: _Intervals) -> _Intervals:
     """The intervals with those of the inputs by profiles, which begin at the farthest minima within them.
 
-    above : (B, inputs), by how much the cost at the ends of an interval is above the least one
+    above : (B, inputs), cost at the ends of an interval, above the least cost
     """
     best, costs, places = minima
     inputs, every = above.shape[1], np.arange(len(best.p))
@@ -308,7 +313,7 @@ def _status(problem: _LeastSquares, best: Minimum, intervals: _Intervals) -> np.
     """The :class:`FitStatus` (B,) of each curve: the first that holds."""
     question, data = problem.question, problem.data
     at_bound = ((best.p <= data.low) | (best.p >= data.high))[:, : problem.inputs].any(axis=1)
-    # of curves over a load or a radius the contact is not in doubt
+    # for curves over a load or a radius, the contact is not in doubt
     no_contact = _no_contact(problem, best) & (question.model.x == "D")
     cases = {
         FitStatus.NO_CONTACT: no_contact,
@@ -322,8 +327,8 @@ def _status(problem: _LeastSquares, best: Minimum, intervals: _Intervals) -> np.
 
 
 def _share(curve: MeasuredCurves, fit: Minimum) -> np.ndarray:
-    """The depth below the contact point of each point over that of the deepest, (B, n); 0 before the contact, and
-    hardly above it where a contact sticks before that depth."""
+    """The depth of each point below the contact point over that of the deepest, (B, n); 0 before the contact, and
+    slightly above 0 where a contact adheres before that depth."""
     depth = curve.x
     if "D0" in curve.shifts:
         depth = depth - fit.p[:, [curve.names.index("D0")]] * curve.wide[:, None]
@@ -332,8 +337,8 @@ def _share(curve: MeasuredCurves, fit: Minimum) -> np.ndarray:
 
 
 def _no_contact(problem: _LeastSquares, best: Minimum) -> np.ndarray:
-    """Whether a straight line fits as well: the model lowers its sum of squares by no more than chance would, in all
-    curves except one of a thousand."""
+    """Whether a straight line fits as well: the model reduces the sum of squares of the line by no more than chance
+    would in all curves except one in a thousand."""
     data, k = problem.data, best.p.shape[1]
     w2 = data.w**2
     x = problem.curve.x / problem.curve.wide[:, None]
@@ -350,15 +355,15 @@ def _no_contact(problem: _LeastSquares, best: Minimum) -> np.ndarray:
 
 
 def _propagated(problem: _LeastSquares, best: Minimum) -> np.ndarray:
-    """The covariance (B, k, k) that the spreads of other inputs make: the unknowns follow each of them."""
+    """The covariance (B, k, k) from the spreads of other inputs: the unknowns follow a change of each input."""
     question, k = problem.question, best.p.shape[1]
     whole = np.zeros((len(best.p), k, k))
     if not question.model.moved:
         return whole
-    _, _, others = problem.curve.contact(best.p, moved=True)
+    _, _, derivatives = problem.curve.contact(best.p, moved=True)
     A, _ = normal(problem.data, best.p, best.model, best.J, best.weights)
     A = inverse(A)
-    for name, by in zip(question.model.moved, others, strict=True):
+    for name, by in zip(question.model.moved, derivatives, strict=True):
         follows = -np.einsum("bij,bnj,bn,bn->bi", A, best.J, best.weights, by) * question.spreads[name]
         whole += follows[:, :, None] * follows[:, None, :]
     return whole

@@ -13,8 +13,8 @@ from .tables.sticking_points import StickingPoints
 from .tables.term_table import TermTable
 from .tables.tiles import WIDE
 
-_TILES = 4  # along ln u: from the largest depth down, more than _REACH
-_REACH = np.log(800.0)  # below 1/800 of twice the range of x the curve goes on as a power of x
+_TILES = 4  # number of tiles along ln u, from the largest depth down; they cover more than _REACH
+_REACH = np.log(800.0)  # below 1/800 of twice the range of x the curve continues as a power of x
 
 
 @batch.of_cases
@@ -24,10 +24,10 @@ class MeasuredCurves:
 
     table : of the model
     x : (B, n), SI
-    wide, high : (B,) the units of x and y of each curve
-    shifts : which of "D0", "P0", "tilt" are unknown
-    points : which points are in contact, of curves with adhesion; None: those at all depths
-    ends : whether retractions have no load beyond the end of the branch; if not, a ramp tells a search where to go
+    wide, high : units of x and y of each curve, (B,)
+    shifts : those of "D0", "P0", "tilt" that are unknown
+    points : for curves with adhesion, the choice of points in contact; None: the loads of the branch at all depths
+    ends : whether retractions have no load after the end of the branch; otherwise a ramp guides the search
     """
 
     table: RatioTable | TermTable
@@ -101,7 +101,7 @@ class MeasuredCurves:
     def _sticking(
         self, table: TermTable, p: np.ndarray, values: dict, moved: bool
     ) -> tuple[np.ndarray, dict, np.ndarray]:
-        """`contact` of what sticks; without adhesion at points that do not stick."""
+        """`contact` with adhesion; without adhesion at points that do not adhere."""
         model = table.model
         shift = {name: p[:, [self.names.index(name)]] for name in self.shifts}
         depth = self.x - shift.get("D0", 0.0) * self.wide[:, None]

@@ -21,21 +21,21 @@ from .question import Question
 from .residuals import PARTS
 
 _WITHOUT_FIT = (FitStatus.INVALID_INPUT, FitStatus.NO_CONTACT)
-#: At most so many curves have all places solved at once: a call costs more than some hundred contacts.
+#: For at most so many curves all depths are solved at once: a call costs more than some hundred contacts.
 _FEW = 8
-_HALVINGS = 4  # the depth at which the first assumption fails is right to 1/2**4 of the deepest
-#: Bodies at least as stiff, in Pa, flow below a sharp tip, whatever they are made of: the mean pressure of the elastic
-#: contact, E* cot(half_angle)/2, is 0.18 E* under a Berkovich tip, and their hardness is at most some 0.1 E*. Rubbers
-#: and gels, which do not flow, are softer than 0.1 GPa.
+_HALVINGS = 4  # the depth at which the first assumption fails is found to 1/2**4 of the deepest
+#: Bodies of at least this modulus, in Pa, flow below a sharp tip, whatever their material: the mean pressure of the
+#: elastic contact, E* cot(half_angle)/2, is 0.18 E* under a Berkovich tip, but their hardness is at most some 0.1 E*.
+#: Rubbers and gels, which do not flow, are softer than 0.1 GPa.
 HARD = 1e9
-#: cot(half_angle)/2 of tips that count as sharp: hardness over E* is above this in few metals.
+#: Tips count as sharp if cot(half_angle)/2 is larger: few metals have a larger hardness over E*.
 _BLUNT = 0.02
 _POINTED = ("berkovich", "vickers", "cube_corner")
-_TANGENT = 3.0  # a blunt cone is sharp where the contact is so many times as wide as its ball
+_TANGENT = 3.0  # a blunt cone is sharp if the contact is so many times as wide as its ball
 
 
 class _Numbers(NamedTuple):
-    """The fits of C curves in SI, NaN where a curve has none.
+    """The fits of C curves in SI; NaN for a curve without one.
 
     value, low, high, spread : (C, k) of the unknowns
     covariance : (C, k, k); fit : (C, n) of y
@@ -54,7 +54,7 @@ def fit_dataset(
 ) -> xr.Dataset:
     """The Dataset that `fit` returns; for a `plan` without values and residuals.
 
-    rows : curve -> (numbers of `fit_block`, row of the curve in them)
+    rows : curve -> (numbers of `fit_block`, the curve's row in them)
     status : (curve,) of curves without a row
     X, Y, there : (curve, point), x and y, and whether there is a point
     """
@@ -85,7 +85,7 @@ def fit_dataset(
 
 
 def _in_si(question: Question, names: tuple, fits: dict, X: np.ndarray, there: np.ndarray) -> _Numbers:
-    """The numbers of the unknowns `names` of curves with fits, curve -> (numbers of `fit_block`, row)."""
+    """The numbers of the unknowns `names`. fits : curve -> (numbers of `fit_block`, its row in them)"""
     model, C, k = question.model, len(X), len(names)
     numbers = _Numbers(
         *(np.full((C, k), np.nan) for _ in range(4)), np.full((C, k, k), np.nan), np.full(X.shape, np.nan)
@@ -121,7 +121,7 @@ def _of_unknowns(question: Question, names: tuple, numbers: _Numbers, plan: bool
 
 
 def _of_points(question: Question, fits: dict, count: np.ndarray) -> dict[str, tuple]:
-    """Variables that say how far the points agree with the fit (docs/fit.md, Points that do not agree).
+    """Variables that tell how well the points agree with the fit (docs/fit.md, Points that do not agree).
 
     count : (curve,) of points
     """
@@ -151,7 +151,7 @@ def _of_points(question: Question, fits: dict, count: np.ndarray) -> dict[str, t
 
 
 def _from_priors(question: Question, names: tuple, value: np.ndarray) -> dict[str, tuple]:
-    """How far each input with a prior is from it, in standard deviations."""
+    """The distance of each input from its prior, in standard deviations."""
     variables = {}
     for name, (center, sd) in question.priors.items():
         about = {"long_name": f"{name} less its prior, in standard deviations of that"}
@@ -170,15 +170,15 @@ def _value(model, name: str, p: float, sizes: dict) -> float:
 
 
 def _end(p: float, end: float, more: float) -> float:
-    """The end of an interval with what other inputs add to it."""
+    """The end of an interval, with the contribution `more` of other inputs."""
     return p + np.sign(end - p) * np.hypot(end - p, more)
 
 
 def _validity(
     question: Question, fitted: xr.Dataset, value: np.ndarray, X: np.ndarray, there: np.ndarray
 ) -> xr.Dataset:
-    """Variables over `curve`: which assumptions of the model the deepest contact of a fit violates, and the x up to
-    which it violates none."""
+    """Variables over `curve`: the assumptions of the model that the deepest contact of a fit violates, and the x up to
+    which no contact violates any."""
     model = question.model
     deepest = np.where(there, X, -np.inf).max(axis=1, initial=-np.inf)
     D0 = fitted["D0"].values if "D0" in fitted else np.zeros(len(X))
@@ -250,7 +250,7 @@ def _contacts(question: Question, value: np.ndarray, x: np.ndarray) -> xr.Datase
         for name, (v, unit) in columns.items()
     }
     arrays |= {"E2": "rigid"} if np.isinf(np.asarray(columns.get("E2", (0.0,))[0])).all() else {}
-    # those without units; ratios follow from moduli
+    # inputs without units; ratios follow from moduli
     others = {*scene.parameters} - {
         *arrays,
         "n",
@@ -270,7 +270,7 @@ def _contacts(question: Question, value: np.ndarray, x: np.ndarray) -> xr.Datase
 
 
 def flows(model: CurveModel, modulus: np.ndarray, contacts: xr.Dataset) -> np.ndarray:
-    """Which contacts (M,) of a fit are those of a sharp tip in a body that flows below it.
+    """Whether each contact (M,) of a fit has a sharp tip, and a body that flows below it.
 
     modulus : (M,) in Pa, of the touched body
     contacts : the contacts at the deepest points, of `solve`
@@ -290,8 +290,8 @@ def flows(model: CurveModel, modulus: np.ndarray, contacts: xr.Dataset) -> np.nd
 
 
 def words_of(question: Question, fitted: xr.Dataset) -> dict[str, str]:
-    """Attributes of a Dataset of `fit`: `given`, the inputs that are not free; `assumed`, the defaults that stand for
-    inputs which were not given, and may be far from them, if there are any."""
+    """Attributes of a Dataset of `fit`: `given`, the inputs that are not free; and `assumed`, the defaults of inputs
+    that were not given, which may be far from the true values, if there are any."""
     contact = unsolved("fit", question.call)
     free = [name for name in question.free if name in fitted]  # none of a plan: these are its assumed values
     for name in free:  # the assumptions depend on how soft the layer is

@@ -1,4 +1,4 @@
-"""How sure a fit is: covariances, and intervals by profiles of the likelihood."""
+"""The uncertainty of a fit: covariances, and intervals by profiles of the likelihood."""
 
 from typing import Any
 
@@ -6,14 +6,14 @@ import numpy as np
 
 from .least_squares import HUBER, Data, Minimum, inverse, minimise, normal, scale
 
-_INNER, _INNER_SURE = 30, 1e-4  # steps of an inner fit, and by what part of the mean square it may be off
-_OUTWARD, _BETWEEN = 24, 8  # steps of the walk to the limit, and between its last two places
-_PRECISE = 2e-3  # of the width of an interval
+_INNER, _INNER_SURE = 30, 1e-4  # number of steps of an inner fit, and its precision over the mean square
+_OUTWARD, _BETWEEN = 24, 8  # number of steps of the walk to the limit, and between its last two places
+_PRECISE = 2e-3  # precision of an end, over the width of the interval
 
 
 def covariance_of(data: Data, fit: Minimum, variance: np.ndarray) -> np.ndarray:
     """The covariance (B, k, k) of the unknowns, from the curvature at the minimum. Under Huber's loss it is the
-    "sandwich" of two curvatures, which holds for errors that are not normal too.
+    "sandwich" of two curvatures, which also holds for errors that are not normal.
 
     variance : (B,) of a point of weight 1
     """
@@ -45,8 +45,8 @@ def profiles(
     `limit` (B, unknowns). The walk goes outward from the minima, all ends at once: a row is a curve, an unknown and a
     side.
 
-    ends : where each walk begins, the low and the high end of the first unknown, then of the next: unknowns (B, k) and
-        costs (B,) of that minimum within the limit which lies farthest on this side
+    ends : the beginnings of the walks, for the low and the high end of the first unknown, then of the next: unknowns
+        (B, k) and costs (B,) of the minimum within the limit that lies farthest on this side
     first : (B, k) first steps
     """
     B, walks = len(best.p), len(ends)
@@ -71,8 +71,9 @@ def _walk(
 ) -> tuple[np.ndarray, np.ndarray]:
     """The value (B,) of unknown `which` (B,) at which its profile reaches `limit`, and whether that is a bound.
 
-    side : (B,) -1 or 1, to which the walk goes. Its steps grow until one is beyond the limit; then the place between
-    the last two is looked for
+    side : (B,) -1 or 1, the direction of the walk
+
+    The steps of the walk grow until one exceeds the limit. Then the place between the last two is searched.
     """
     every, data, start = np.arange(len(which)), of[1], best.cost
     bound = np.where(side > 0, data.high[every, which], data.low[every, which])
@@ -113,7 +114,7 @@ def _walk(
 
 
 def _share(top: np.ndarray, height: np.ndarray, beyond: np.ndarray) -> np.ndarray:
-    """The part of the way from `height` to `beyond` at which a straight line reaches the top."""
+    """The share of the way from `height` to `beyond` at which a straight line reaches the top."""
     with np.errstate(divide="ignore", invalid="ignore"):
         share = (top - height) / (beyond - height)
     return np.where(np.isfinite(share), share, 0.5)
@@ -122,9 +123,9 @@ def _share(top: np.ndarray, height: np.ndarray, beyond: np.ndarray) -> np.ndarra
 def _inner(
     of: tuple[Any, Data], p: np.ndarray, which: np.ndarray, value: np.ndarray, start: np.ndarray, wanted: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Fits with unknown `which` fixed at a value: the unknowns, and the root of how far the cost is above the best one.
+    """Fits with unknown `which` fixed at a value: the unknowns, and the root of the cost above the best cost.
 
-    Rows that are not `wanted` stay as they are: the numbers of a curve must not depend on how far others walk.
+    Rows that are not `wanted` stay as they are: the numbers of a curve must not depend on the walks of others.
     """
     rows, p, height = np.flatnonzero(wanted), p.copy(), np.full(len(p), np.nan)
     p[rows, which[rows]] = value[rows]

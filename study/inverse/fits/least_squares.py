@@ -1,6 +1,6 @@
 """Levenberg-Marquardt for many curves at once. Arrays have the curves first: B curves, n points, k unknowns.
 
-What a curve gets does not depend on the others of the batch: every sum is over one curve.
+The result of a curve does not depend on the others in the batch: every sum is over one curve.
 """
 
 from typing import Any, NamedTuple
@@ -9,15 +9,15 @@ import numpy as np
 
 from solver.numerics import batch
 
-STEPS = 100  # at most
-_CLOSE = 1e-9  # steps of all unknowns below this end the search; all unknowns are of order 1
-#: Unknowns are then within 1e-4 of their spreads.
+STEPS = 100  # largest number of steps
+_CLOSE = 1e-9  # smaller steps of all unknowns end the search; all unknowns are of order 1
+#: Precision of a search; unknowns are then within 1e-4 of their spreads.
 SURE = 1e-8
-AT_LEAST = 8  # a batch is filled up to a multiple of so many curves
-#: So many steps with hardly a gain end the search: where a point lies at the beginning of the contact, the cost has a
-#: crease, along which steps are short. Unknowns are then within some 1e-3 of their spreads.
+AT_LEAST = 8  # a batch is padded to a multiple of so many curves
+#: Number of steps with hardly a gain that end the search: where a point lies at the beginning of the contact, the cost
+#: has a crease, along which steps are short. Unknowns are then within some 1e-3 of their spreads.
 _IDLE = 30
-_STIFF = 1e10  # damping at which only rounding is left
+_STIFF = 1e10  # damping above which only rounding errors remain
 #: Huber's loss: residuals above HUBER times the scale count linearly. The scale is MAD times the median deviation.
 HUBER, MAD = 1.345, 1.4826
 
@@ -26,7 +26,7 @@ HUBER, MAD = 1.345, 1.4826
 class Data(NamedTuple):
     """The points of curves, and bounds and priors of their unknowns.
 
-    y, w : (B, n), values and weights, 0 of what is no point
+    y, w : (B, n), values and weights, which are 0 where there is no point
     low, high : (B, k) bounds of the unknowns
     center, stiffness : (B, k) of Gaussian priors, whose cost is stiffness (p - center)²; 0: none
     huber : whether residuals count by Huber's loss
@@ -43,8 +43,8 @@ class Data(NamedTuple):
 
 @batch.of_cases
 class Minimum(NamedTuple):
-    """Where the search ended: unknowns p (B, k), cost (B,), model (B, n) and its derivatives J (B, n, k), the weights
-    (B, n) of the residuals' squares, and whether it ended by itself (B,)."""
+    """The end of a search: unknowns p (B, k), cost (B,), model (B, n) and its derivatives J (B, n, k), weights (B, n)
+    of the squared residuals, and whether the search ended by itself (B,)."""
 
     p: np.ndarray
     cost: np.ndarray
@@ -59,9 +59,9 @@ def minimise(
 ) -> Minimum:
     """Minimise the sum of the squares of w (y - curve(p)), from p on, within the bounds.
 
-    curve : p -> values (B, n) and derivatives (B, n, k), NaN where there is none; `take(index)` has some of the curves
+    curve : p -> values (B, n) and derivatives (B, n, k), NaN where there are none; `take(index)` selects curves
     fixed : (B, k) bool, unknowns that stay
-    sure : the search ends where a step would lower the cost by less than this part of the mean square
+    sure : the search ends when a step would lower the cost by less than this share of the mean square
     """
     fixed = np.zeros(p.shape, bool) if fixed is None else fixed
     model, J = curve(p)
@@ -80,8 +80,8 @@ def minimise(
         new, decrease = _step(data.take(rows), fit.take(rows), fixed[rows], damping[rows])
         part = curve.take(rows)
         new_model, new_J = part(new)
-        # The new cost is by Huber's limit of the old residuals, so that the two can be compared. By a limit of its own
-        # it could fall merely because the limit does
+        # The new cost uses Huber's limit of the old residuals, so that both costs can be compared. With the limit of
+        # the new residuals it could fall merely because the limit falls
         limit = huber_limit(data.take(rows), fit.model[rows])
         weights, cost = weighed(data.take(rows), new, new_model, limit)
         once = slice(0, len(left))
@@ -103,7 +103,7 @@ def minimise(
 
 
 def _step(data: Data, fit: Minimum, fixed: np.ndarray, damping: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where a damped step leads, within the bounds, and by how much it should lower the cost."""
+    """The unknowns after a damped step, within the bounds, and the expected decrease of the cost."""
     p, eye = fit.p, np.eye(fit.p.shape[1], dtype=bool)
     A, slope = normal(data, p, fit.model, fit.J, fit.weights)
     still = fixed | ((p <= data.low) & (slope < 0)) | ((p >= data.high) & (slope > 0))
@@ -143,7 +143,7 @@ def weighed(
 
 
 def huber_limit(data: Data, model: np.ndarray) -> np.ndarray | None:
-    """(B, 1), beyond which residuals count linearly; None if all count by their squares."""
+    """The limit (B, 1) above which residuals count linearly; None if all count by their squares."""
     if not data.huber:
         return None
     return HUBER * scale(np.where(data.w > 0, data.w * (data.y - model), 0.0), data.w)[:, None]

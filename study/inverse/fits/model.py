@@ -17,20 +17,20 @@ from ...inputs.scene.scene import Scene
 from ...inputs.vocabulary import VOCABULARY
 
 #: Two rows of exponents for each pair (x, y). The first has q, e, r of Hertz's contact on a half-space of the layer's
-#: material, y = x^q E^e R^r. The second has those of x, h, R, E in a number u without unit. The only length in the
-#: contact of a smooth paraboloid is h²/R: so y over Hertz's y depends on u and on ratios of moduli alone.
+#: material, y = x^q E^e R^r. The second has those of x, h, R, E in a dimensionless number u. The only length in the
+#: contact of a smooth paraboloid is h²/R: so y over Hertz's y depends only on u and on ratios of moduli.
 HERTZ = {
     ("D", "P"): ((1.5, 1.0, 0.5), (1.0, -2.0, 1.0, 0.0)),
     ("P", "a"): ((1 / 3, -1 / 3, 1 / 3), (1.0, -3.0, 1.0, -1.0)),
     ("a", "dP_dD"): ((1.0, 1.0, 0.0), (1.0, -1.0, 0.0, 0.0)),
 }
 PAIRS = tuple(HERTZ)
-_RTOL = 1e-7  # of the solutions: tables are as good as these
+_RTOL = 1e-7  # of the solutions, and so of the tables
 _SMOOTH = ("layered", "half_space")  # bases on which a smooth contact depends on u
 
 
 def is_ratio(name: str) -> bool:
-    """Whether an input is a Poisson ratio, which may be 0: it counts itself, not its logarithm."""
+    """Whether an input is a Poisson ratio, which may be 0: its coordinate is the ratio itself, not a logarithm."""
     return name in ("nu1", "nu2", "nu_punch")
 
 
@@ -38,11 +38,12 @@ def is_ratio(name: str) -> bool:
 class CurveModel:
     """A curve y(x) of one contact.
 
-    scene : its inputs in SI; those in `unknowns` have any value
+    scene : inputs of the contact in SI; those in `unknowns` have arbitrary values
     x, y : ("D", "P"), ("P", "a") or ("a", "dP_dD")
-    unknowns : names of inputs; their coordinate is the logarithm of the SI value, of Poisson ratios the ratio, of
-        angles the logarithm of the tangent: the load of a cone is a power of that, and any number is an angle
-    moved : other inputs, by whose logarithms (ratios: themselves) derivatives are wanted
+    unknowns : names of inputs. The coordinate of an input is the logarithm of its SI value; of a Poisson ratio the
+        ratio; of an angle the logarithm of its tangent, since the load of a cone is a power of that, and any number is
+        then an angle
+    moved : other inputs for derivatives, by their logarithms (by ratios themselves)
     """
 
     scene: Scene
@@ -64,12 +65,12 @@ class CurveModel:
 
     @property
     def modulus(self) -> str:
-        """The modulus of the touched body: E1 of a layer, else E2."""
+        """The modulus of the touched body: E1 with a layer, otherwise E2."""
         return "E1" if "E1" in self.scene.values else "E2"
 
     @property
     def is_similar(self) -> bool:
-        """Whether h and R act through u alone: under a smooth paraboloid on the exact layer or a half-space."""
+        """Whether h and R act only through u: under a smooth paraboloid on the exact layer or a half-space."""
         numbers = self.scene.parameters
         usual = numbers.get("shape", PARABOLOID) == PARABOLOID and not self.sticks
         return usual and numbers.get("micro") == "smooth" and numbers.get("base", "layered") in _SMOOTH
@@ -81,7 +82,7 @@ class CurveModel:
 
     @property
     def scales_only(self) -> bool:
-        """Whether the modulus of the touched body is the only finite one: then it is a mere factor of y."""
+        """Whether the modulus of the touched body is the only finite modulus: then it is a mere factor of y."""
         values = self.scene.values
         others = {"E1", "E2", "E_punch"} - {self.modulus}
         return self.is_similar and all(np.isinf(values.get(name, np.inf)) for name in others)
@@ -104,7 +105,7 @@ class CurveModel:
 
     def of_coordinate(self, name: str, coordinate: Any) -> Any:
         """The value in SI of a coordinate."""
-        with np.errstate(over="ignore"):  # at the end of an interval of an input that the curve hardly says
+        with np.errstate(over="ignore"):  # at the end of the interval of an input that the curve hardly determines
             if name in ANGLES:
                 return np.degrees(np.arctan(np.exp(coordinate)))
             return np.asarray(coordinate) if is_ratio(name) else np.exp(coordinate)
@@ -116,15 +117,15 @@ class CurveModel:
         return np.ones_like(value, float) if is_ratio(name) else np.asarray(value, float)
 
     def within(self, values: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Values (M,) moved to what the solver takes: ratios up to 0.5, and n = E1*/E2* within its interval. Beyond
-        this interval y over Hertz's y does not change any more."""
+        """Values (M,) moved into the range of the solver: ratios up to 0.5, and n = E1*/E2* within its interval.
+        Outside this interval y over Hertz's y no longer changes."""
         values = values | {name: np.minimum(values[name], 0.5) for name in ("nu1", "nu2") if name in values}
         every = self.scene.values | values
         if {"E1", "E2"} <= {*every} and np.isfinite(every["E2"]).all() and {"E1", "E2"} & {*values}:
             low, high, *_ = ends(LIMITS["n"].interval)
             nu1, nu2 = (every.get(name, 0.3) for name in ("nu1", "nu2"))
             n = every["E1"] / (1 - nu1**2) / every["E2"] * (1 - nu2**2)
-            factor = np.clip(n, 2 * low, high / 2) / n  # not at its very ends, for what is then moved
+            factor = np.clip(n, 2 * low, high / 2) / n  # within the ends, to leave room for derivatives
             values = values | ({"E1": values["E1"] * factor} if "E1" in values else {"E2": values["E2"] / factor})
         return values
 
@@ -163,7 +164,7 @@ class CurveModel:
     def solved(self, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:
         """y (M,) at x (M,), both in SI, for values (M,) of inputs; NaN where a contact has no solution.
 
-        A tile of a table may reach beyond the end of a law of asperities: only the fitted contacts are judged.
+        A tile of a table may extend past the end of a law of asperities: only the fitted contacts are judged.
         """
         changed = self.scene_of(values)
         unit, R = changed.unit, changed.R

@@ -1,4 +1,5 @@
-"""The question of a call of `fit`: the model, its unknown inputs with bounds and priors, the spreads it takes over."""
+"""The question of a call of `fit`: the model, its unknown inputs with bounds and priors, and spreads of other
+inputs."""
 
 import math
 from collections.abc import Iterable
@@ -20,9 +21,9 @@ from ...specimen.quantities import has_unit, quantity
 from ...terminal import shown
 from .model import PAIRS, CurveModel, is_ratio
 
-MOST = 3  # unknown inputs
+MOST = 3  # largest number of unknown inputs
 ROUGHNESS = ("Nbar", "Ra", "sigma", "cut", "B", "beta")
-#: Pairs of inputs that change a curve alike, so that only one of them can be told.
+#: Pairs of inputs that change a curve in the same way, so that only one of them can be determined.
 _ALIKE = [*combinations(ROUGHNESS, 2), ("E1", "nu1"), ("E1", "R"), ("E1", "n")]
 _ALIKE_WORDS = "a curve cannot tell them apart: give one of them a value"
 _ABSCISSA = {"D": "1 nm", "P": "1 nN", "a": "1 nm"}
@@ -35,13 +36,13 @@ DECADE = np.log(10.0)
 class Question:
     """A checked call.
 
-    model : the curve, with its unknown inputs: free ones, then those with a prior
-    bounds : free input -> (low, high) in SI; other free inputs have bounds that follow from each curve
-    priors : input with ± in the call, free ones too -> (coordinate, its spread), as the unknowns of `CurveModel`
-    spreads : other input -> its spread in its coordinate
+    model : the curve, with its unknown inputs: free inputs, then those with a prior
+    bounds : free input -> (low, high) in SI; bounds of other free inputs follow from each curve
+    priors : input with ± in the call, even if it is free -> its coordinate in `CurveModel`, and the spread of that
+    spreads : other input -> the spread of its coordinate
     shifts : unknowns after the inputs
-    called : free input -> its name in the call, "layers.1.E1" of E1
-    call : arguments of `study.solve`: stand-ins for unknown inputs without a value, and for x
+    called : free input -> its name in the call, "layers.1.E1" for E1
+    call : arguments of `study.solve`, with stand-ins for unknown inputs without a value, and for x
     """
 
     model: CurveModel
@@ -58,11 +59,11 @@ class Question:
 
 
 class _Unknowns(NamedTuple):
-    """The unknown inputs of a call, by their names among the inputs of a contact: E1 of "layers.1.E1".
+    """The unknown inputs of a call, by their names among the inputs of a contact: E1 for "layers.1.E1".
 
     called : free input -> its name in the call
-    priors : inputs with ± in the call that are fitted, free ones too
-    bounds : free input -> (low, high) in SI, of those for which the call has bounds
+    priors : fitted inputs with ± in the call, even if they are free
+    bounds : free input with bounds in the call -> (low, high) in SI
     valued : free inputs that have a value in the call
     lexicon : of the call
     """
@@ -110,7 +111,7 @@ def read_question(free: Any, parameters: dict, x: str, y: str, options: dict) ->
 
 
 def _unknowns(free: Any, parameters: dict, x: str, y: str, options: dict) -> _Unknowns:
-    """The unknown inputs of a call. Raises StudyError with all that is wrong with the names and options of the call."""
+    """The unknown inputs of a call. Raises StudyError with all errors in its names and options."""
     errors = _choices(x, y, options)
     names, texts = _listed(free, errors), dict(free) if isinstance(free, dict) else {}
     called = {short(name): name for name in names}
@@ -138,7 +139,10 @@ def _unknowns(free: Any, parameters: dict, x: str, y: str, options: dict) -> _Un
 
 
 def _too_many(unknowns: _Unknowns, wrong: bool) -> list[str]:
-    """Why a curve cannot say these unknowns; that there are none only if nothing else is `wrong`."""
+    """The reasons why a curve cannot determine these unknowns.
+
+    wrong : whether there are other errors; then a lack of unknowns is not reported
+    """
     every, errors = unknowns.every, []
     if "k_machine" in every:
         errors.append(
@@ -155,8 +159,10 @@ def _too_many(unknowns: _Unknowns, wrong: bool) -> list[str]:
 
 
 def _call(unknowns: _Unknowns, parameters: dict, x: str, options: dict) -> dict[str, Any]:
-    """The call of `study.solve`: with stand-ins for free inputs without a value, and for x. Raises StudyError where
-    there is none, and where the contact does not take a bound."""
+    """The call of `study.solve`, with stand-ins for free inputs without a value, and for x.
+
+    Raises StudyError for an input without a stand-in, and for a bound that the contact refuses.
+    """
     bounds, called = unknowns.bounds, unknowns.called
     from_material = {name for body, rows in _OF_BODIES.items() if parameters.get(body) is not None for name in rows}
     open_ = [name for name in unknowns.free if name not in unknowns.valued and name not in from_material]
@@ -173,7 +179,7 @@ def _call(unknowns: _Unknowns, parameters: dict, x: str, options: dict) -> dict[
 
 
 def _model(definition: Definition, unknowns: _Unknowns, x: str, y: str) -> CurveModel:
-    """The model of the curve. Raises StudyError where it has no curve y(x), or an unknown does not act in it."""
+    """The model of the curve. Raises StudyError if it has no curve y(x), or an unknown does not act in it."""
     scene, every = definition.scene, unknowns.every
     moved = tuple(name for name in scene.spreads if name not in every and name not in CONTROLS)
     model = CurveModel.of(definition, x, y, every, moved)
@@ -192,8 +198,8 @@ def _model(definition: Definition, unknowns: _Unknowns, x: str, y: str) -> Curve
 
 
 def _all_bounds(model: CurveModel, unknowns: _Unknowns) -> dict[str, tuple[float, float]]:
-    """Free input -> (low, high): the bounds of the call, else up to a decade from the value in the call. A modulus of
-    what is touched, and an input with a prior, has none that the call says."""
+    """Free input -> (low, high): the bounds in the call, or up to a decade from the value in the call. The modulus of
+    the touched body, and an input with a prior, have only bounds in the call."""
     bounds = dict(unknowns.bounds)
     for name in unknowns.free:
         if name not in bounds and name != model.modulus and name not in unknowns.priors:
@@ -205,7 +211,7 @@ def _all_bounds(model: CurveModel, unknowns: _Unknowns) -> dict[str, tuple[float
 
 
 def _in_layers(parameters: dict) -> dict[str, Any]:
-    """Input -> its value in the list of layers of a call, of layers that are tables."""
+    """Input -> its value in the list of layers of a call, for layers that are tables."""
     listed = parameters.get("layers")
     tables = enumerate(listed, 1) if isinstance(listed, (list, tuple)) else ()
     rows = {f"layers.{i}": layer for i, layer in tables if isinstance(layer, dict)}
@@ -244,7 +250,7 @@ def _listed(free: Any, errors: list[str]) -> tuple[str, ...]:
 def _numbers(names: Iterable[str], lexicon: Lexicon) -> set[str]:
     """Inputs that may be fitted: numbers of the contact, not settings of the solver.
 
-    names : inputs of the call and free ones, whose names say which layers there are
+    names : inputs of the call and free inputs, whose names show the layers
     """
     rows = {name for name in lexicon.parameters_of(names) if lexicon.parameter(name).interval}
     rows = {name for name in rows if not lexicon.parameter(name).whole}
@@ -252,8 +258,11 @@ def _numbers(names: Iterable[str], lexicon: Lexicon) -> set[str]:
 
 
 def _has_prior(name: str, value: Any, free: bool) -> bool:
-    """Whether ± stands in the call: of R, Poisson ratios and names of materials it is taken over, not fitted, unless
-    they are `free`; that of k_machine changes no curve."""
+    """Whether a ± in the call is a prior.
+
+    The ± of R, of Poisson ratios and of named materials widens the intervals instead, unless the input is `free`. The ±
+    of k_machine changes no curve.
+    """
     if name == "k_machine" or name in BODIES or name in CONTROLS or (not free and (name == "R" or is_ratio(name))):
         return False
     spread = getattr(value, "std_dev", None) or getattr(getattr(value, "magnitude", None), "std_dev", None)
@@ -285,7 +294,10 @@ def _definition(parameters: dict, where: str) -> Definition:
 
 
 def _check_ends(parameters: dict, bounds: dict, called: dict, lexicon: Lexicon) -> None:
-    """Whether the contact takes the bounds. Raises StudyError if not. `called` : input -> its name in the call."""
+    """Raise StudyError for a bound that the contact refuses.
+
+    called : input -> its name in the call
+    """
     for name, pair in bounds.items():
         unit = lexicon.all_rows[name].unit
         for end in pair:
@@ -340,10 +352,9 @@ def region(depth: Any, x: str) -> tuple[float, float] | None:
 
 
 def inside(x: np.ndarray, begin: dict[int, float], limits: tuple[float, float]) -> np.ndarray:
-    """Which points (curves, n) count: those in contact within the limits, and those before the contact.
+    """Whether points (curves, n) count: those in contact within the limits, and those before the contact.
 
-    begin : curve -> where its contact begins; {}: all begin at 0. All points count of a curve that is missing among
-        others
+    begin : curve -> beginning of its contact; {}: all begin at 0. All points of a missing curve count
     """
     low, high = limits
     depth = x - np.array([begin.get(curve, np.nan if begin else 0.0) for curve in range(len(x))])[:, None]

@@ -1,13 +1,14 @@
-"""The residuals of fits: how many independent points they are worth, and whether an unknown changes with the depth.
+"""The residuals of fits: the number of independent points that they are worth, and changes of an unknown with the
+depth.
 
-The errors of neighbouring points are correlated: drift, feedback, and a model that is not quite right, leave waves in
-the residuals. Counted as independent, the points seem to say far more than they do. The residuals, averaged
-in at most _MOST blocks along x, are taken for the sum of white noise and of noise whose correlation decays. Their
-covariance is
+The errors of neighbouring points are correlated: drift, feedback, and a model that is not quite right leave waves in
+the residuals. If the points counted as independent, they would seem to say far more than they do. The residuals,
+averaged in at most _MOST blocks along x, are modelled as the sum of white noise and of noise whose correlation decays.
+Their covariance is
 
     cov(i, j) = v ((1 - s) delta_ij + s exp(-|i - j|/l)).
 
-s and l have the largest restricted likelihood, which takes into account what the fit itself has removed from the
+s and l maximise the restricted likelihood, which takes into account the part that the fit itself has removed from the
 residuals. The noise counts as white, s = 0, unless a correlation is far likelier.
 """
 
@@ -20,32 +21,32 @@ from scipy import special
 from .curve import MeasuredCurves
 from .least_squares import Data, Minimum, huber_limit, inverse, minimise, normal
 
-#: Blocks of points. With 100 to 10,000 points and correlations of neighbours of 0.5 to 0.95, 95 % intervals hold 94 to
-#: 98 % (tests/inverse/misfit/test_correlated_noise.py).
+#: Largest number of blocks. With 100 to 10,000 points and correlations of neighbours of 0.5 to 0.95, 95 % intervals
+#: hold in 94 to 98 % of cases (tests/inverse/misfit/test_correlated_noise.py).
 _MOST = 128
-_FEWEST = 16  # blocks, below which no correlation is looked for
-_LENGTHS = 12  # lengths l, from half a block to an eighth of all blocks
+_FEWEST = 16  # least number of blocks for the search of a correlation
+_LENGTHS = 12  # number of lengths l, from half a block to an eighth of all blocks
 _SHARES = np.array([0.0, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.96, 1.0])
-#: Twice the logarithm of a likelihood over that of white noise, from which on noise is not white. Some 2 % of curves
-#: with white noise are beyond it.
+#: Twice the logarithm of a likelihood over that of white noise above which noise is not white. Some 2 % of curves with
+#: white noise exceed it.
 _LIKELIER = 6.0
-#: Standard deviations of the correlation of neighbours below which the likelihood is not asked, and above which, of
-#: single points, their noise is not white whatever the likelihood of the blocks says.
+#: Correlation of neighbours in standard deviations below which the likelihood is not computed; and the same for single
+#: points above which their noise is not white, whatever the likelihood of the blocks.
 _LAGS, _SURE_LAGS = 2.0, 3.5
 #: Level of the tests that the misfit in contact is larger than the noise before it, and that an unknown changes with
 #: the depth.
 _SURE = 0.999
-#: The first test needs so many points on either side.
+#: Least number of points on either side for the first test.
 _ASIDE = 10
-#: A smaller change of an unknown is not worth a sentence.
+#: Least change of an unknown that is worth a sentence.
 _LEAST = 0.03
-#: Residuals below this part of the range of y are those of the table of the model.
+#: Residuals below this share of the range of y come from the table of the model.
 _EXACT = 2e-5
-#: Freedom of Student's t that is left where hardly a point is independent of the others.
+#: Freedom of Student's t that remains where hardly a point is independent of the others.
 _FREEDOM = 2.0
-#: Parts of the depth below the contact point, of equal width.
+#: Number of parts of the depth below the contact point, of equal width.
 PARTS = 4
-_STEPS, _ENOUGH = 12, 3  # steps of the search in a part, and points without which a part says nothing
+_STEPS, _ENOUGH = 12, 3  # number of steps of the search in a part, and least number of points in a part
 
 
 class Noise(NamedTuple):
@@ -63,9 +64,9 @@ class Noise(NamedTuple):
 
 
 class Worth(NamedTuple):
-    """How much the points of B fits say.
+    """The information in the points of B fits.
 
-    factors : (B, k), by what the variance of each unknown is larger than with independent points
+    factors : (B, k), ratio of the variance of each unknown to that with independent points
     freedom : (B, k) of Student's t
     ratio, larger : (B,) of :class:`Noise`
     change, changes : (B,) the relative change of the first unknown from the beginning of the contact to the deepest
@@ -84,13 +85,16 @@ class Worth(NamedTuple):
 def _family(n: int) -> list[tuple[np.ndarray, np.ndarray]]:
     """Eigenvalues (n,) and eigenvectors (n, n) of exp(-|i - j|/l) for each length l."""
     lengths = np.exp(np.linspace(np.log(0.5), np.log(n / 8), _LENGTHS))
-    apart = np.abs(np.arange(n)[:, None] - np.arange(n))
-    pairs = [np.linalg.eigh(np.exp(-apart / length)) for length in lengths]
+    distances = np.abs(np.arange(n)[:, None] - np.arange(n))
+    pairs = [np.linalg.eigh(np.exp(-distances / length)) for length in lengths]
     return [(np.maximum(values, 1e-9), vectors) for values, vectors in pairs]
 
 
 def noise_of(x: np.ndarray, e: np.ndarray, X: np.ndarray, contact: np.ndarray) -> Noise:
-    """The :class:`Noise` of residuals at x (n,); `contact` (n,) says which points are in contact."""
+    """The :class:`Noise` of residuals at x (n,).
+
+    contact : whether a point is in contact, (n,)
+    """
     k = X.shape[1]
     e, X = (np.where(np.isfinite(array), array, 0.0) for array in (e, X))
     places, blocks = _blocks(x)
@@ -117,8 +121,8 @@ def noise_of(x: np.ndarray, e: np.ndarray, X: np.ndarray, contact: np.ndarray) -
 
 
 def _blocks(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The rank (n,) of each x, and the number (n,) of its block. Readings at one x count as independent: they have one
-    rank."""
+    """The rank (n,) of each x, and the number (n,) of its block. Readings at the same x share a rank, and count as
+    independent."""
     distinct, places = np.unique(x, return_inverse=True)
     return places.ravel(), places.ravel() // -(-len(distinct) // _MOST)
 
@@ -129,7 +133,7 @@ def _lag(E: np.ndarray) -> float:
 
 
 def _hangs_together(E: np.ndarray) -> bool:
-    """Whether neighbours are alike, of blocks (n,) or of averages of several of them."""
+    """Whether neighbours among the blocks (n,), or among averages of several blocks, are similar."""
     while len(E) >= _FEWEST:
         if _lag(E) > _LAGS:
             return True
@@ -138,8 +142,10 @@ def _hangs_together(E: np.ndarray) -> bool:
 
 
 def _ratio(e: np.ndarray, contact: np.ndarray, worth: tuple[float, float]) -> tuple[float, bool]:
-    """rms in contact over rms before it, and whether it is surely above 1, by an F test in which points count as the
-    parts `worth` of one."""
+    """rms in contact over rms before it, and whether it is surely above 1, by an F test.
+
+    worth : number of independent points that a point counts as, in contact and before it
+    """
     inside, outside = int(contact.sum()), int((~contact).sum())
     if min(inside, outside) < _ASIDE or not e[~contact].any():
         return np.nan, False
@@ -149,8 +155,8 @@ def _ratio(e: np.ndarray, contact: np.ndarray, worth: tuple[float, float]) -> tu
 
 
 def _worth(E: np.ndarray) -> float:
-    """The part of an independent point that a residual is worth in a sum of squares. The correlation of neighbours is
-    taken to decay by the same factor from each point to the next."""
+    """The number of independent points that a residual is worth in a sum of squares, at most 1. The correlation is
+    assumed to decay by the same factor from each point to the next."""
     if len(E) < 3 or not E.any():
         return 1.0
     lag = float(np.clip((E[1:] * E[:-1]).sum() / (E**2).sum(), 0.0, 0.99)) ** 2
@@ -158,10 +164,11 @@ def _worth(E: np.ndarray) -> float:
 
 
 def _likeliest(E: np.ndarray, D: np.ndarray, waves: bool, more: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """The covariance of residuals E (n,) as eigenvalues (n,), eigenvectors (n, n) and a factor; 1 each if it is white.
+    """The covariance of residuals E (n,) as eigenvalues (n,), which are 1 for white noise, eigenvectors (n, n) and a
+    factor.
 
-    D (n, k) are the derivatives of the fit, `more` is by how much twice the logarithm of the likelihood must be larger
-    than that of white noise.
+    D : (n, k) derivatives of the fit
+    more : excess of twice the logarithm of the likelihood over that of white noise that a correlation needs
     """
     n, k = D.shape
     white = float(E @ E) / (n - k)
@@ -191,7 +198,7 @@ def worth_of(
     """The :class:`Worth` of fits at x (B, n).
 
     variance : (B,) of a point of weight 1, if points are independent
-    prior : (B,) times the stiffness of a prior this is the variance of its slope
+    prior : (B,), the variance of the slope of a prior over its stiffness
     share : (B, n) of the depth, 0 before the contact
     """
     B, k = fit.p.shape
@@ -203,15 +210,15 @@ def worth_of(
     off = np.sqrt((np.where(data.w > 0, data.y - fit.model, 0.0) ** 2).mean(axis=1))
     distinct = len(x) - _copies(x, data, fit)
     for b in np.flatnonzero(off[:distinct] > _EXACT):
-        there = data.w[b] > 0
-        e, X = residual[b, there], (data.w[b, :, None] * fit.J[b])[there]
-        noise = noise_of(x[b, there], e, X, share[b, there] > 0)
+        is_point = data.w[b] > 0
+        e, X = residual[b, is_point], (data.w[b, :, None] * fit.J[b])[is_point]
+        noise = noise_of(x[b, is_point], e, X, share[b, is_point] > 0)
         rows.ratio[b], rows.larger[b] = noise.ratio, noise.larger
         if noise.middle is not None:
             of_points = float(e @ e) / max(len(e) - k, 1) if data.huber else variance[b]
             usual = of_points * (X.T @ X + np.diag(data.stiffness[b]))
             rows.factors[b] = _factors(A[b], usual, noise.middle + np.diag(data.stiffness[b] * prior[b]))
-        rows.change[b], rows.changes[b] = _change(x[b, there], e, X, share[b, there])
+        rows.change[b], rows.changes[b] = _change(x[b, is_point], e, X, share[b, is_point])
     for array in rows:
         array[distinct:] = array[distinct - 1]
     count = (data.w > 0).sum(axis=1)[:, None]
@@ -220,22 +227,24 @@ def worth_of(
 
 
 def _copies(x: np.ndarray, data: Data, fit: Minimum) -> int:
-    """How many of the last curves are the same as the one before them: those that fill up a batch."""
+    """The number of last curves that repeat the one before them, since they pad the batch."""
     arrays = x, data.y, data.w, data.stiffness, fit.p, fit.model
     same = [((array == array[-1]) | (np.isnan(array) & np.isnan(array[-1]))).all(axis=1) for array in arrays]
     return int(np.logical_and.reduce(same)[::-1].cumprod().sum()) - 1
 
 
 def _factors(A: np.ndarray, usual: np.ndarray, whole: np.ndarray) -> np.ndarray:
-    """(k,), at least 1, by the covariance A whole A (a "sandwich") over that of independent points."""
+    """(k,), at least 1: the ratio of the covariance A whole A (a "sandwich") to that of independent points."""
     with np.errstate(divide="ignore", invalid="ignore"):
         factors = np.einsum("ij,jk,ik->i", A, whole, A) / np.einsum("ij,jk,ik->i", A, usual, A)
     return np.where(np.isfinite(factors), np.maximum(factors, 1.0), 1.0)
 
 
 def _change(x: np.ndarray, e: np.ndarray, X: np.ndarray, share: np.ndarray) -> tuple[float, bool]:
-    """By how much the logarithm of the first unknown changes along the contact: a further unknown of the fit, at the
-    size that lowers the residuals most."""
+    """The change of the logarithm of the first unknown along the contact, and whether it is sure and worth a word.
+
+    The change is a further unknown of the fit, with the value that reduces the residuals most.
+    """
     z = X[:, 0] * np.where(share > 0, share - 0.5, 0.0)
     wide = np.column_stack([z, X])
     size = np.sqrt(np.maximum((wide**2).sum(axis=0), 1e-300))
@@ -259,8 +268,8 @@ def _change(x: np.ndarray, e: np.ndarray, X: np.ndarray, share: np.ndarray) -> t
 
 
 def parts_of(curve: MeasuredCurves, data: Data, best: Minimum, share: np.ndarray, worth: Worth) -> np.ndarray:
-    """The first unknown (B, PARTS) of points from each part of the depth, for fits whose points do not agree: those
-    whose intervals are wider for it, or in which it changes with the depth. NaN elsewhere, and at a bound.
+    """The first unknown (B, PARTS) by the points of each part of the depth, for fits whose points disagree: those with
+    intervals widened for correlated noise, or with a change with the depth. NaN for other fits, and at a bound.
 
     share : (B, n) of the depth, 0 before the contact
     """

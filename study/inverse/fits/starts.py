@@ -1,4 +1,4 @@
-"""Where the searches for the unknowns of curves begin."""
+"""The starts of the searches for the unknowns of curves."""
 
 from dataclasses import replace
 from itertools import product
@@ -10,21 +10,20 @@ from .least_squares import Data, weighed
 from .model import HERTZ, is_ratio
 from .question import DECADE, Question
 
-_STARTS = 6  # across the bounds of a second unknown input
+_STARTS = 6  # number of starts across the bounds of a second unknown input
 #: Starts with adhesion: their number across the bounds of the work of adhesion and of another unknown input, and the
-#: places where the contact may begin, as parts of the way from the point at half the load to the first one. Searches
-#: begin from the _BEST ones, and from twice as many where more than two inputs are unknown: with three 3 of 36
-#: paraboloids whose thickness was free converged far from the truth, with six none
-#: (`python tools/fit/sticking.py 210 h`).
+#: places where the contact may begin, as shares of the way from the point at half the load to the first point. Searches
+#: begin from the _BEST starts, and from twice as many where more than two inputs are unknown. With three starts 3 of 36
+#: paraboloids with free thickness converged far from the truth, with six none (`python tools/fit/sticking.py 210 h`).
 _WORKS, _OTHERS, _WAYS, _BEST = 6, 5, (0.02, 0.06, 0.15, 0.3, 0.6, 1.0), 6
-#: y = _HERTZ x^q E^e R^r of a rigid ball on a half-space.
+#: y = _HERTZ x^q E^e R^r for a rigid ball on a half-space.
 _HERTZ = {("D", "P"): 4 / 3, ("P", "a"): 0.75 ** (1 / 3), ("a", "dP_dD"): 2.0}
 
 
 def starts_of(
     question: Question, curve: MeasuredCurves, there: np.ndarray, y: np.ndarray, top: np.ndarray, least: np.ndarray
 ) -> tuple:
-    """A list of unknowns (B, k), at each of which a search begins, and their bounds (B, k)."""
+    """A list of unknowns (B, k) at which searches begin, and their bounds (B, k)."""
     model, names, B = question.model, curve.names, len(y)
     power = HERTZ[model.x, model.y][0]
     D0, P0, depth, load, half = _contact_points(question, curve, there, y, power[0])
@@ -35,7 +34,7 @@ def starts_of(
     hertz = np.log(E * (1 - float(model.scene.values.get(nu, 0.3)) ** 2))
     p, low, high = (np.zeros((B, len(names))) for _ in range(3))
     for i, name in enumerate(names):
-        if name == "D0":  # within the points, and as far before them
+        if name == "D0":  # within the range of the points, or at most that range before them
             p[:, i] = D0 / curve.wide
             low[:, i], high[:, i] = least / curve.wide - 1.0, least / curve.wide + 0.999
         elif name in ("P0", "tilt"):
@@ -89,7 +88,7 @@ def _of_sticking(question, curve, p, low, high, about):
 
 
 def best_of(curve: MeasuredCurves, data: Data, starts: list) -> list:
-    """The starts (B, k) whose curves are nearest to the points."""
+    """The starts (B, k) whose curves are closest to the points."""
     most = _BEST if len(curve.table.model.unknowns) <= 2 else 2 * _BEST
     if len(starts) <= most:
         return starts
@@ -102,8 +101,10 @@ def best_of(curve: MeasuredCurves, data: Data, starts: list) -> list:
 
 
 def _with_modulus(question, curve, p, low, high, x, load):
-    """The unknowns p with that modulus, if it is unknown, which brings the curve through the deepest point: by Newton's
-    steps in logarithms."""
+    """The unknowns p with the modulus, if it is unknown, for which the curve passes through the deepest point.
+
+    It follows by Newton's steps in logarithms.
+    """
     model = question.model
     if model.modulus not in model.unknowns:
         return p

@@ -1,4 +1,4 @@
-"""A block of curves as a task, which any process of this machine fits: each process keeps the table of a call."""
+"""A block of curves as a task for any process of this machine. Each process keeps the table of a call."""
 
 from typing import Any, NamedTuple
 
@@ -9,15 +9,15 @@ from .question import Question
 from .tables.ratio_table import RatioTable
 from .tables.term_table import TermTable
 
-#: Call -> its table. Several, for calls in several threads; worker processes end after a while, and their tables.
+#: Call -> its table. There are several, for calls in several threads. Tables of worker processes end with these.
 _tables: dict[str, RatioTable | TermTable] = {}
 _MOST = 8
 
 
 class Task(NamedTuple):
-    """Some curves of a call: x, y (B, n) and the standard deviations of y, as `fit_block` takes them.
+    """Some curves of a call: x, y (B, n) and the standard deviations of y, as in `fit_block`.
 
-    call : a word that no other call of the same process has
+    call : a word that identifies the call in its process
     """
 
     call: str

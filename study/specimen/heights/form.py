@@ -1,7 +1,7 @@
-"""The form of a scan, which is no roughness: its mean, a plane, a quadratic, or a sphere of known or fitted radius.
+"""The form of a scan, which is not roughness: its mean, a plane, a quadratic, or a sphere of given or fitted radius.
 
-Heights z of a profile have shape (x), of a map (y, x); steps are the distances of the points along these axes. NaN is a
-missing point, which no fit sees.
+Heights z have the shape (x) for a profile and (y, x) for a map; steps are the distances between points along these
+axes. NaN is a missing point, which every fit leaves out.
 """
 
 import math
@@ -12,22 +12,22 @@ import numpy as np
 from ..quantities import has_unit, quantity, readable
 from .memory import row_blocks, variance
 
-#: The polynomials by name: their degree.
+#: Name of a polynomial -> its degree.
 DEGREES = {"mean": 0, "plane": 1, "quadratic": 2}
-#: Most steps of the fit of a sphere. A scan whose diagonal is a tenth of the radius takes 5, one as long as the radius
-#: 22 (tests/specimen/heights/test_forms.py).
+#: Largest number of steps in the fit of a sphere. A scan whose diagonal is a tenth of the radius takes 5, a scan whose
+#: diagonal is the radius 22 (tests/specimen/heights/test_forms.py).
 _STEPS = 30
-#: The fit has ended when the height of the sphere changes by less than this part of the heights' standard deviation.
+#: The fit ends when the height of the sphere changes by less than this fraction of the heights' standard deviation.
 _SETTLED = 1e-9
 
 
 def without_form(z: np.ndarray, steps: tuple, form, name: str) -> tuple[np.ndarray, str]:
     """The heights without their form, and the form in words.
 
-    form : "mean", "plane" (least squares), "quadratic" (least squares), "sphere" (the one that fits), or the radius of
-        a sphere, in m or as text with its unit; negative: a cup
+    form : "mean", "plane" (least squares), "quadratic" (least squares), "sphere" (the best fit), or the radius of a
+        sphere, in m or as text with its unit; a negative radius is a cup
 
-    Raises ValueError: another form, or a sphere that is smaller than the scan.
+    Raises ValueError: an unknown form, or a sphere that is smaller than the scan.
     """
     sizes = tuple((n - 1) * step for n, step in zip(z.shape, steps, strict=True))
     if isinstance(form, str) and form in DEGREES:
@@ -47,8 +47,8 @@ def without_form(z: np.ndarray, steps: tuple, form, name: str) -> tuple[np.ndarr
     return z, f"a sphere of radius {_text(radius)} and the plane taken off"
 
 
-def taken_by_polynomial(z: np.ndarray, steps: tuple, degree: int) -> float:
-    """The part of the variance of the heights that the polynomial of least squares takes, 0 to 1."""
+def share_of_polynomial(z: np.ndarray, steps: tuple, degree: int) -> float:
+    """The share of the heights' variance that the least-squares polynomial of this degree explains, 0 to 1."""
     return max(0.0, 1 - variance(_residual(z, steps, degree)) / float(np.nanvar(z)))
 
 
@@ -68,7 +68,7 @@ def _text(radius: float) -> str:
 
 
 def _residual(z: np.ndarray, steps: tuple, degree: int) -> np.ndarray:
-    """The heights without the polynomial of this total degree that fits best."""
+    """The heights minus the best-fitting polynomial of this total degree."""
     x = _lines(z, steps)
     powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i) if z.ndim == 2 or i == 0]
     coefficients = _fitted(z, x, powers, np.eye(len(powers)))
@@ -81,10 +81,12 @@ def _residual(z: np.ndarray, steps: tuple, degree: int) -> np.ndarray:
 
 
 def _without_sphere(z: np.ndarray, steps: tuple, curvature: float | None) -> tuple[np.ndarray, float]:
-    """The heights without a sphere of this curvature, 1/m, or of the one that fits, and the plane; and the curvature.
+    """The heights minus a sphere and a plane, and the curvature of the sphere, 1/m.
 
-    Least squares: what is left has neither a slope nor, where the curvature is free, a part like r². The top of the
-    sphere may be anywhere: its slopes in the middle of the scan say where.
+    curvature : of the sphere; None: it is fitted
+
+    The fit is one of least squares: the remainder has no slope and, where the curvature is fitted, no part like r². The
+    top of the sphere may be anywhere: its slopes in the middle of the scan determine where.
     """
     x, free = _lines(z, steps), curvature is None
     half = max((n - 1) * step for n, step in zip(z.shape, steps, strict=True)) / 2
@@ -94,8 +96,8 @@ def _without_sphere(z: np.ndarray, steps: tuple, curvature: float | None) -> tup
     basis = np.concatenate([plain, round_]) if free else plain
     kappa, slopes, settled = (0.0 if free else half * curvature), np.zeros(2), _SETTLED * np.nanstd(z) / half
     for _ in range(_STEPS):
-        left = z - half * _sphere(x, slopes, kappa).reshape(z.shape)
-        fitted = basis @ _fitted(left, x, powers, basis) / half
+        remainder = z - half * _sphere(x, slopes, kappa).reshape(z.shape)
+        fitted = basis @ _fitted(remainder, x, powers, basis) / half
         change = fitted[1 : 1 + z.ndim]
         slopes = slopes + np.pad(change, (0, 2 - z.ndim))
         kappa -= 2 * fitted[-1] / np.sum(round_) if free else 0.0
@@ -105,8 +107,11 @@ def _without_sphere(z: np.ndarray, steps: tuple, curvature: float | None) -> tup
 
 
 def _sphere(x: list, slopes: np.ndarray, kappa: float) -> np.ndarray:
-    """Heights of a sphere over the middle of the scan, where it has these slopes (along x, y); of no curvature: a
-    plane. All lengths are in one unit. Beyond its equator it ends in a cylinder."""
+    """Heights of a sphere above its point in the middle of the scan, where its slopes along x and y are `slopes`.
+
+    Without curvature it is a plane. All lengths are in one unit. Outside its equator the sphere goes on as a
+    paraboloid.
+    """
     sines = slopes / math.sqrt(1 + slopes @ slopes)
     squared = sum((kappa * line - sine) ** 2 for line, sine in zip(x, sines, strict=True))
     linear = sum(2 * sine * line - kappa * line**2 for line, sine in zip(x, sines, strict=True))
@@ -114,15 +119,15 @@ def _sphere(x: list, slopes: np.ndarray, kappa: float) -> np.ndarray:
 
 
 def _lines(z: np.ndarray, steps: tuple) -> list[np.ndarray]:
-    """The coordinates x (1, nx) and y (ny, 1) from the middle of the scan, in half its longer side; y is 0 in a
-    profile."""
+    """The coordinates x (1, nx) and y (ny, 1) from the middle of the scan, in units of half its longer side; y is 0 in
+    a profile."""
     half = max((n - 1) * step for n, step in zip(z.shape, steps, strict=True)) / 2
     lines = [(np.arange(n) - (n - 1) / 2) * step / half for n, step in zip(z.shape, steps, strict=True)]
     return [lines[-1][None, :], lines[0][:, None] if z.ndim == 2 else np.zeros((1, 1))]
 
 
 def _fitted(z: np.ndarray, x: list, powers: list, basis: np.ndarray) -> np.ndarray:
-    """Coefficients of the powers (of y, of x) in the combination of the rows of `basis` that fits the heights best."""
+    """Coefficients of the powers (of y, of x) in the best-fitting combination of the rows of `basis`."""
     across, along = (np.vander(line.ravel(), 2 * max(map(max, powers)) + 1, increasing=True) for line in x)
     mean, grid = np.nanmean(z), z.reshape(along.shape[0], across.shape[0])
     sums, moments = np.zeros((2, along.shape[1], across.shape[1]))

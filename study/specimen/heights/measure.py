@@ -28,16 +28,16 @@ def measure(
 
     Parameters
     ----------
-    scan : of `read`, `profile` or `height_map`
-    method : "moments", the summits that an isotropic Gaussian surface of the same m0, m2, m4 has (Nayak 1971,
-        McCool 1987); "summits", the points higher than their eight neighbours, or two on a profile. On a random surface
-        they agree; on a designed one only "summits" is right.
-    form : what is taken off: "mean", "plane", "quadratic", "sphere" (the one that fits), or the radius of a sphere,
-        in m or as text with its unit (< 0: a cup); after a sphere the plane
-    rows : "median" takes off the median of the differences of neighbouring rows of a map, before the form: offsets of
-        the rows of a scanning probe
-    cutoff : wavelength, m, of a Gaussian low-pass (ISO 16610-21, -61); None: none; a list: the numbers of the answer
-        are arrays over it
+    scan : made by `read`, `profile` or `height_map`
+    method : "moments": the summits of the isotropic Gaussian surface with the same m0, m2, m4 (Nayak 1971,
+        McCool 1987); "summits": the points higher than their eight neighbours, or than their two on a profile. On a
+        random surface both agree; on a designed one only "summits" is right.
+    form : the form to subtract: "mean", "plane", "quadratic", "sphere" (the best fit), or the radius of a sphere, in m
+        or as text with its unit (< 0: a cup). After a sphere the plane is subtracted too
+    rows : "median" subtracts the median of the differences between neighbouring rows of a map, before the form; it
+        removes the row offsets of a scanning probe
+    cutoff : wavelength, m, of a Gaussian low-pass (ISO 16610-21, -61); None: no low-pass. With a list the numbers of
+        the answer are arrays over it
 
     Returns
     -------
@@ -46,9 +46,9 @@ def measure(
     Raises
     ------
     ValueError : an unknown method, form or rows, a cutoff below three steps or an empty list, a sphere smaller than
-        the scan; fewer than 16 points in a direction, over the larger of two steps; too few points with all their
-        neighbours; no heights, or no summits; without `huge` of the scan, heights of an rms below 1 pm after the form,
-        and asperities of a radius above 1 km
+        the scan; fewer than 16 points in a direction, counted by the larger of two steps; too few points with all their
+        neighbours; no heights, or no summits; unless the scan is `huge`, heights with an rms below 1 pm after the form,
+        and asperities with a radius above 1 km
 
     Examples
     --------
@@ -70,7 +70,7 @@ _BORDERS = "borders of 0.75 cutoffs cut away"
 
 
 def _cutoffs(scan: Scan, cutoff) -> list[float | None]:
-    """The cutoffs, m. Raises ValueError for any that is no length or too short."""
+    """The cutoffs, m. Raises ValueError for a cutoff that is not a length, or too short."""
     if cutoff is None:
         return [None]
     least = scan_peaks.SHORTEST * max(scan.steps)
@@ -86,7 +86,7 @@ def _cutoffs(scan: Scan, cutoff) -> list[float | None]:
 
 
 def _flat(scan: Scan, form, rows) -> tuple[np.ndarray, str, tuple[str, ...]]:
-    """The heights without offsets of rows and form, this treatment in words, and notes on what may still be in them."""
+    """The heights minus row offsets and form, this treatment in words, and notes on offsets or form that may remain."""
     if rows not in (None, "median") or (rows and scan.z.ndim == 1):
         rule = "a profile has no rows; leave it out" if scan.z.ndim == 1 else 'allowed are "median" and None'
         raise ValueError(f"{scan.name}: rows = {rows!r}; {rule}")
@@ -94,7 +94,7 @@ def _flat(scan: Scan, form, rows) -> tuple[np.ndarray, str, tuple[str, ...]]:
     notes = () if rows else tuple(jump_doubts(scan.z))
     z, treatment = without_form(z, scan.steps, form, scan.name)
     treatment = f"the median of the differences of neighbouring rows taken off; {treatment}" if rows else treatment
-    _not_nothing(scan, z, treatment)
+    _refuse_rounding_errors(scan, z, treatment)
     rms = float(np.nanstd(z))
     if rms < FLATTEST and not scan.huge:
         raise ValueError(
@@ -107,8 +107,8 @@ def _flat(scan: Scan, form, rows) -> tuple[np.ndarray, str, tuple[str, ...]]:
 _WAY_OUT = "Give unit and height_unit as the scan has them, or huge=True beside them if it is so"
 
 
-def _not_nothing(scan: Scan, z: np.ndarray, treatment: str) -> None:
-    """Raise ValueError where only rounding errors of a subtraction are left."""
+def _refuse_rounding_errors(scan: Scan, z: np.ndarray, treatment: str) -> None:
+    """Raise ValueError where only the rounding errors of a subtraction remain."""
     if np.nanstd(z) <= 1e-12 * np.nanmax(np.abs(scan.z)):
         raise ValueError(f"{scan.name}: nothing is left of the heights: {treatment}")
 
@@ -125,21 +125,21 @@ def _filtered(scan: Scan, z: np.ndarray, treatment: str, cutoff: float | None) -
                 f"{scan.name}: {' × '.join(map(str, z.shape))} points are left by a cutoff of {cutoff:g} m, which "
                 f"takes 0.75 cutoffs from each border; at least {FEWEST} in each direction are needed"
             )
-    _enough(scan, z)
-    _not_nothing(scan, z, treatment)
+    _check_enough_points(scan, z)
+    _refuse_rounding_errors(scan, z, treatment)
     return z, treatment
 
 
-def _enough(scan: Scan, z: np.ndarray) -> None:
+def _check_enough_points(scan: Scan, z: np.ndarray) -> None:
     """Raise ValueError for too few points over the larger step, or too few that have all their neighbours."""
-    apart = max(scan.steps)
-    shape = [1 + math.floor((n - 1) * step / apart + 1e-6) for n, step in zip(z.shape, scan.steps, strict=True)]
+    spacing = max(scan.steps)
+    shape = [1 + math.floor((n - 1) * step / spacing + 1e-6) for n, step in zip(z.shape, scan.steps, strict=True)]
     if min(shape) < FEWEST:
         i = shape.index(min(shape))
         size = (z.shape[i] - 1) * scan.steps[i]
         raise ValueError(
             f"{scan.name}: slopes and curvatures along x and y are those over the larger of the two steps, "
-            f"{length(apart)}, and {min(shape)} points so far apart are on the {length(size)} along {'yx'[i]}; "
+            f"{length(spacing)}, and {min(shape)} points so far apart are on the {length(size)} along {'yx'[i]}; "
             f"at least {FEWEST} are needed"
         )
     whole, least = scan_peaks.whole(z, scan.steps), (FEWEST // 2) ** z.ndim
@@ -151,7 +151,7 @@ def _enough(scan: Scan, z: np.ndarray) -> None:
 
 
 def _asperities(scan: Scan, z: np.ndarray, filtered: str, method: str, notes: tuple) -> Roughness:
-    """The answer of heights without form and short waves."""
+    """The roughness of heights whose form and short waves have been removed."""
     along = scan_peaks.moments(z, scan.steps)
     m = scan_peaks.mean_moments(along)
     asperities = scan_peaks.gaussian_summits(m) if method == "moments" else scan_peaks.counted_summits(z, scan.steps)
@@ -196,7 +196,7 @@ def _points(z: np.ndarray) -> str:
 def _resolution(scan: Scan) -> str:
     """Points and distances of the scan, x before y."""
     points, steps, sizes = (
-        " × ".join(reversed(of))
-        for of in (list(map(str, scan.z.shape)), list(map(length, scan.steps)), list(map(length, scan.sizes)))
+        " × ".join(reversed(texts))
+        for texts in (list(map(str, scan.z.shape)), list(map(length, scan.steps)), list(map(length, scan.sizes)))
     )
     return f"{scan.name}, {points} points {steps} apart, {sizes}"

@@ -15,7 +15,7 @@ from ...terminal import rounded
 from ..pictures import with_picture
 from ..quantities import readable
 
-#: The law of the heights of the summits -> the micro law.
+#: Distribution of the summits' heights -> name of the micro law.
 LAWS = {"normal": "normal_heights", "equal": "disc_cell"}
 
 
@@ -29,8 +29,8 @@ class Roughness:
     Ra : radius of an asperity, 1/(mean curvature of the summits), m
     sigma_summits : standard deviation of the heights of the summits, m; also called `sigma`
     iso_Ra : mean deviation of the height from its mean, m: Ra of ISO 21920, Sa of ISO 25178. Not `Ra`.
-    summits : number of summits that a scan of this size has, from which `cut` follows
-    method, filter, resolution, notes : sentences; notes has the doubts about this scan
+    summits : number of summits that a scan of this size has; `cut` follows from it
+    method, filter, resolution, notes : sentences; notes holds the doubts about this scan
     units : the unit of all lengths
     cutoff : None; or the cutoffs of a list, m, shape (C): all numbers are then arrays of this shape
     """
@@ -54,12 +54,15 @@ class Roughness:
 
     @property
     def cut(self) -> Any:
-        """The highest summit above the mean over sigma, 1 - Φ(cut) = 1/N of N summits, within what the law takes."""
+        """Height of the highest summit above the mean, over sigma, within the bounds of the law.
+
+        1 - Φ(cut) = 1/N with N summits in the scan.
+        """
         value = np.clip(-ndtri(1 / np.maximum(self.summits, 1.0)), *ends(CUT.interval)[:2])
         return value if self.cutoff is not None else float(value)
 
     def about_cut(self) -> str:
-        """Where `cut` of one scan is from.
+        """How `cut` of a single scan follows from its number of summits.
 
         Returns
         -------
@@ -71,21 +74,22 @@ class Roughness:
         return f"cut = {self.cut:.3g}: 1 - Φ(cut) = 1/N, with N = {number} summits in the scan{bound}"
 
     def parameters(self, heights: str = "normal") -> dict[str, Any]:
-        """What `study.solve` takes: Nbar, Ra and the micro law.
+        """The inputs of `study.solve`: Nbar, Ra and the micro law.
 
         Parameters
         ----------
-        heights : "normal", micro = "normal_heights" with sigma and cut, as random surfaces are; or "equal", micro =
-            "disc_cell", of designed surfaces: it neglects that the highest summits touch first, and so gives more real
-            contact and a smaller p_max
+        heights : "normal", for random surfaces: micro = "normal_heights" with sigma and cut; or "equal", for designed
+            surfaces: micro = "disc_cell". Equal heights neglect that the highest summits touch first, and so give more
+            real contact and a smaller p_max
 
         Returns
         -------
-        dict : lengths are text with units, all digits. With a list of cutoffs the numbers are DataArrays over `cutoff`
+        dict : lengths are texts with units and all digits. With a list of cutoffs the numbers are DataArrays over
+            `cutoff`
 
         Raises
         ------
-        ValueError : other heights
+        ValueError : unknown heights
         """
         if heights not in LAWS:
             raise ValueError(f'heights = {heights!r}; allowed are "normal" and "equal"')
@@ -144,9 +148,11 @@ class Roughness:
 
 
 def over(cutoffs: Sequence[float], answers: Sequence[Roughness], filtered: str) -> Roughness:
-    """The answers of several cutoffs as one, whose numbers are arrays; filtered : the treatment at all of them.
+    """One answer for several cutoffs: its numbers are arrays.
 
-    A note that not all have begins with its cutoffs.
+    filtered : the treatment of the heights at all cutoffs, in words
+
+    A note that does not hold at every cutoff begins with the cutoffs at which it holds.
     """
     numbers = {
         name: np.array([getattr(answer, name) for answer in answers])
@@ -165,7 +171,7 @@ def _at(cutoffs: Sequence[float]) -> str:
 
 
 def _neglected(roughness: Roughness) -> str:
-    """The error of equal heights on a random surface."""
+    """A sentence on the error of equal heights on a random surface."""
     if np.all(roughness.sigma_summits * 3 * math.pi * roughness.Nbar * roughness.Ra < 0.01):
         return "Here the heights are equal, and both laws are one."
     return "They neglect that the highest summits touch first: real contact comes out too large, and p_max too small."
@@ -183,6 +189,6 @@ def density(Nbar: float) -> str:
 
 
 def counted_density(Nbar: float) -> str:
-    """Asperities per unit area as people write and compare them: "12,510 1/mm²", four digits; from 1e6 on in 1/µm²."""
+    """Asperities per unit area as people write and compare them, to four digits: "12,510 1/mm²"; above 1e6 in 1/µm²."""
     per_area, unit = (Nbar / 1e6, "1/mm²") if Nbar < 1e12 else (Nbar / 1e12, "1/µm²")
     return f"{float(f'{per_area:.4g}'):,.10g} {unit}"

@@ -1,16 +1,16 @@
-"""Numbers of large maps without copies of them: a map of 4096 × 4096 points has 134 MB."""
+"""Statistics of large maps without copying them: a map of 4096 × 4096 points has 134 MB."""
 
 import math
 from collections.abc import Iterator
 
 import numpy as np
 
-#: Points of a block of rows.
+#: Number of points in a block of rows.
 _BLOCK = 250_000
 
 
 def row_blocks(z: np.ndarray, more: int = 0) -> Iterator[slice]:
-    """The rows of a map in blocks, each with so many rows `more` of the next one."""
+    """The rows of a map in blocks. Each block also has the first `more` rows of the next one."""
     size = max(1, _BLOCK // max(1, math.prod(z.shape[1:])))
     return (slice(low, min(low + size + more, len(z))) for low in range(0, max(0, len(z) - more), size))
 
@@ -36,7 +36,7 @@ def variance(values: np.ndarray) -> float:
 
 
 def kurtosis(z: np.ndarray) -> float:
-    """Sku, the fourth moment of the finite heights about their mean over the square of the second; nan of a plane."""
+    """Sku, the fourth moment of the finite heights about their mean over the square of the second; NaN for a plane."""
     middle, squares, fourths, count = mean(z), 0.0, 0.0, 0
     for rows in row_blocks(z):
         heights = present(z[rows]) - middle

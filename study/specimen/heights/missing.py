@@ -8,24 +8,24 @@ from scipy.sparse.linalg import cg
 
 from ...terminal import rounded
 
-#: Largest share of missing points that is filled in unasked. Interpolated points are too smooth: of random surfaces of
-#: which 1 % were taken out, N̄ and Ra change by less than 1 % (tests/specimen/heights/test_missing_points.py).
+#: Largest share of missing points that is interpolated. Interpolated points are too smooth: N̄ and Ra of random
+#: surfaces change by less than 1 % if 1 % of the points are taken out (tests/specimen/heights/test_missing_points.py).
 FILLED = 0.01
-#: Tension of the membrane over a gap against its stiffness, in steps. Of 0, 0.1, 0.3 and 1 this has the least errors at
-#: borders, 20 % of the rms two points deep (1: 33 %); single points of smooth surfaces are 0.4 % off (0: 0.3 %, 1:
-#: 1.2 %; tests/specimen/heights/test_missing_points.py).
+#: Tension of the membrane over a gap relative to its stiffness, in steps. Of 0, 0.1, 0.3 and 1, this value has the
+#: smallest error at borders: 20 % of the rms two points deep (33 % with 1). Single points of smooth surfaces are off by
+#: 0.4 % (0.3 % with 0, 1.2 % with 1; tests/specimen/heights/test_missing_points.py).
 TENSION = 0.3
 CHOICES = ("fill", "skip", "refuse")
 
 
 def treated(z: np.ndarray, missing: str, name: str, spikes: int = 0) -> tuple[np.ndarray, tuple[str, ...]]:
-    """The heights, treated as `missing` says where a point is missing (NaN), and sentences about it.
+    """The heights with their missing points (NaN) treated as `missing` says, and sentences about the treatment.
 
     spikes : how many of these points `despike` has taken out
 
     "fill": interpolated from their neighbours; "skip": NaN, which `measure` leaves out; "refuse": none may be missing.
 
-    Raises ValueError: another `missing`, infinite heights, missing points that are refused or too many to be filled.
+    Raises ValueError: an unknown `missing`, infinite heights, missing points that are refused or too many to fill.
     """
     if missing not in CHOICES:
         raise ValueError(f'{name}: missing = {missing!r}; allowed are "fill", "skip" and "refuse"')
@@ -67,12 +67,12 @@ def treated(z: np.ndarray, missing: str, name: str, spikes: int = 0) -> tuple[np
 
 
 def filled(z: np.ndarray, most: int = 3000) -> np.ndarray:
-    """The heights, with a stiff membrane laid over the gaps: it is bent and stretched as little as possible.
+    """The heights with their gaps filled by a stiff membrane, which is bent and stretched as little as possible.
 
-    The missing heights have the least sum, along all axes, of squared second differences and of squared first
-    differences times `TENSION`². A plate, without tension, would run away from gaps at the border; a membrane alone
-    has kinks where it is held, which count as curvature. After `most` steps points farther than that from the
-    border of their gap may not have settled.
+    The missing heights minimise the sum, along all axes, of the squared second differences and of `TENSION`² times the
+    squared first differences. A plate without tension would run off in gaps at the border. A membrane without
+    stiffness has kinks along the edge of the gap, which would count as curvature. After `most` steps, a point that is
+    more than `most` points away from the edge of its gap may not have settled.
     """
     absent = np.isnan(z)
     place = np.where(absent, np.cumsum(absent).reshape(z.shape) - 1, -1)

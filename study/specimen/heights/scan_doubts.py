@@ -7,31 +7,32 @@ import numpy as np
 
 from ...terminal import rounded
 from . import scan_peaks
-from .form import taken_by_polynomial
+from .form import share_of_polynomial
 from .measured_asperities import length
 from .memory import kurtosis, mean
 from .row_jumps import jumps
 
-#: Least distance of asperities in points of the scan. Those of white noise are three points apart, one in nine points.
+#: Least distance between asperities, in points of the scan. On white noise it is three points: one in nine is a summit.
 RESOLVED = 5
-#: With fewer asperities N̄ is uncertain by more than 1/√100 = 10 %; by twice that on a profile, where N̄ is a square.
+#: With fewer asperities N̄ is uncertain by more than 1/√100 = 10 %, and by twice that on a profile, where N̄ is the
+#: square of a density of peaks.
 MANY = 100
 #: Skewness that a Gaussian surface of 100 asperities has by chance once in a thousand times, 3 √(6/100), rounded up.
 SKEWED = 0.8
 #: Mean squares of the slopes along x and y may differ by this factor. A surface stretched so far along one axis has N̄
 #: 18 % below, and Ra 5 % above, what the isotropic formulas give.
 ISOTROPIC = 2.0
-#: Mean curvature over the curvature by medians: at most 1.5 on random maps of any size, and above 2 on few profiles,
-#: which have few peaks (tests/specimen/test_scans_as_they_come.py).
+#: Largest ratio of the mean curvature to the curvature by medians without spikes. It is at most 1.5 on random maps of
+#: any size, and above 2 on a few profiles, which have few peaks (tests/specimen/test_scans_as_they_come.py).
 SPIKED = 2.0
-#: A quadratic may have this part of the variance of heights without a form. On random surfaces it has more only where
-#: waves as long as the scan are most of the roughness (tests/specimen/heights/test_forms.py).
+#: Largest share of a quadratic in the variance of heights without a form. On random surfaces the share is larger only
+#: where waves as long as the scan make up most of the roughness (tests/specimen/heights/test_forms.py).
 FORMED = 0.2
-#: Kurtosis Sku from which on a few points make the tail of the heights: 3 on a Gaussian surface.
+#: Kurtosis Sku above which a few points make up the tail of the heights. A Gaussian surface has 3.
 PEAKED = 6.0
-#: Steps along x and y that differ by less are equal.
+#: Steps along x and y count as equal up to this ratio.
 UNEQUAL = 1.001
-#: A doubt with this word is one of jumps.
+#: A doubt that contains these words is about jumps.
 JUMP = "jump against each other"
 
 
@@ -53,7 +54,7 @@ def jump_doubts(z: np.ndarray) -> Iterator[str]:
 
 def form_doubts(z: np.ndarray, steps: tuple, form) -> Iterator[str]:
     """Doubts whether heights without their form still have one."""
-    share = 0.0 if form == "quadratic" else taken_by_polynomial(z, steps, 2)
+    share = 0.0 if form == "quadratic" else share_of_polynomial(z, steps, 2)
     if share > FORMED:
         yield (
             f"a quadratic has {100 * share:.0f} % of the variance of the heights: the form of a ball or a bow, or "
@@ -69,20 +70,21 @@ def doubts(
     number: float,
     before: tuple[str, ...],
 ) -> Iterator[str]:
-    """The doubts about the `asperities` of heights z, as many as `number` in a scan of this size.
+    """The doubts about the `asperities` of heights z.
 
     along : the moments along each axis
-    before : the doubts about the heights; jumps are no long asperities
+    number : of asperities in a scan of this size
+    before : the doubts about the heights. Jumps explain unequal slopes, which then do not mean long asperities
     """
     if z.ndim == 1:
         yield "a profile: the surface is taken to be isotropic and Gaussian, and N̄ is not counted on an area"
-    yield from _of_the_step(asperities, steps)
+    yield from _step_doubts(asperities, steps)
     counted = number if asperities.counted is None else asperities.counted  # far fewer where there are gaps
     if counted < MANY:
         percent = (3 - z.ndim) * 100 / math.sqrt(counted)
         yield f"about {counted:.0f} asperities: N̄ is uncertain by some {percent:.0f} %"
-    yield from _of_spikes(z, steps, asperities)
-    yield from _of_kurtosis(z)
+    yield from _spike_doubts(z, steps, asperities)
+    yield from _kurtosis_doubts(z)
     slopes = [m.m2 for m in along]
     if max(slopes) > ISOTROPIC * min(slopes) and not any(JUMP in note for note in before):
         ratio = rounded(math.sqrt(max(slopes) / min(slopes))) if min(slopes) > 0 else "infinitely many"
@@ -99,11 +101,11 @@ def doubts(
         )
 
 
-def _of_the_step(asperities: scan_peaks.Asperities, steps: tuple) -> Iterator[str]:
-    apart = asperities.density**-0.5 / max(steps)
-    if apart < RESOLVED:
+def _step_doubts(asperities: scan_peaks.Asperities, steps: tuple) -> Iterator[str]:
+    spacing = asperities.density**-0.5 / max(steps)
+    if spacing < RESOLVED:
         yield (
-            f"asperities are {rounded(apart)} points apart, {RESOLVED} are needed to see them: N̄ and Ra are "
+            f"asperities are {rounded(spacing)} points apart, {RESOLVED} are needed to see them: N̄ and Ra are "
             "those of the step or of noise; give a cutoff, or measure with a smaller step"
         )
     if asperities.curvature * max(steps) > 1:
@@ -118,17 +120,19 @@ def _of_the_step(asperities: scan_peaks.Asperities, steps: tuple) -> Iterator[st
         )
 
 
-def _of_spikes(z: np.ndarray, steps: tuple, asperities: scan_peaks.Asperities) -> Iterator[str]:
-    usual = scan_peaks.usual_curvature(z, steps) if asperities.counted is None else asperities.usual
-    if asperities.curvature > SPIKED * usual:
-        ratio = f"{rounded(asperities.curvature / usual)} times" if usual > 0 else "far"
+def _spike_doubts(z: np.ndarray, steps: tuple, asperities: scan_peaks.Asperities) -> Iterator[str]:
+    median_curvature = (
+        scan_peaks.median_curvature(z, steps) if asperities.counted is None else asperities.median_curvature
+    )
+    if asperities.curvature > SPIKED * median_curvature:
+        ratio = f"{rounded(asperities.curvature / median_curvature)} times" if median_curvature > 0 else "far"
         yield (
             f"a few sharp points make Ra {ratio} smaller than the others do: spikes, dust, or heights in coarse steps; "
             "take them out, or give a cutoff"
         )
 
 
-def _of_kurtosis(z: np.ndarray) -> Iterator[str]:
+def _kurtosis_doubts(z: np.ndarray) -> Iterator[str]:
     Sku = kurtosis(z)
     if Sku > PEAKED:
         yield (

@@ -1,10 +1,10 @@
 """Statistics of a grid of heights: low-pass, spectral moments, summits.
 
-Heights z of a profile have shape (x), of a map (y, x); steps are the distances of the points along these axes. Every
-function serves both. NaN is a missing point: what needs it is left out.
+Heights z have the shape (x) for a profile and (y, x) for a map; steps are the distances between points along these
+axes. Every function serves both. NaN is a missing point: differences and summits that need it are left out.
 
-Where the points of a map are not as far apart along x as along y, slopes and curvatures along both are those over the
-larger distance. N̄ and Ra depend on the distance: a mean over two distances would belong to neither.
+Where the steps of a map along x and y differ, slopes and curvatures along both are taken over the larger step. N̄ and
+Ra depend on the distance: a mean over two distances would belong to neither.
 """
 
 import itertools
@@ -18,15 +18,16 @@ from scipy.ndimage import gaussian_filter1d
 from .memory import present
 from .missing import filled
 
-#: ISO 16610-21: a Gaussian of this width, in cutoffs, lets half of a wave of the cutoff's length pass.
+#: ISO 16610-21: a Gaussian of this width, in cutoffs, halves the amplitude of a wave as long as the cutoff.
 ALPHA = math.sqrt(math.log(2) / math.pi)
 #: The window reaches four standard deviations of the Gaussian, 0.75 cutoffs, to each side; 6e-5 of it lie beyond.
 REACH = 4 * ALPHA / math.sqrt(2 * math.pi)
-#: Least part of the window that has measured points; elsewhere the filter has no answer. Missing points are filled in
-#: first: N̄ and Ra are then off by less than 1 %, also where gaps as wide as two asperities take a fifth of the scan. By
-#: the mean of the points that are there N̄ would be 1.6 times too large (tests/specimen/heights/test_missing_points.py).
+#: Least share of measured points in the window; with fewer the filtered height is missing. Missing points are filled
+#: first: N̄ and Ra are then off by less than 1 %, even where gaps as wide as two asperities take a fifth of the scan.
+#: The mean of the measured points alone would make N̄ 1.6 times too large
+#: (tests/specimen/heights/test_missing_points.py).
 MEASURED = 0.5
-#: Steps of filling gaps before a low-pass: points deeper in a gap have no answer anyway.
+#: Steps of the filling of gaps before a low-pass. Points deeper in a gap have no filtered height anyway.
 _FILLING = 200
 #: Shortest cutoff, in steps: the sampled Gaussian still passes half of it, to 0.2 %.
 SHORTEST = 3.0
@@ -37,8 +38,8 @@ SHORTEST = 3.0
 SUMMITS_PER_AREA = 1 / (6 * math.pi * math.sqrt(3))  # times m4/m2
 CURVATURE = 8 / (3 * math.sqrt(math.pi))  # times √m4: 1/R with R = 0.375 √(π/m4)
 HEIGHTS = 1 + 16 / math.pi - 3 * math.sqrt(3)  # 0.8968: σ_s² = (1 - 0.8968/α) m0
-MEDIAN = 0.67449  # of |x| of a normal x, over its standard deviation
-#: The same of the peaks of a profile (Rice): √(m4/m2)/2π of them in a unit of length, of mean curvature √(π m4/2).
+MEDIAN = 0.67449  # the median of |x| over the standard deviation of a normal x
+#: The same for the peaks of a profile (Rice): √(m4/m2)/2π peaks per unit length, with the mean curvature √(π m4/2).
 PEAKS_PER_LENGTH = 1 / (2 * math.pi)
 PEAK_CURVATURE = math.sqrt(math.pi / 2)
 PEAK_HEIGHTS = math.pi / 2 - 1  # 0.5708
@@ -55,22 +56,22 @@ class Moments(NamedTuple):
 class Asperities(NamedTuple):
     """Number per area (m⁻²), mean curvature (m⁻¹), standard deviation of heights (m).
 
-    counted : how many were counted; None where moments give them
-    usual : the curvature by medians (m⁻¹), to which a few spikes add nothing
+    counted : number of summits that were counted; None where the asperities follow from moments
+    median_curvature : median of the summits' curvatures (m⁻¹), to which a few spikes add nothing
     """
 
     density: float
     curvature: float
     spread: float
     counted: int | None = None
-    usual: float = math.nan
+    median_curvature: float = math.nan
 
 
 def low_pass(z: np.ndarray, steps: tuple, cutoff: float) -> np.ndarray:
     """Gaussian mean of the heights, ISO 16610-21 and -61, without the border where the window leaves the scan.
 
     s(x) = exp(-π (x/(α λc))²)/(α λc), α = √(ln 2/π); along each axis. The border is 0.75 cutoffs wide. Gaps are filled
-    before; where half of the window or more is missing, the answer is missing too.
+    first. Where half of the window or more is missing, the filtered height is missing too.
     """
     absent = np.isnan(z)
     if not absent.any():
@@ -82,29 +83,33 @@ def low_pass(z: np.ndarray, steps: tuple, cutoff: float) -> np.ndarray:
 def _gaussian(z: np.ndarray, steps: tuple, cutoff: float) -> np.ndarray:
     for axis, step in enumerate(steps):
         reach = math.ceil(min(REACH * cutoff / step, z.shape[axis]))
-        left = np.arange(reach, max(z.shape[axis] - reach, reach))
+        inside = np.arange(reach, max(z.shape[axis] - reach, reach))
         sigma = ALPHA * cutoff / math.sqrt(2 * math.pi) / step
-        # a window longer than the scan leaves nothing, and takes hours where the unit of the cutoff is mistaken
-        z = (gaussian_filter1d(z, sigma, axis=axis, radius=reach) if left.size else z).take(left, axis=axis)
+        # a window longer than the scan leaves no points, and would take hours if the cutoff has the wrong unit
+        z = (gaussian_filter1d(z, sigma, axis=axis, radius=reach) if inside.size else z).take(inside, axis=axis)
     return z
 
 
 def moments(z: np.ndarray, steps: tuple) -> list[Moments]:
-    """Moments of profiles along each axis, from differences of points as McCool 1987 takes them.
+    """Moments of profiles along each axis, from differences between points (McCool 1987).
 
-    m0 = <z²>, m2 = <(z_{i+1} - z_i)²>/d², m4 = <(z_{i+1} - 2 z_i + z_{i-1})²>/d⁴, d the larger step. Along the other
-    axis the points i and i + 1 are as far apart: see `_over`.
+    m0 = <z²>, m2 = <(z_{i+1} - z_i)²>/d², m4 = <(z_{i+1} - 2 z_i + z_{i-1})²>/d⁴ with d the larger step. Along the axis
+    of the smaller step the points i and i + 1 are a distance d apart as well: see `_average_square`.
     """
     m0, d = float(np.nanvar(z)), max(steps)
     return [
-        Moments(m0, *(_over(z, axis, d / step, order, np.mean) / d ** (2 * order) for order in (1, 2)))
+        Moments(m0, *(_average_square(z, axis, d / step, order, np.mean) / d ** (2 * order) for order in (1, 2)))
         for axis, step in enumerate(steps)
     ]
 
 
-def _over(z: np.ndarray, axis: int, lag: float, order: int, mean) -> float:
-    """Mean of the squared first or second differences of points `lag` apart, over the points whose partners are there.
-    Between two whole lags it is a power of the lag, as on a self-affine surface."""
+def _average_square(z: np.ndarray, axis: int, lag: float, order: int, mean) -> float:
+    """Mean of the squared first or second differences between points `lag` apart, where all of them are measured.
+
+    mean : the mean, or another average
+
+    Between two whole lags it is interpolated by a power of the lag, as on a self-affine surface.
+    """
     low = math.floor(lag + 1e-6)
     values = [mean(_squares(z, axis, whole, order)) for whole in (low, low + 1)[: 1 + (lag > low)]]
     if lag <= low * (1 + 1e-6) or min(values) == 0:
@@ -113,8 +118,8 @@ def _over(z: np.ndarray, axis: int, lag: float, order: int, mean) -> float:
 
 
 def _squares(z: np.ndarray, axis: int, lag: int, order: int) -> np.ndarray:
-    """Squared first or second differences over `lag` points along one axis, flat, those that are there; a zero if there
-    is none."""
+    """Squared first or second differences over `lag` points along one axis, flat, where all points are measured; a
+    single zero if there are none."""
     z = np.moveaxis(z, axis, 0)
     if order == 1:
         values = z[lag:] - z[:-lag]
@@ -133,7 +138,7 @@ def mean_moments(along: list[Moments]) -> Moments:
 
 
 def number_of(z: np.ndarray, steps: tuple, density: float) -> float:
-    """How many asperities the measured points have: on their area, or on a profile along their length."""
+    """Number of asperities on the area of the measured points, or along their length on a profile."""
     share = np.isfinite(z).mean()
     return float(share * math.prod(n * step * math.sqrt(density) for n, step in zip(z.shape, steps, strict=True)))
 
@@ -156,10 +161,10 @@ def counted_summits(z: np.ndarray, steps: tuple) -> Asperities | None:
     """Summits of a map, or peaks of a profile, found point by point; None if there are none.
 
     Of equal neighbours the last counts, so that a flat top is one summit. Neighbours are the larger step away, along
-    both axes. Where that is between two whole numbers of points, each result is a power of the distance. Near a border
-    the last point stands for one beyond it. Points with a missing neighbour are not counted, nor is their area. Peaks
-    of a profile are lower, and blunter, than the summits beside which they pass: they are converted by the ratios of an
-    isotropic Gaussian surface.
+    both axes. Where that is not a whole number of points, each result is interpolated by a power of the distance. Near
+    a border the last point stands in for a neighbour outside the scan. Points with a missing neighbour are not counted,
+    nor is their area. Peaks of a profile are lower and blunter than the summits that the profile passes: they are
+    converted by the ratios of an isotropic Gaussian surface.
     """
     lags = [max(steps) / step for step in steps]
     low, high = ([max(1, math.floor(lag + add)) for lag in lags] for add in (1e-6, 1 - 1e-6))
@@ -175,41 +180,41 @@ def counted_summits(z: np.ndarray, steps: tuple) -> Asperities | None:
 def _summits(z: np.ndarray, steps: tuple, lags: list[int]) -> Asperities | None:
     """The summits above neighbours that are `lags` points away along each axis."""
     padded = np.pad(z, [(lag - 1, lag - 1) for lag in lags], mode="edge")
-    here = (0,) * z.ndim
+    centre_offset = (0,) * z.ndim
     around = {
         offset: padded[tuple(slice(lag + i * lag, lag + i * lag + n - 2) for i, lag, n in parts)]
         for offset in itertools.product((-1, 0, 1), repeat=z.ndim)
         for parts in [list(zip(offset, lags, z.shape, strict=True))]
     }
-    centre = around.pop(here)
+    centre = around.pop(centre_offset)
     highest, whole = np.ones(centre.shape, dtype=bool), np.isfinite(centre)
     for offset, neighbour in around.items():
-        highest &= centre > neighbour if offset > here else centre >= neighbour
+        highest &= centre > neighbour if offset > centre_offset else centre >= neighbour
         whole &= np.isfinite(neighbour)
     count = int((highest & whole).sum())
     if count == 0:
         return None
     highest &= whole
-    apart = [lag * step for lag, step in zip(lags, steps, strict=True)]
-    second = (
+    distances = [lag * step for lag, step in zip(lags, steps, strict=True)]
+    second_derivatives = (
         (around[tuple(axis)][highest] + around[tuple(-axis)][highest] - 2 * centre[highest]) / d**2
-        for axis, d in zip(np.eye(z.ndim, dtype=int), apart, strict=True)
+        for axis, d in zip(np.eye(z.ndim, dtype=int), distances, strict=True)
     )
-    curvatures = -sum(second) / z.ndim
-    curvature, usual = float(curvatures.mean()), float(np.median(curvatures))
-    # points that are `apart` form interleaved grids; each point has its summits and the cell of its grid
-    density = count / (whole.sum() * math.prod(apart))
+    curvatures = -sum(second_derivatives) / z.ndim
+    curvature, median = float(curvatures.mean()), float(np.median(curvatures))
+    # points at these distances form interleaved grids; the area of a point is the cell of its grid
+    density = count / (whole.sum() * math.prod(distances))
     variance = float(np.var(centre[highest]))
     if z.ndim == 1:
         (m,) = moments(z, steps)
         density = density**2 * SUMMITS_PER_AREA / PEAKS_PER_LENGTH**2
-        curvature, usual = (CURVATURE / PEAK_CURVATURE * value for value in (curvature, usual))
+        curvature, median = (CURVATURE / PEAK_CURVATURE * value for value in (curvature, median))
         variance = max(0.0, variance - (HEIGHTS - PEAK_HEIGHTS) * m.m2**2 / m.m4)
-    return Asperities(density, curvature, math.sqrt(variance), count, usual)
+    return Asperities(density, curvature, math.sqrt(variance), count, median)
 
 
 def whole(z: np.ndarray, steps: tuple) -> int:
-    """Number of points all of whose neighbours are there, the larger step away along each axis."""
+    """Number of points whose neighbours, the larger step away along each axis, are all measured."""
     present = np.isfinite(z)
     for axis, step in enumerate(steps):
         lag, present = max(1, round(max(steps) / step)), np.moveaxis(present, axis, 0)
@@ -217,9 +222,12 @@ def whole(z: np.ndarray, steps: tuple) -> int:
     return int(present.sum())
 
 
-def usual_curvature(z: np.ndarray, steps: tuple) -> float:
-    """The curvature of `gaussian_summits` with m4 from the median of the second differences, a Gaussian one of √m4."""
+def median_curvature(z: np.ndarray, steps: tuple) -> float:
+    """The curvature of `gaussian_summits` with √m4 from the median of the squared second differences.
+
+    A few spikes do not change the median; for Gaussian heights it gives the same √m4.
+    """
     d = max(steps)
     median = partial(np.median, overwrite_input=True)
-    medians = [_over(z, axis, d / step, 2, median) / d**4 for axis, step in enumerate(steps)]
+    medians = [_average_square(z, axis, d / step, 2, median) / d**4 for axis, step in enumerate(steps)]
     return CURVATURE * math.sqrt(np.mean(medians)) / MEDIAN

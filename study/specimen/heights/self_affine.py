@@ -27,7 +27,7 @@ def self_affine(
     Parameters
     ----------
     shape : (ny, nx), number of points along y and x, at least 16 each
-    dx : distance of the points; this and all lengths in m, or texts with units such as "0.1 um"
+    dx : distance between points. All lengths are numbers in m, or texts with units such as "0.1 um"
     hurst : Hurst exponent H, in (0, 1]
     rms : root mean square of the heights, > 0
     longest, shortest : wavelengths between which the surface has waves; by default a quarter of the shorter side, and
@@ -36,7 +36,7 @@ def self_affine(
 
     Returns
     -------
-    Scan : in m; give `periodic="given"` to what takes a period
+    Scan : in m. It is one period: pass `periodic="given"` beside it
 
     Raises
     ------

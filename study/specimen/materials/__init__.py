@@ -1,4 +1,4 @@
-"""Elastic constants and strengths of common materials by name, with spreads and sources; and of the user's own file.
+"""Elastic constants and strengths of common materials by name, with spreads and sources; and the user's own materials.
 
 >>> steel = get("100Cr6")
 >>> steel.name, steel.E, steel.nu
@@ -25,12 +25,12 @@ __all__ = ["Material", "Pair", "get", "names", "pairs", "read", "table", "work_o
 
 
 def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
-    """The material of this name, or of this other name; capitals, hyphens and spaces do not matter.
+    """The material that has this name or is also called so; capitals, hyphens and spaces do not matter.
 
     Parameters
     ----------
     name : such as "steel 52100" or "100Cr6"
-    among : where to look, as `read` returns it; without it the table of this package
+    among : the materials to search, as `read` returns them; by default the table of this package
 
     Returns
     -------
@@ -38,7 +38,7 @@ def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
 
     Raises
     ------
-    LookupError : there is none; names like it are suggested
+    LookupError : there is no such material; similar names are suggested
 
     Examples
     --------
@@ -58,7 +58,7 @@ def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
 
 
 class Strength(NamedTuple):
-    """A yield strength in Pa, NaN where none is known; its standard deviation; whether it is the hardness over 2.84."""
+    """A yield strength in Pa, its standard deviation, and whether it is the hardness over 2.84; NaN: not known."""
 
     value: float = math.nan
     spread: float = 0.0
@@ -66,11 +66,11 @@ class Strength(NamedTuple):
 
 
 def known_strength(material: Material | str) -> Strength:
-    """The yield strength of a material or of its name, else its hardness over 2.84."""
+    """The yield strength of a material, or its hardness over 2.84 where only that is known."""
     if isinstance(material, str):
         try:
             material = get(material)
-        except LookupError:  # of a file of the user
+        except LookupError:  # a material of the user's file
             return Strength()
     if material.yield_strength:
         return Strength(material.yield_strength, material.yield_strength_spread)
@@ -80,7 +80,7 @@ def known_strength(material: Material | str) -> Strength:
 
 
 def strength_of(material: Material | str) -> float:
-    """The same, the value in Pa alone; NaN where none is known."""
+    """The value of `known_strength` alone, Pa; NaN where none is known."""
     return known_strength(material).value
 
 
@@ -163,7 +163,7 @@ def _in_multiples(value: float, spread: float) -> str:
 
 
 def _with_spread(value: float, spread: float) -> str:
-    """A number and its spread, with the fewest decimals that change neither by more than a twentieth of the spread."""
+    """A number and its spread, with the fewest decimals that round both by at most a twentieth of the spread."""
     if spread == 0:
         return f"{value:.4g}"
     enough = (n for n in range(9) if all(abs(round(x, n) - x) <= spread / 20 for x in (value, spread)))

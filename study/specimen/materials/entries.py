@@ -1,4 +1,4 @@
-"""A material: its elastic constants and strengths, each with its spread, and the file that holds some."""
+"""A material, with its elastic constants, its strengths and their spreads, and files of materials."""
 
 import math
 import os
@@ -11,12 +11,12 @@ from solver.numerics.userfile import NoFile, TooLarge, content
 from ...terminal import shown
 
 LARGEST = 10_000_000
-"""Most bytes of a file of materials, some 30,000 of them."""
+"""Largest size of a file of materials, in bytes. It holds some 30,000 materials."""
 
 SOFTEST, STIFFEST = 1e3, 2e12
-"""Bounds of E in Pa. Each E of the table, 8.6 kPa to 1143 GPa, is between them; one in GPa by mistake is below."""
+"""Bounds of E in Pa. The table has 8.6 kPa to 1143 GPa. An E in GPa by mistake is below the bounds."""
 LEAST_SPREAD = 1e-6
-"""Least spread of E, over E: no E is known better. A spread given in GPa by mistake, 5 beside 207e9 Pa, is below."""
+"""Least relative spread of E: no E is known better. A spread in GPa by mistake, 5 beside 207e9 Pa, is smaller."""
 
 NUMBERS = {
     "E": f"a number of Pa from {SOFTEST:g} to {STIFFEST:g} (210 GPa is 210e9)",
@@ -24,16 +24,16 @@ NUMBERS = {
     "E_spread": f"0 or a number of Pa from {LEAST_SPREAD:g} E to E (5 GPa is 5e9), one standard deviation",
     "nu_spread": "a number from 0 to 0.5, one standard deviation",
 }
-"""The keys that a section must have, and what is allowed."""
+"""Keys that a section must have -> the allowed values, in words."""
 STRENGTHS = ("yield_strength", "hardness", "fracture_strength", "interface_strength")
-"""The strengths that it may have, each with its spread: NAME and NAME_spread, Pa."""
+"""Strengths that a section may have, each with its spread: NAME and NAME_spread, Pa."""
 WEAKEST, STRONGEST = 1e3, 2e11
 """Bounds of a strength in Pa: gels break at some kPa, the hardness of diamond is some 0.1 TPa."""
 _STRENGTH = dict.fromkeys(STRENGTHS, f"a number of Pa from {WEAKEST:g} to {STRONGEST:g} (1 GPa is 1e9)")
 _STRENGTH |= {f"{name}_spread": "0 or less than the strength, one standard deviation in Pa" for name in STRENGTHS}
 OTHERS = {"condition": "a text", "source": "a text", "also": "a list of texts", "checked": "true or false"}
 OTHERS |= _STRENGTH | {"strength_source": "a text"}
-"""The keys that it may have, and what is allowed."""
+"""Keys that a section may have -> the allowed values, in words."""
 
 
 @dataclass(frozen=True)
@@ -47,12 +47,13 @@ class Material:
     E_spread, nu_spread : one standard deviation of each, Pa and 1, among the pieces that bear the name
     yield_strength, hardness : Pa; None: not known. The hardness is a mean pressure, on the projected area
     fracture_strength : of a coating, the tensile stress at which it cracks, Pa; None: not known
-    interface_strength : of a coating, the stress at which it comes off what the source names, Pa; None: not known
+    interface_strength : of a coating, the stress at which it detaches from the substrate that the source names, Pa;
+        None: not known
     yield_strength_spread, hardness_spread, fracture_strength_spread, interface_strength_spread : one standard deviation
         of each of these, Pa
-    strength_source : where the strengths are from
-    condition : what the values hold for, and what they depend on
-    source : where they are from
+    strength_source : of the strengths
+    condition : for which material and state the values hold, and what they depend on
+    source : of the values
     also : other names
     checked : whether both numbers were read in the source; if not, the source says which were not
     """
@@ -176,13 +177,13 @@ def _is_allowed(key: str, value, modulus=None) -> bool:
         return WEAKEST <= value <= STRONGEST
     if key in _STRENGTH:
         return value >= 0
-    if key == "E_spread":  # where E is wrong itself, its spread is not compared with it
+    if key == "E_spread":  # it is not compared with an E that is wrong itself
         return value == 0 or value > 0 and (not _is_allowed("E", modulus) or LEAST_SPREAD * modulus <= value < modulus)
     return {"E": SOFTEST <= value <= STIFFEST, "nu": -1 < value <= 0.5, "nu_spread": 0 <= value <= 0.5}[key]
 
 
 def plainly(name) -> str:
-    """A name in small letters, with single blanks for hyphens and underscores."""
+    """A name in lower case, with single spaces for hyphens and underscores."""
     return " ".join(str(name).casefold().replace("-", " ").replace("_", " ").split())
 
 

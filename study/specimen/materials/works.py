@@ -18,9 +18,9 @@ class Pair:
     ----------
     bodies : names of both, as in the table of materials
     w, w_spread : work of adhesion and its standard deviation, J/m²
-    condition : what the value holds for
-    source : where it is from
-    checked : whether it was read there; if not, it is quoted from memory
+    condition : for which state the value holds
+    source : of the value
+    checked : whether the value was read in the source; if not, it is quoted from memory
     """
 
     bodies: tuple[str, str]
@@ -38,7 +38,7 @@ class Pair:
 
 @cache
 def pairs() -> tuple[Pair, ...]:
-    """All pairs that are known.
+    """All pairs of the table.
 
     Returns
     -------
@@ -61,7 +61,7 @@ def work_of_adhesion(first: str, second: str) -> Pair:
 
     Raises
     ------
-    LookupError : none is known of this pair
+    LookupError : the table does not have this pair
 
     Examples
     --------

@@ -7,7 +7,7 @@ import pytest
 
 import study
 from study.__main__ import main
-from study.commands.designing import asked
+from study.commands.designing import question_of
 from study.commands.point import parameters_of
 
 # Of steel and DLC, whose asperities would yield in some of these contacts.
@@ -90,7 +90,7 @@ def test_json_of_several_contacts(capsys):
     ],
 )
 def test_which_word_is_the_target(words, target, by, rest):
-    assert asked(parameters_of(words.split())) == (target, by, rest)
+    assert question_of(parameters_of(words.split())) == (target, by, rest)
 
 
 @pytest.mark.parametrize(

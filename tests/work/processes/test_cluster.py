@@ -228,7 +228,7 @@ def test_a_block_whose_worker_is_lost_when_it_is_here_has_not_failed(monkeypatch
 
         monkeypatch.setattr(client, "_gather", lost)
         monkeypatch.setattr(engines, "connected", lambda *_: client)
-        found = engines.computed_there("any", None, str.split, ["one two"])
+        found = engines.computed_on_cluster("any", None, str.split, ["one two"])
         assert list(found) == [(0, ["one", "two"])]
 
 

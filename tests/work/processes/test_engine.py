@@ -18,7 +18,7 @@ from roughcoat.elsewhere import Packed
 from study import StudyError
 from study.work import cluster
 from study.work.cases import NUMERICS_VERSION, Failure, parcel
-from study.work.cluster import AHEAD, Lost, computed_there
+from study.work.cluster import AHEAD, Lost, computed_on_cluster
 from study.work.engine import available_workers
 
 
@@ -103,7 +103,7 @@ def test_a_task_is_made_when_there_is_room_and_results_come_in_order(client, thr
             made.append(number)
             yield number
 
-    for number, result in computed_there(ADDRESS, None, operator.neg, tasks()):
+    for number, result in computed_on_cluster(ADDRESS, None, operator.neg, tasks()):
         assert result == -number and number == len(under_way)
         under_way.append(len(made) - number)
     assert len(under_way) == 10 and max(under_way) == min(threads, 10)
@@ -114,12 +114,12 @@ def test_the_width_is_asked_again_and_again(client, monkeypatch):
     """As workers come and go."""
     widths, made = iter([3, 2, 2, 1, 1, 1, 1, 1, 1]), []
     monkeypatch.setattr(cluster.Cluster, "room", lambda *_: next(widths))
-    found = computed_there(ADDRESS, None, int, (made.append(i) or i for i in range(4)))
+    found = computed_on_cluster(ADDRESS, None, int, (made.append(i) or i for i in range(4)))
     assert [(number, len(made)) for number, _ in found] == [(0, 2), (1, 3), (2, 3), (3, 4)]
 
 
 def test_a_task_that_raises_is_a_failure(client):
-    found = dict(computed_there(ADDRESS, None, [1].__getitem__, [0, 1, 0]))
+    found = dict(computed_on_cluster(ADDRESS, None, [1].__getitem__, [0, 1, 0]))
     assert found == {0: 1, 1: Failure("IndexError: list index out of range", ""), 2: 1}
 
 
@@ -136,7 +136,7 @@ def test_as_much_for_a_cluster_as_it_has_threads(client):
 
 
 def test_a_cluster_is_left_when_the_run_ends_early(client):
-    results = computed_there(ADDRESS, None, int, range(100))
+    results = computed_on_cluster(ADDRESS, None, int, range(100))
     next(results)
     results.close()
     assert client.done[1:] == ["closed"]
@@ -145,7 +145,7 @@ def test_a_cluster_is_left_when_the_run_ends_early(client):
 def test_a_scheduler_that_listens_may_be_busy(client):
     with socket.create_server(("127.0.0.1", 0)) as scheduler:
         address = f"ws://127.0.0.1:{scheduler.getsockname()[1]}"
-        assert list(computed_there(address, None, int, [])) == []
+        assert list(computed_on_cluster(address, None, int, [])) == []
         assert client.done[0] == (address, cluster.ANSWER, False)
 
 
@@ -156,10 +156,10 @@ def test_workers_bound_the_threads_of_a_cluster(client):
 
 def test_what_comes_of_the_blocks_of_a_cluster(client):
     """A result; a block that raises fails alone; blocks that a lost scheduler has cancelled have not failed."""
-    (_, number), (_, failure) = computed_there(ADDRESS, None, float, ["2.5", "many"])
+    (_, number), (_, failure) = computed_on_cluster(ADDRESS, None, float, ["2.5", "many"])
     assert number == 2.5 and failure.message == "ValueError: could not convert string to float: 'many'"
     with pytest.raises(Lost, match="^the scheduler is gone$"):
-        list(computed_there(ADDRESS, None, float, [None]))
+        list(computed_on_cluster(ADDRESS, None, float, [None]))
 
 
 class Waiting(Computed):
@@ -188,7 +188,7 @@ def test_only_blocks_whose_workers_have_all_gone_are_placed_anew(client, monkeyp
 def test_a_cluster_needs_its_package(monkeypatch):
     monkeypatch.setitem(sys.modules, "dask.distributed", None)
     with pytest.raises(StudyError) as caught:
-        list(computed_there(ADDRESS, None, float, []))
+        list(computed_on_cluster(ADDRESS, None, float, []))
     assert caught.value.messages == ("--scheduler needs the package distributed: pip install 'roughcoat[cluster]'",)
 
 

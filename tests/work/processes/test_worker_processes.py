@@ -16,7 +16,7 @@ from tasks import note_and_die, note_and_wait
 
 from study.work import engine
 from study.work.cases import Failure
-from study.work.engine import others_beside
+from study.work.engine import number_of_helpers
 from study.work.processes import ATTEMPTS, KILLED, Processes
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
@@ -85,8 +85,8 @@ def test_processes_compute_what_threads_compute(opened, tmp_path):
 
 def test_how_many_processes():
     """None for a single worker, and never more than there are blocks."""
-    alone = [others_beside(*each, here=False) for each in ((2, 8), (16, 9))]
-    beside = [others_beside(*each, here=True) for each in ((2, 7), (1, 100), (16, 9))]
+    alone = [number_of_helpers(*each, caller_solves=False) for each in ((2, 8), (16, 9))]
+    beside = [number_of_helpers(*each, caller_solves=True) for each in ((2, 7), (1, 100), (16, 9))]
     assert (alone, beside) == ([2, 9], [1, 0, 8])
 
 

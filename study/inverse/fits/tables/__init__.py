@@ -1,1 +1,2 @@
-"""Tables that fits read in place of contacts: a lattice of tiles, tables on it, the branch of contacts that adhere."""
+"""Tables that fits read in place of solving contacts: a lattice of tiles, tables on it, the branch of contacts with
+adhesion."""

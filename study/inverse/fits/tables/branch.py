@@ -1,8 +1,8 @@
 """Loads of B curves at n depths on the stable branch of a :class:`.term_table.TermTable`, and their derivatives.
 
-The branch goes from large radii down to the last radius at which the depth turns. A depth-controlled punch is pulled
-off there; others come off before. Beyond it the load goes to 0 within _RAMP of the depth that adhesion takes. No
-contact has these loads; they tell a search which way to go.
+The branch goes from large radii down to the last radius at which the depth turns. There a depth-controlled punch is
+pulled off; others come off before. After that end the load goes to 0 within _RAMP of the pull of adhesion on the depth.
+No contact has these loads; they show a search its direction.
 """
 
 from typing import NamedTuple
@@ -13,14 +13,14 @@ from ..model import CurveModel
 from .term_table import LENGTH, STEP, TermTable
 
 _RAMP, _LEAST_RAMP = 0.25, 0.01
-_NEWTON, _TURN = 5, 12  # steps of the searches for a depth and for the turn
-#: dD/dx counts as at least this part of the depth that adhesion takes: it is 0 at the turn.
+_NEWTON, _TURN = 5, 12  # number of steps of the searches for a depth and for the turn
+#: dD/dx, which is 0 at the turn, counts as at least this share of the pull of adhesion on the depth.
 _STEEP = 0.02
 
 
 class Loads(NamedTuple):
-    """Loads P (B, n) in N, and dP/dD, at depths; derivatives of P by unknown inputs (axes, B, n) and by others
-    (moved, B, n), and those by the logarithms of the four parts (4, B, n)."""
+    """Loads P (B, n) in N, and dP/dD, at depths; derivatives of P by unknown inputs (axes, B, n) and by other inputs
+    (moved, B, n), and by the logarithms of the four parts (4, B, n)."""
 
     P: np.ndarray
     slope: np.ndarray
@@ -29,8 +29,8 @@ class Loads(NamedTuple):
 
 
 class Branch(NamedTuple):
-    """Loads of the contacts that stick, and of those that do not, 0 above the surface; the end of the branch, and the
-    depth of its least load, (B,)."""
+    """Loads with adhesion, and without it, 0 above the surface; the depth of the end of the branch, and that of its
+    least load, (B,)."""
 
     sticks: Loads
     free: Loads
@@ -57,18 +57,21 @@ def _value(c: tuple, t: np.ndarray) -> np.ndarray:
 
 
 def _slope(c: tuple, t: np.ndarray) -> np.ndarray:
-    """By x."""
+    """The slope by x."""
     return (c[1] + t * (2 * c[2] + 3 * t * c[3])) / STEP
 
 
 def _pair(c: list, t: np.ndarray) -> tuple[np.ndarray, ...]:
-    """A difference of two parts and its slope by x, and the parts."""
+    """The difference of two parts, its slope by x, and the parts."""
     more, less = np.exp(_value(c[0], t)), np.exp(_value(c[1], t))
     return more - less, more * _slope(c[0], t) - less * _slope(c[1], t), more, less
 
 
 def branch(rows: np.ndarray, depth: np.ndarray) -> Branch:
-    """The :class:`Branch` of rows (1 + others, B, 8, LENGTH), the first with the parts, at depths (B, n) in m."""
+    """The :class:`Branch` at depths (B, n) in m.
+
+    rows : (1 + others, B, 8, LENGTH), the first with the parts
+    """
     parts = rows[0]
     with np.errstate(all="ignore"):
         f = np.exp(parts[:, :4])
@@ -87,8 +90,8 @@ def branch(rows: np.ndarray, depth: np.ndarray) -> Branch:
 
 
 def _least(parts: np.ndarray, f: np.ndarray) -> np.ndarray:
-    """The depth (B,) of the least load, to some percent of the depth that adhesion takes; -inf where there is none:
-    the load falls to the end."""
+    """The depth (B,) of the least load, to some percent of the pull of adhesion on the depth; -inf without a least
+    load, where the load falls up to the end."""
     slope = f[:, 0] * parts[:, 4] - f[:, 2] * parts[:, 6]
     turns = (slope[:, :-1] < 0) & (slope[:, 1:] >= 0)
     cell, rows = LENGTH - 2 - turns[:, ::-1].argmax(axis=1), np.arange(len(f))
@@ -106,7 +109,7 @@ def _turn(c: list) -> np.ndarray:
         t = np.clip(low + (high - low) * s_low / (s_low - s_high), low, high)
         s = _pair(c, t)[1]
         falls = s < 0
-        # half the value of the end that stays counts (Illinois)
+        # the value of the end that stays is halved (Illinois)
         s_low, s_high = np.where(falls, s, s_low / 2), np.where(falls, s_high / 2, s)
         low, high = np.where(falls, t, low), np.where(falls, high, t)
     return t
@@ -129,20 +132,20 @@ def _free(rows: np.ndarray, depth: np.ndarray) -> Loads:
 
 
 def _by_rows(rows: np.ndarray, cells: _Cells, t: np.ndarray, of_parts: np.ndarray) -> np.ndarray:
-    """Derivatives (others, B, n) of the loads by the variables of the rows behind the first."""
-    others = np.empty((len(rows) - 1, *t.shape))
+    """Derivatives (others, B, n) of the loads by the variables of the rows after the first."""
+    derivatives = np.empty((len(rows) - 1, *t.shape))
     for k, row in enumerate(rows[1:]):
-        others[k] = sum(_value(cells.of(row, i), t) * of_parts[i] for i in range(4))
-    return others
+        derivatives[k] = sum(_value(cells.of(row, i), t) * of_parts[i] for i in range(4))
+    return derivatives
 
 
 def _loads(rows: np.ndarray, depth: np.ndarray, cell: np.ndarray, off: tuple) -> Loads:
-    """Loads on the branch at depths in the cells (B, n); those beyond its end, `off`, are at the end."""
+    """Loads on the branch at depths in the cells (B, n); depths past its end, `off`, count as the end."""
     turn, t_off, D_off, P_off, pull = off
     cells = _Cells(cell)
     of_load, of_depth = ([cells.of(rows[0], i), cells.of(rows[0], i + 2)] for i in (0, 1))
     least = np.where(cell == turn[:, None], t_off, 0.0)
-    beyond = depth < D_off[:, None]
+    is_past_end = depth < D_off[:, None]
     low, high = (_pair(of_depth, end)[0] for end in (least, np.ones_like(least)))
     share = np.clip((depth - low) / (high - low), 0.0, 1.0)
     # the depth is a parabola at its minimum
@@ -151,20 +154,20 @@ def _loads(rows: np.ndarray, depth: np.ndarray, cell: np.ndarray, off: tuple) ->
         value, slope, _, _ = _pair(of_depth, t)
         step = (value - depth) / (np.maximum(slope, 1e-300) * STEP)
         t = np.clip(t - np.where(np.isfinite(step), step, 0.0), least, 1.0)
-    t = np.where(beyond, least, t)
+    t = np.where(is_past_end, least, t)
     D, D_x, *of_D = _pair(of_depth, t)
     P, P_x, *of_P = _pair(of_load, t)
     slope = P_x / np.maximum(D_x, _STEEP * of_D[1] + 1e-300)
     ramp = np.maximum.reduce([_RAMP * pull, _LEAST_RAMP * np.abs(D_off), _LEAST_RAMP * depth.max(axis=1)])
     part = np.clip(1 - (D_off[:, None] - depth) / ramp[:, None], 0.0, 1.0)
     falls = np.where(part > 0, (P_off / ramp)[:, None], 0.0)
-    slope, part = np.where(beyond, falls, slope), np.where(beyond, part, 1.0)
+    slope, part = np.where(is_past_end, falls, slope), np.where(is_past_end, part, 1.0)
     of_parts = np.stack([part * of_P[0], -slope * of_D[0], -part * of_P[1], slope * of_D[1]])
     return Loads(np.where(np.isfinite(D), part * P, np.nan), slope, _by_rows(rows, cells, t, of_parts), of_parts)
 
 
 def planned(model: CurveModel, values: dict[str, np.ndarray], depth: np.ndarray) -> np.ndarray:
-    """Loads (B, n) at depths (B, n) for values (1, 1) of the unknown inputs; 0 beyond the end of the branch."""
+    """Loads (B, n) at depths (B, n) for values (1, 1) of the unknown inputs; 0 past the end of the branch."""
     table, out = TermTable(model), np.full(depth.shape, np.nan)
     for number, row in enumerate(depth):
         x = np.where(np.isfinite(row), row, np.nanmax(row))[None]

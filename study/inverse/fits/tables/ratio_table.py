@@ -1,7 +1,7 @@
 """A table of y(x; unknown inputs) that is read a million times.
 
-What is tabulated is g = ln(y/Hertz's y) over ln u and the coordinates of the unknown inputs (`CurveModel`). Along ln u
-a tile of the lattice has _LATTICE points, between which a cubic is drawn.
+It holds g = ln(y/Hertz's y) over ln u and the coordinates of the unknown inputs (`CurveModel`). Along ln u a tile of
+the lattice has _LATTICE points, joined by cubics.
 """
 
 import numpy as np
@@ -11,15 +11,15 @@ from .tiles import WIDE, WIDE_RATIO, Chebyshev, Lattice
 
 _LATTICE = 32
 STEP = WIDE / _LATTICE
-#: Chebyshev points of a tile along each coordinate, of tables with one, two and more coordinates: g is within 5e-6 of
-#: solutions, with three 1e-3, which its steepest tiles have (tests/inverse/fits/test_table_of_curves.py).
+#: Number of coordinates of a table -> Chebyshev points of a tile along each. g is within 5e-6 of solutions; with three
+#: coordinates within 1e-3, in the steepest tiles (tests/inverse/fits/test_table_of_curves.py).
 _POINTS = {1: 16, 2: 14, 3: 8, 4: 6}
-_MARGIN = 2.5 * STEP  # beyond the ends of a tile: the cubic takes points on both sides
-_MOVE = 1e-4  # of inputs by which derivatives are wanted
+_MARGIN = 2.5 * STEP  # outside the ends of a tile, since a cubic needs points on both sides
+_MOVE = 1e-4  # relative change of inputs for derivatives
 
 
 class RatioTable:
-    """g of a model, on tiles that are solved on demand. Not for several threads."""
+    """g of a model, on tiles that are solved on demand. Only one thread may use a table."""
 
     def __init__(self, model: CurveModel):
         self.model = model
@@ -33,7 +33,7 @@ class RatioTable:
         """g of the contacts of a tile, or its derivatives by the inputs `moved` of the model, (1 or moved, 1, _LATTICE,
         C), NaN where a contact has no solution.
 
-        Each tile is a batch of its own: the last digits of a solution depend on what is solved with it.
+        Each tile is a batch: the last digits of a solution depend on the other contacts in its batch.
         """
         model = self.model
         values, x = self._contacts(place)
@@ -76,11 +76,11 @@ class RatioTable:
 
 
 class Cubics:
-    """Cubics at places (B, n) between the L points of B rows, counted in points. Each goes through four points, of
-    which the place is in the middle from 1 to L - 3."""
+    """Cubics at places (B, n) between the L points of B rows, counted in points. Each cubic passes through four points;
+    from 1 to L - 3 the place is between the middle two."""
 
     def __init__(self, place: np.ndarray, length: int):
-        i = np.clip(place.astype(int), 1, length - 3)  # truncation is the floor, as none is below 0
+        i = np.clip(place.astype(int), 1, length - 3)  # truncation is the floor, since no place is below 0
         self.t = place - i
         self.flat = i + length * np.arange(len(place))[:, None] - 1
 
@@ -88,7 +88,7 @@ class Cubics:
         """Values (B, n) of rows (B, L), and their derivatives by the place, or None."""
         t, flat = self.t, rows.reshape(-1)
         a, b, c, d = (flat.take(self.flat + k) for k in range(4))
-        second, third = (a + c) / 2 - b, (d - a) / 6 + (b - c) / 2
-        first = c - b - second - third
-        value = b + t * (first + t * (second + t * third))
-        return value, first + t * (2 * second + 3 * t * third) if slope else None
+        quadratic, cubic = (a + c) / 2 - b, (d - a) / 6 + (b - c) / 2
+        linear = c - b - quadratic - cubic
+        value = b + t * (linear + t * (quadratic + t * cubic))
+        return value, linear + t * (2 * quadratic + 3 * t * cubic) if slope else None

@@ -1,10 +1,10 @@
 """A table of :mod:`solver.smooth.adhesion.rings` over the contact radius and the width of a ring.
 
-What is tabulated are ratios: each part over that of a ring around a rigid paraboloid on a half-space, which is known in
-closed form. Where a curve has its ring follows from its work of adhesion and stress. So these are no coordinates.
+It holds ratios: each part over that of a ring around a rigid paraboloid on a half-space, which is known in closed form.
+The ring of a curve follows from its work of adhesion and its stress, so these are not coordinates of the table.
 
 Along x, the variable of the radius, the tiles are those of :mod:`.term_table`. Along y, the logarithm of the width over
-the unit of length, each tile of a lattice of its own has Chebyshev points. Along a curve c - a hardly changes.
+the unit of length, each tile has a separate lattice, and Chebyshev points. Along a curve c - a hardly changes.
 """
 
 from collections.abc import Iterator
@@ -20,22 +20,23 @@ from ..model import is_ratio
 from .terms import Terms
 from .tiles import WIDE, Chebyshev, Lattice, Position
 
-#: Powers of E, of the unit of lengths, of R and of the cotangent in the parts gap, opening, load and depth; those that
-#: differ for a paraboloid and a cone, of which lengths act through a/h alone.
+#: Powers of E, of the unit of lengths, of R and of the cotangent in the parts gap, opening, load and depth; and those
+#: that differ for a paraboloid and a cone, under which lengths act only through a/h.
 _POWERS = {"E": (0, -1, 0, -1), "length": (1, 1, 2, 1), **dict.fromkeys(("w", "R", "cotangent"), (0, 0, 0, 0))}
 _SIMILAR, _CONE = {"length": (2, 1, 2, 1), "R": (-1, 0, 0, 0)}, {"cotangent": (1, 0, 0, 0)}
 #: SI powers of the modulus and of R in the parts.
 _OF_PARTS = ((0, 1), (-1, 1), (0, 2), (-1, 1))
-#: Chebyshev points of a tile along x and along y: loads are off by some 6e-6 of the largest
+#: Number of Chebyshev points of a tile along x and along y. Loads are off by some 6e-6 of the largest
 #: (tests/inverse/fits/test_sticking.py).
 _POINTS, _WIDTHS = 12, 10
-#: The ratios of narrower rings, over the radius, are those of this one: they differ by a part of it.
+#: Logarithm of the least width over the radius. Narrower rings have the same ratios, to about this relative width.
 _NARROW = np.log(1e-5)
-#: Steps of the search for y: first of rings in closed form, then of the table; and how near ends it.
+#: Number of steps of the search for y, first by rings in closed form, then by the table; last step that ends the
+#: search, and longest step.
 _FIRST, _STEPS, _NEAR, _LONGEST = 12, 12, 1e-11, 3.0
-#: Curves that are searched together.
+#: Number of curves that are searched together.
 _TOGETHER = 128
-#: By how much inputs are moved for derivatives by their logarithms (ratios: by themselves).
+#: Relative change of inputs for derivatives by their logarithms (ratios: change of the ratio).
 _MOVE = 1e-5
 
 
@@ -50,7 +51,8 @@ class RingParts(NamedTuple):
 class _Sought(NamedTuple):
     """B curves whose rings are searched.
 
-    scale : (4, B) of the parts; sigma, wanted : (B,), σ₀, and w/σ₀
+    scale : of the parts, (4, B)
+    sigma, wanted : σ₀, and w/σ₀, (B,)
     """
 
     scale: np.ndarray
@@ -59,7 +61,7 @@ class _Sought(NamedTuple):
 
 
 class RingTable:
-    """The parts of the rings of a model, on tiles that are solved on demand. Not for several threads.
+    """The parts of the rings of a model, on tiles that are solved on demand. Only one thread may use a table.
 
     axes, wide : Chebyshev points and width of a tile along each coordinate of `terms`
     points : of a tile along x
@@ -76,9 +78,9 @@ class RingTable:
         self.lattices: dict[int, Lattice] = {}
 
     def pulls(self, values: dict, position: Position, first: np.ndarray, x: np.ndarray, moved: bool = False) -> tuple:
-        """The logarithms of what attraction takes from load and depth and their slopes by x, (B, 4, L), at x (B, L) of
+        """The logarithms of the pulls of attraction on load and depth and their slopes by x, (B, 4, L), at x (B, L) of
         B curves; and their derivatives (names, B, 2, L) by the coordinates of all unknown inputs and, if `moved`, by
-        the inputs that are moved.
+        the inputs `moved` of the model.
 
         first : (B,), the tile of the first point of each curve; the points are those of the lattice
         """
@@ -86,8 +88,8 @@ class RingTable:
         for low in range(0, len(x), _TOGETHER):
             part = slice(low, low + _TOGETHER)
             few = {name: value[part] for name, value in values.items()}
-            here = Position(position.numbers[part], position.weights[:, part])
-            row, other = self._pulls(few, here, first[part], x[part], moved)
+            position_of_part = Position(position.numbers[part], position.weights[:, part])
+            row, other = self._pulls(few, position_of_part, first[part], x[part], moved)
             rows.append(row)
             others.append(other)
         return np.concatenate(rows), np.concatenate(others, axis=1)
@@ -118,7 +120,7 @@ class RingTable:
         return np.moveaxis(np.concatenate([taken, slopes]), 1, 0), others
 
     def _searched(self, read: "_Read", sought: _Sought) -> np.ndarray:
-        """y (B, L) of the rings that have the work of adhesion, NaN where there is none."""
+        """y (B, L) of the rings with the given work of adhesion, NaN where there is no such ring."""
         s, wanted = sought.sigma[:, None], np.log(sought.wanted)[:, None]
         near = np.log(np.pi / 4 * sought.wanted / (sought.sigma * sought.scale[1]))
         y = np.minimum(near, np.log(2 * sought.wanted / sought.scale[0]) / 2)[:, None] + 0 * read.x
@@ -155,7 +157,7 @@ class RingTable:
     def _by(self, name: str, values: dict) -> np.ndarray:
         """Derivatives (4, B, 1) of the logarithms of the scales by the coordinate of an input."""
         by = np.asarray(self.terms.by(name, values), float)
-        if name in ANGLES and name not in self.model.unknowns:  # by its logarithm, not that of its tangent
+        if name in ANGLES and name not in self.model.unknowns:  # by the logarithm of the angle, not of its tangent
             angle = np.radians(self.model.value(name))
             by = by * (2 * angle / np.sin(2 * angle))
         return by.reshape(4, -1, 1)
@@ -184,12 +186,14 @@ class RingTable:
         return np.ascontiguousarray(rows.reshape(len(rows), 8 * _WIDTHS, self.points, -1))
 
     def _moved(self, name: str, values: dict, xy: tuple, still: np.ndarray) -> np.ndarray:
-        """Derivatives of ratios, which are `still`, by the logarithm of an input that is not unknown; by a ratio
-        itself."""
+        """Derivatives of ratios by the logarithm of an input that is not unknown (by a Poisson ratio itself).
+
+        still : the ratios without a change of the input
+        """
         if name in ("k_machine", "w_adhesion", "sigma0", "z0"):
             return 0 * still
         value = np.full(still.shape[1], self.model.value(name))
-        by = _MOVE * (-1.0 if is_ratio(name) else value)  # a ratio of 0.5 does not rise
+        by = _MOVE * (-1.0 if is_ratio(name) else value)  # a ratio of 0.5 must not rise
         return (self._ratios(values | {name: value + by}, *xy) - still) / (-_MOVE if is_ratio(name) else _MOVE)
 
     def _ratios(self, values: dict[str, np.ndarray], x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -208,7 +212,7 @@ class RingTable:
 
 
 class _Read:
-    """What a :class:`RingTable` has at x (B, L) of curves, of the tiles that are asked for."""
+    """The values of a :class:`RingTable` at x (B, L) of curves, on the tiles that are needed."""
 
     def __init__(self, table: RingTable, position: Position, first: np.ndarray, x: np.ndarray, moved: bool):
         self.table, self.position, self.first, self.x = table, position, first, x
@@ -230,7 +234,7 @@ class _Read:
         return RingParts(*out)
 
     def rows(self, y: np.ndarray) -> dict[str, np.ndarray]:
-        """Derivatives (4, B, L) of the parts without scales by the coordinates of the table, and by inputs moved."""
+        """Derivatives (4, B, L) of the parts without scales by the coordinates of the table, and by `moved` inputs."""
         out = np.full((len(self.names), 4, *y.shape), np.nan)
         plain = closed(self.x, y).value
         for points, coefficients, weights, *_ in self._points(y, None):
@@ -240,7 +244,7 @@ class _Read:
 
     def _points(self, y: np.ndarray, wanted: np.ndarray | None) -> Iterator[tuple]:
         """For each tile the N points in it: their curves and places along x, coefficients (rows, N, 8 _WIDTHS), weights
-        and their derivatives (N, _WIDTHS), and which rings are narrower than those of the table, (N,)."""
+        and their derivatives (N, _WIDTHS), and whether rings are narrower than those of the table, (N,)."""
         low = self.x + _NARROW
         at = np.maximum(y, low)
         wanted = np.isfinite(at) if wanted is None else wanted & np.isfinite(at)

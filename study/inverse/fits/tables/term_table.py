@@ -1,7 +1,7 @@
 """A table of the :class:`.terms.Terms` of a model over the contact radius.
 
-Along x, the logarithm of the radius, a tile of the lattice has _LATTICE points with values and slopes, between which a
-cubic is drawn.
+Along x, the logarithm of the radius, a tile of the lattice has _LATTICE points with values and slopes, joined by
+cubics.
 """
 
 import numpy as np
@@ -14,18 +14,19 @@ from .tiles import WIDE, WIDE_RATIO, Chebyshev, Lattice, Position
 
 _LATTICE = 16
 STEP = WIDE / _LATTICE
-#: Tiles of a curve from that of its largest radius down, and tiles below, to which the terms go on as powers.
+#: Number of tiles of a curve from that of its largest radius down, and of tiles below, on which the terms continue as
+#: powers.
 _TILES, _BELOW = 3, 3
-#: Points of the lattice of a curve.
+#: Number of lattice points of a curve.
 LENGTH = (_TILES + _BELOW) * _LATTICE
-#: Chebyshev points of a tile along each coordinate, of tables with one, two and more coordinates, and its width: of
-#: moduli, whose tiles are wide, as what a tile costs is hardly a matter of its points; and of other inputs. Loads are
-#: off by some 2e-5 of the largest (tests/inverse/fits/test_sticking.py).
+#: Number of coordinates of a table -> Chebyshev points of a tile along a modulus, and along another input; widths of
+#: these tiles. Those of moduli are wide, since the cost of a tile hardly depends on its number of points. Loads are off
+#: by some 2e-5 of the largest (tests/inverse/fits/test_sticking.py).
 _OF_MODULI, _POINTS = {1: 18, 2: 16, 3: 12}, {1: 10, 2: 7, 3: 5}
 _WIDE_MODULUS, _WIDE = np.log(1000.0), np.log(4.0)
-#: So many tiles up or down the largest radius of a curve is searched.
+#: Number of tiles, up or down, in the search for the largest radius of a curve.
 _FAR = 16
-#: A ring may take so many times as much from the depth as the edge of JKR.
+#: Largest ratio of the pull of a ring on the depth to that of the edge of JKR.
 _MORE = 1.5
 
 
@@ -34,7 +35,7 @@ def _width(name: str) -> float:
 
 
 def _slopes(values: np.ndarray) -> np.ndarray:
-    """Derivatives of functions (..., L) at the points of a lattice, by differences: of fourth order, at its ends of
+    """Derivatives of functions (..., L) at the points of a lattice, by differences of fourth order, at its ends of
     second order."""
     slopes = np.gradient(values, STEP, axis=-1, edge_order=2)
     near, far = values[..., 3:-1] - values[..., 1:-3], values[..., 4:] - values[..., :-4]
@@ -43,8 +44,8 @@ def _slopes(values: np.ndarray) -> np.ndarray:
 
 
 class TermTable:
-    """The logarithms of the terms of a model and their slopes, on tiles that are solved on demand. Not for several
-    threads."""
+    """The logarithms of the terms of a model and their slopes, on tiles that are solved on demand. Only one thread may
+    use a table."""
 
     def __init__(self, model: CurveModel):
         self.model, self.terms = model, Terms.of(model)
@@ -57,14 +58,14 @@ class TermTable:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The unknown inputs of which :meth:`rows` have derivatives."""
+        """The unknown inputs by which :meth:`rows` has derivatives."""
         return self.model.unknowns if self.rings else self.axes
 
     def by(self, name: str, values: dict) -> np.ndarray:
         """Derivatives (4,) or (4, B, 1) of the logarithms of the terms by the coordinate of an input, that are not in
         :meth:`rows`."""
         factors = self.terms.by(name, values)
-        if name in ANGLES and name not in self.model.unknowns:  # by its logarithm, not that of its tangent
+        if name in ANGLES and name not in self.model.unknowns:  # by the logarithm of the angle, not of its tangent
             angle = np.radians(self.model.value(name))
             factors = factors * (2 * angle / np.sin(2 * angle))
         if self.rings:
@@ -88,11 +89,11 @@ class TermTable:
 
     def rows(self, values: dict, deepest: np.ndarray, moved: bool = False) -> np.ndarray:
         """Rows (1 + names + moved, B, 8, LENGTH) of B curves: the logarithms of the terms, with their factors, and
-        slopes; without what :meth:`by` has, their derivatives by the coordinates of the unknown inputs `names`, and by
-        the inputs `moved`.
+        slopes; then their derivatives, without those of :meth:`by`, by the coordinates of the unknown inputs `names`,
+        and by the inputs `moved`.
 
         values : unknown input -> (B, 1)
-        deepest : (B,) in m; the lattice reaches beyond it
+        deepest : largest depth in m, (B,); the lattice extends past it
         """
         both = np.column_stack([*(value[:, 0] for value in values.values()), deepest])
         _, first, same = np.unique(both, axis=0, return_index=True, return_inverse=True)
@@ -100,7 +101,7 @@ class TermTable:
         return self._rows(alone, deepest[first], moved)[:, same.ravel()]
 
     def _rows(self, values: dict, deepest: np.ndarray, moved: bool) -> np.ndarray:
-        """`rows` of curves of which no two are the same."""
+        """`rows` for curves that all differ."""
         B = len(deepest)
         c = np.array([self.model.coordinate(name, values[name])[:, 0] for name in self.axes]).reshape(-1, B).T
         position = self.lattice.position(c)
@@ -121,7 +122,11 @@ class TermTable:
     def _with_rings(
         self, rings: RingTable, whole: np.ndarray, values: dict, position: Position, first: np.ndarray, moved: bool
     ) -> np.ndarray:
-        """Rows with the pulls of rings, from those `whole` of the table, whose lattice begins at the tiles `first`."""
+        """Rows with the pulls of rings.
+
+        whole : rows of the table
+        first : first tile of the lattice of each curve
+        """
         x = WIDE * first[:, None] + STEP * np.arange(whole.shape[3])
         pulls, others = rings.pulls(values, position, first, x, moved)
         names = (*self.names, *(self.model.moved if moved else ()))
@@ -136,7 +141,8 @@ class TermTable:
         return rows
 
     def _last(self, position: Position, factors: np.ndarray, deepest: np.ndarray) -> np.ndarray:
-        """The tile (B,) in which each curve reaches its largest depth: at its end the depth is larger and rises."""
+        """The tile (B,) in which each curve reaches its largest depth. At the end of the tile the depth is larger, and
+        rises."""
         last = np.floor(np.log(np.maximum(np.sqrt(deepest / self._depth()), 1e-9)) / WIDE).astype(int)
         up, down = np.ones(len(last), bool), np.ones(len(last), bool)
         for step in range(2 * _FAR):
@@ -148,15 +154,15 @@ class TermTable:
             f = np.exp(rows[:, :4] + factors[left])
             f[:, 3] *= _MORE if self.rings else 1.0
             depth, slope = f[:, 1] - f[:, 3], f[:, 1] * rows[:, 5] - f[:, 3] * rows[:, 7]
-            beyond = (depth > deepest[left]) & (slope > 0)
+            is_past_depth = (depth > deepest[left]) & (slope > 0)
             if step < _FAR:
-                on = ~beyond & np.isfinite(depth)
+                on = ~is_past_depth & np.isfinite(depth)
                 last[left[on]] += 1
                 up[left[~on]] = False
-                down[left[on]] = False  # it was looked for from below
+                down[left[on]] = False  # the search came from below
             else:
-                last[left[beyond]] -= 1
-                down[left[~beyond]] = False
+                last[left[is_past_depth]] -= 1
+                down[left[~is_past_depth]] = False
         return last
 
     def _depth(self) -> float:

@@ -1,10 +1,10 @@
 """The four terms of a contact with adhesion: powers of inputs times functions of the radius and of the other inputs.
 
 P = P₀ - pull_P and D = D₀ - pull_D, :mod:`solver.smooth.adhesion.curve_terms`. P₀ and pull_P have the modulus E of
-the touched body as a factor. Under :mod:`~solver.smooth.adhesion.jkr` both pulls go with the root of w/E, and
-under a paraboloid or a cone lengths act through a/h alone. So w and k_machine are no coordinates of a table, and often
-E, h, R and half_angle are not. Of :mod:`~solver.smooth.adhesion.maugis` the terms are those of JKR here; its pulls
-follow from a :class:`.ring_table.RingTable`.
+the touched body as a factor. With :mod:`~solver.smooth.adhesion.jkr` both pulls are proportional to the root of w/E,
+and under a paraboloid or a cone lengths act only through a/h. So w and k_machine are not coordinates of a table, and
+often E, h, R and half_angle are not either. For :mod:`~solver.smooth.adhesion.maugis` the terms here are those of JKR;
+its pulls follow from a :class:`.ring_table.RingTable`.
 """
 
 from typing import Any, NamedTuple
@@ -19,7 +19,7 @@ from ....inputs.scene.scales import with_unit
 from ....inputs.scene.scene import Scene
 from ..model import CurveModel, is_ratio
 
-#: Powers of E, w, of the length that is the unit of a, and of R in P₀, D₀, pull_P and pull_D.
+#: Powers of E, w, the unit of a, R and the cotangent in P₀, D₀, pull_P and pull_D.
 _USUAL = {"E": (1, 0, 0.5, -0.5), "w": (0, 0, 0.5, 0.5)}
 _USUAL |= dict.fromkeys(("length", "R", "cotangent"), (0, 0, 0, 0))
 _SIMILAR = {"length": (3, 2, 1.5, 0.5), "R": (-1, -1, 0, 0)}
@@ -29,22 +29,22 @@ _DMT = {"E": (1, 0, 0, 0), "w": (0, 0, 1, 0)}
 _DMT_SIMILAR = {"length": (3, 2, 0, 0), "R": (-1, -1, 1, 0)}
 #: SI powers of the modulus and of R in these terms.
 _OF_PARTS = ((1, 2), (0, 1), (1, 2), (0, 1))
-#: In place of the logarithm of 0, such as of pull_D under "dmt".
+#: Stands for the logarithm of 0, such as that of pull_D with "dmt".
 _NOTHING = -700.0
-#: By how much inputs are moved for derivatives by their logarithms (ratios: by themselves).
+#: Relative change of inputs for derivatives by their logarithms (ratios: change of the ratio).
 _MOVE = 1e-5
 
 
 def is_modulus(name: str) -> bool:
-    """Whether an input is a Young's modulus, of any body or layer."""
+    """Whether an input is the Young's modulus of a body or layer."""
     return name.rpartition(".")[2].startswith("E")
 
 
 class Terms(NamedTuple):
-    """How the terms of a model depend on its inputs.
+    """The dependence of the terms of a model on its inputs.
 
     powers : name of a factor, "E", "w", "length", "R", "cotangent" -> its power (4,) in each term
-    axes : unknown inputs on which they depend besides these factors
+    axes : unknown inputs on which the terms depend besides these factors
     length : the input that is the unit of the radius: "h" or "R"
     """
 
@@ -73,7 +73,7 @@ class Terms(NamedTuple):
         return cls(model, {name: np.array(row, float) for name, row in powers.items()}, axes, length)
 
     def factors(self, values: dict[str, Any]) -> np.ndarray:
-        """The logarithm (4, ...) of the factors, for values (...) of inputs in SI."""
+        """The logarithm (4, ...) of the product of the factors, for values (...) of inputs in SI."""
         every = self.model.scene.values | {"R": self.model.scene.R} | values
         numbers = {"E": self.model.touched(values), "w": every["w_adhesion"], "length": every[self.length]}
         numbers["R"] = every["R"]
@@ -107,9 +107,12 @@ class Terms(NamedTuple):
         return changed, names
 
     def logarithms(self, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:
-        """The logarithms of the terms without their factors, and their slopes by x, (8, C, m), at the radii x (m,) of
-        contacts with values (C,) of inputs: x is the logarithm of the radius over the length, or what the solver takes
-        for shapes that end or are flat around the axis."""
+        """The logarithms of the terms without their factors, and their slopes by x, (8, C, m), for values (C,) of
+        inputs.
+
+        x : (m,), logarithm of the radius over the length, or the solver's variable for shapes that end or are flat
+            around the axis
+        """
         count = len(next(iter(values.values()), np.zeros(1)))
         changed, names = self.numbers(values)
         names |= {"adhesion": "jkr"} if names.get("adhesion") == "maugis" else {}
@@ -127,10 +130,12 @@ class Terms(NamedTuple):
         return out
 
     def moved(self, name: str, values: dict[str, np.ndarray], x: np.ndarray, still: np.ndarray) -> np.ndarray:
-        """Derivatives of `logarithms`, which are `still` (8, C, m), by the logarithm of an input that is not unknown;
-        by a ratio itself."""
+        """Derivatives of `logarithms` by the logarithm of an input that is not unknown (by a Poisson ratio itself).
+
+        still : (8, C, m), the logarithms without a change of the input
+        """
         if name in ("k_machine", "w_adhesion", "sigma0", "z0"):
             return 0 * still
         value = np.full(still.shape[1], self.model.value(name))
-        by = _MOVE * (-1.0 if is_ratio(name) else value)  # a ratio of 0.5 does not rise
+        by = _MOVE * (-1.0 if is_ratio(name) else value)  # a ratio of 0.5 must not rise
         return (self.logarithms(values | {name: value + by}, x) - still) / (-_MOVE if is_ratio(name) else _MOVE)

@@ -1,8 +1,8 @@
-"""A fixed lattice of tiles, made where a table needs them: polynomials through Chebyshev points.
+"""A fixed lattice of tiles, computed where a table needs them: polynomials through Chebyshev points.
 
 The first coordinate of a table is its abscissa, a logarithm, along which a tile has evenly spaced points. Along the
-others, the coordinates of unknown inputs, it has Chebyshev points. The lattice is fixed, so that the numbers of a curve
-do not depend on which other curves there are.
+other coordinates, those of unknown inputs, it has Chebyshev points. The lattice is fixed, so that the numbers of a
+curve do not depend on other curves.
 """
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ WIDE, WIDE_RATIO = np.log(16.0), 0.25
 
 
 class Chebyshev:
-    """Polynomials through so many Chebyshev points of the first kind, `t`."""
+    """Polynomials through Chebyshev points `t` of the first kind."""
 
     def __init__(self, points: int):
         angles = np.pi * (np.arange(points) + 0.5) / points
@@ -37,10 +37,10 @@ Tile = Callable[[tuple[int, ...], bool], np.ndarray]
 
 
 class Position(NamedTuple):
-    """Where B curves lie among the tiles.
+    """The places of B curves among the tiles.
 
-    numbers : (B, axes), of the tile along each coordinate of the unknown inputs
-    weights : (1 + axes, B, C), of the C points of that tile: for a value, and for its derivative by each coordinate
+    numbers : (B, axes), number of the tile along each coordinate of the unknown inputs
+    weights : (1 + axes, B, C), weights of the C points of that tile, for a value and its derivative by each coordinate
     """
 
     numbers: np.ndarray
@@ -52,15 +52,15 @@ class Position(NamedTuple):
 
 
 class Lattice:
-    """The tiles of one table. Not for several threads.
+    """The tiles of one table. Only one thread may use a lattice.
 
     axes, wide : Chebyshev points and width of a tile along each coordinate of the unknown inputs
-    parts, points : functions that are tabulated, and points of a tile along the abscissa
+    parts, points : number of tabulated functions, and of points of a tile along the abscissa
 
-    The table makes the tiles. The argument `tile` of the methods is its function of a place, whole numbers along the
-    abscissa and each coordinate, and of `moved`; it returns the tile there, (rows, parts, points, C). One row has the
-    values. With `moved` each row has their derivatives by one of the inputs that are moved. The lattice does not keep
-    the function, which belongs to the table: so the tiles are freed as soon as the table is.
+    The table computes the tiles. The argument `tile` of the methods is its function of a place, whole numbers along the
+    abscissa and each coordinate, and of `moved`. It returns the tile, (rows, parts, points, C). A single row has the
+    values. With `moved` each row has their derivatives by one of the moved inputs. The lattice does not keep the
+    function, which belongs to the table: so the tiles are freed as soon as the table is.
     """
 
     def __init__(self, axes: list[Chebyshev], wide: list[float], parts: int, points: int):
@@ -88,13 +88,13 @@ class Lattice:
         key, weights = np.column_stack([first, position.numbers]), position.weights
         rows = np.empty((len(weights) + moved, len(key), self.parts, count * self.points))
         for place in map(tuple, np.unique(key, axis=0).tolist()):
-            here = np.flatnonzero((key == place).all(axis=1))
-            # einsum, not BLAS: the sums of a curve do not depend on how many others stand here
+            curves = np.flatnonzero((key == place).all(axis=1))
+            # einsum, not BLAS: the sums of a curve must not depend on the number of other curves
             values = self._stack(tile, place, count, False)[0]
-            rows[: len(weights), here] = np.einsum("wbc,ilc->wbil", weights[:, here], values)
+            rows[: len(weights), curves] = np.einsum("wbc,ilc->wbil", weights[:, curves], values)
             if moved:
                 changes = self._stack(tile, place, count, True)
-                rows[len(weights) :, here] = np.einsum("bc,kilc->kbil", weights[0, here], changes)
+                rows[len(weights) :, curves] = np.einsum("bc,kilc->kbil", weights[0, curves], changes)
         return rows
 
     def made(self, tile: Tile, place: tuple[int, ...], moved: bool = False) -> np.ndarray:
@@ -104,7 +104,7 @@ class Lattice:
         return self.tiles[moved, *place]
 
     def _stack(self, tile: Tile, place: tuple[int, ...], count: int, moved: bool) -> np.ndarray:
-        """Tiles one after another along the abscissa."""
+        """Consecutive tiles along the abscissa."""
         key = (moved, count, *place)
         if key not in self.stacks:
             tiles = [self.made(tile, (place[0] + k, *place[1:]), moved) for k in range(count)]

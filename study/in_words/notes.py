@@ -20,7 +20,7 @@ from ..arrays import xarray_later as xr
 from ..data.contacts import Contacts
 from ..inputs.definition import StudyError
 from ..inputs.lexicon import lexicon_in
-from ..inputs.punch.asperities import USED
+from ..inputs.punch.micro_laws import USED
 from ..inputs.vocabulary import names
 from ..rules.rule import of_cases
 from ..specimen.quantities import readable

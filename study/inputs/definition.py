@@ -10,7 +10,7 @@ from solver.bases import may_be_layered
 from ..specimen.foreign import plain
 from ..terminal import counted, shown
 from .grid import Grid, along
-from .punch.asperities import many_bodies
+from .punch.micro_laws import many_bodies
 from .request import MOST_MESSAGES
 from .vocabulary import finite, names
 

@@ -19,8 +19,7 @@ from .checks import (
 )
 from .grid import Grid, as_array, equal_values
 from .lexicon import Lexicon
-from .punch import asperities, shapes, sticking, tables
-from .punch.laws import fitted, wants_a_fit
+from .punch import micro_laws, shapes, sticking
 from .request import Input, Request
 from .sample import sampled, values_of_axis
 from .scene.scene import INFINITE
@@ -163,15 +162,15 @@ class Draft:
     def finish(self) -> Grid:
         """The grid, after the checks of several parameters together. Fits B and beta where they are left out."""
         grid = self._grid()
-        if not self.errors and wants_a_fit(grid):
-            laws, errors = fitted(grid)
+        if not self.errors and micro_laws.wants_a_fit(grid):
+            laws, errors = micro_laws.fitted(grid)
             self.values |= laws
             self.errors += errors
             grid = replace(self._grid(), fitted=True)
         if not self.errors:
             self.errors += missing_in_cases(grid) + picard_for_nothing(grid) + heights_that_yield(grid)
-            self.errors += asperities.mistakes(grid, self.request.sections)
-            self.errors += tables.mistakes(grid, self.request.physical)
+            self.errors += micro_laws.mistakes_of_choice(grid, self.request.sections)
+            self.errors += micro_laws.mistakes_of_tables(grid, self.request.physical)
             self.errors += [] if self.request.physical else mixed_units(grid)
             self.errors += shapes.mistakes(grid, self.request.sections, self.request.physical)
             self.errors += sticking.mistakes(grid, self.request.sections)

@@ -20,8 +20,7 @@ from ..terminal import on_one_line, shown
 from .definition import LARGE, MOST_VALUES, Definition, StudyError, refusal, settings, usual_block
 from .draft import Draft
 from .identity import digest_of, law_versions
-from .punch import asperities, sticking
-from .punch.laws import results_of
+from .punch import micro_laws, sticking
 from .punch.stresses import none_in
 from .request import MOST_MESSAGES, Request
 from .scene.stacks import axes_in, in_layers
@@ -110,9 +109,9 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
-    some_feel = not errors and bool(asperities.felt(grid).any())
+    some_feel = not errors and bool(micro_laws.felt(grid).any())
     micro = grid.values["micro"][1] if "micro" in grid.values else ()
-    results = results_of(grid.lexicon.known.laws, micro, "w_adhesion" in grid.values, some_feel)
+    results = micro_laws.results_of(grid.lexicon.known.laws, micro, "w_adhesion" in grid.values, some_feel)
     stresses += names("spot_stress") if stresses and some_feel else ()
     definition = Definition(
         *(name, title, text, grid, x, profiles, dtype, block, ""),
@@ -120,7 +119,7 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
         results=results,
         inputs=inputs,
         stresses=stresses,
-        says_what_is_felt=not errors and asperities.is_said(grid),
+        says_what_is_felt=not errors and micro_laws.is_said(grid),
     )
     if (numbers := definition.numbers) > most:
         limit = f"at most {most:.0e} (fewer points, or profiles = false)"

@@ -252,8 +252,9 @@ def test_only_blocks_and_dataset_and_tables_know_the_solver():
     """The seam between solver and study stays narrow: the vocabulary knows the table of parameters alone."""
     users = {path.stem: {full for full in imported(path) if full.split(".")[0] == "solver"} for path in STUDY}
     assert users["vocabulary"] == {"solver.parameters"}
-    own = {"solver.parameters", "solver.laws", "solver.laws.power_law_fit"}
-    assert users["laws"] == own, "those of the words of a study, and fits"
+    own = {"solver.bases", "solver.laws", "solver.laws.own_table", "solver.laws.power_law_fit"}
+    own |= {"solver.parameters", "solver.problem"}
+    assert users["micro_laws"] == own, "those of the words of a study, fits, and what asperities press on"
     assert not any(users[name] for name in ("grid", "request", "draft", "run", "api", "units", "progress"))
 
 

@@ -15,8 +15,7 @@ from solver.bases import named
 from solver.shapes import PARABOLOID
 from solver.smooth.adhesion.curve_terms import curve_terms
 
-from ....inputs.scene.scales import with_unit
-from ....inputs.scene.scene import Scene
+from ....inputs.scene.scene import Scene, with_unit
 from ..model import CurveModel, is_ratio
 
 #: Powers of E, w, of the length that is the unit of a, and of R in P₀, D₀, pull_P and pull_D.

@@ -1,5 +1,9 @@
-"""Selection by texts with units: `sel(h="3 um")` along a dimension of SI numbers."""
+"""Coordinates of results: selection by texts with units, `sel(h="3 um")`, along a dimension of SI numbers; and those of
+DataArrays that are inputs, such as who measured a load."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -8,6 +12,8 @@ from xarray.indexes import PandasIndex
 
 from ..inputs.lexicon import default, lexicon_in
 from ..inputs.scene.scene import si
+from ..inputs.vocabulary import BODIES
+from ..specimen.foreign import plain
 from ..specimen.quantities import has_unit
 
 
@@ -61,3 +67,46 @@ def searchable(dataset: xr.Dataset) -> xr.Dataset:
         if variable.dims == (name,) and name in rows and isinstance(unit, str) and unit == rows[name].unit != "1":
             dataset = dataset.drop_indexes(name, errors="ignore").set_xindex(name, UnitIndex)
     return dataset
+
+
+def with_coordinates(dataset: xr.Dataset, parameters: dict) -> tuple[xr.Dataset, list[str]]:
+    """The results with the coordinates of the DataArrays among the parameters, and messages about those left out.
+
+    A coordinate is left out if the results have its name, or if two parameters differ in it. The levels of a MultiIndex
+    become coordinates along its dimension, which netCDF can hold; `set_xindex` makes an index of them.
+    """
+    arrays = {name: plain(value) for name, value in parameters.items() if hasattr(value, "dims")}
+    arrays = {name: array for name, array in arrays.items() if len(getattr(array, "coords", ()))}
+    kept, owners, reasons, ours = {}, {}, {}, {*lexicon_in(dataset).all_rows, *BODIES}
+    stacked = {dim for array in arrays.values() for dim, index in array.indexes.items() if _is_stacked(dim, index)}
+    for owner, name, variable in _candidates(arrays, stacked):
+        if name.removesuffix("_spread") in ours or name in dataset.variables:
+            if "long_name" not in variable.attrs:  # else it is of earlier results
+                reasons[name] = f"{name} of {owner}: the results have something else of this name, rename it"
+        elif name not in kept:
+            kept[name], owners[name] = variable, owner
+        elif not kept[name].equals(variable):
+            reasons[name] = f"{name}: {owners[name]} and {owner} have other values of it"
+    kept = {name: variable for name, variable in kept.items() if name not in reasons}
+    dataset = dataset.drop_vars(stacked, errors="ignore") if stacked else dataset
+    dataset = dataset.assign_coords(kept) if kept else dataset
+    for name in kept:
+        dataset.variables[name].encoding["_FillValue"] = None  # CF wants none of coordinates
+    for array in arrays.values():
+        for dim in {*array.dims} & {*array.coords} - stacked - ours:
+            dataset[dim].attrs |= array[dim].attrs
+    return dataset, [f"a coordinate is left out, {text}" for text in reasons.values()]
+
+
+def _candidates(arrays: dict[str, xr.DataArray], stacked: set) -> Iterator[tuple[str, str, xr.Variable]]:
+    """(parameter, name, values) of each coordinate that is not that of a dimension, without its encoding."""
+    for owner, array in arrays.items():
+        for name, coordinate in array.coords.items():
+            if name not in array.dims and name not in stacked:
+                data = coordinate.data if isinstance(coordinate.data, np.ndarray) else np.asarray(coordinate.values)
+                yield owner, str(name), xr.Variable(coordinate.dims, data, coordinate.attrs)
+
+
+def _is_stacked(dim: str, index) -> bool:
+    """Whether the index along a dimension is a MultiIndex, and not one of its levels."""
+    return hasattr(index, "levels") and index.name == dim

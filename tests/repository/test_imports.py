@@ -255,7 +255,7 @@ def test_only_blocks_and_dataset_and_tables_know_the_solver():
     own = {"solver.bases", "solver.laws", "solver.laws.own_table", "solver.laws.power_law_fit"}
     own |= {"solver.parameters", "solver.problem"}
     assert users["micro_laws"] == own, "those of the words of a study, fits, and what asperities press on"
-    assert not any(users[name] for name in ("grid", "request", "draft", "run", "api", "units", "progress"))
+    assert not any(users[name] for name in ("grid", "request", "run", "api", "units", "progress"))
 
 
 def alone(script: str) -> None:
@@ -270,7 +270,7 @@ NOT_HEAVY = "assert not {'xarray', 'dask', 'netCDF4', 'matplotlib'} & set(sys.mo
 def test_light_modules_stay_light():
     """Complaints about a study file come at once, and worker processes, which import `processes`, start soon."""
     light = (
-        *("inputs.vocabulary", "inputs.grid", "inputs.draft", "inputs.reading", "commands.arguments"),
+        *("inputs.vocabulary", "inputs.grid", "inputs.definition", "inputs.reading", "commands.arguments"),
         "work.processes",
     )
     alone("; ".join(f"import study.{module}; {NOT_HEAVY}" for module in (*light, "specimen.materials")))

@@ -6,37 +6,17 @@ from typing import Any
 import numpy as np
 
 from solver.bases import on_springs
-from solver.parameters import Parameter, one_of
+from solver.parameters import one_of
 
 from ...specimen.quantities import readable
 from ...terminal import shown
 from ..grid import Grid, along
-from ..lexicon import Lexicon
-from ..vocabulary import finite, names
+from ..vocabulary import names
 
 OF_ADHESION = names("adhesion")
-#: Bounds of load and depth under adhesion.
-_PULLED = "[-1000, 1000]"
 #: The asperities pull with at most 1.5 π w Ra on each summit: their adhesion is taken for negligible where that makes
 #: less than this part of the mean pressure.
 _NEGLIGIBLE = 0.01
-
-
-def row_of(name: str, sections: Any, lexicon: Lexicon) -> Parameter:
-    """The row of a parameter in a call that gives `sections`: under adhesion load and depth may be 0 and negative."""
-    row = lexicon.parameter(name)
-    return row._replace(interval=_PULLED) if name in ("P", "D") and "w_adhesion" in sections else row
-
-
-def hint(name: str, value: Any, sections: Any) -> str:
-    """The end of a message about a load or depth that only a punch that sticks has; "" for others."""
-    pulls = name in ("P", "D") and "w_adhesion" not in sections and finite(value) and value <= 0
-    return "; a pull needs w_adhesion, the work of adhesion" * pulls
-
-
-def left_out(name: str, sections: Any) -> bool:
-    """Whether a parameter of adhesion stays out of a grid: no work of adhesion is given."""
-    return name in OF_ADHESION and "w_adhesion" not in sections
 
 
 def adhesive(grid: Grid) -> np.ndarray:

@@ -20,13 +20,11 @@ from solver.shapes import PARABOLOID
 from ...arrays import xarray_later as xr
 from ...specimen.quantities import READABLE, multiple, quantity, readable, unit_in
 from ...terminal import on_one_line
-from ..checks import equal_cases
-from ..draft import Draft
+from ..checks import equal_cases, fill_in
 from ..grid import equal_values
 from ..punch.micro_laws import laws_in_metres
 from ..punch.shapes import LENGTHS, MICROMETRE, in_metres, radius_needed
-from ..punch.sticking import hint, row_of
-from ..request import NEEDS_NAMES, Input, Request
+from ..request import NEEDS_NAMES, Input, Request, pull_hint, row_of
 from ..vocabulary import SCENE, allowed, bodies_of
 from .bodies import assumed, correlate, layered, none_alike, with_materials
 from .scene import Scene, dim_of, is_ratio, make_dimensionless, si, with_unit
@@ -44,10 +42,10 @@ Place = dict[str, int]
 _RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
 
-def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scene:
-    """The physical scene that inputs describe. The dimensionless parameters go to the draft.
+def read(request: Request, spreads: bool, axes: list[str]) -> Scene:
+    """The physical scene that inputs describe. The dimensionless parameters become values of the request.
 
-    Mistakes become messages of the draft: no unit, a unit of something else, a missing R or modulus.
+    Mistakes become messages of the request: no unit, a unit of something else, a missing R or modulus.
 
     spreads : whether the results shall have spreads
     axes : dimensions in the order that they shall have, behind `case`
@@ -61,29 +59,29 @@ def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scen
     inputs = {n: replace(entry, dims=tuple(in_si.get(dim, dim) for dim in entry.dims)) for n, entry in inputs.items()}
     for entry in inputs.values():
         if not entry.is_wrong:
-            _read(scene, draft, entry)
+            _read(scene, request, entry)
     scene.lexicon = request.lexicon  # with the laws and tables that have been read
     errors += [f"same_piece: {NEEDS_NAMES}"] * (request.same_piece and not errors and none_alike(scene.names))
-    errors += missing(request, draft.values)
+    errors += missing(request, request.values)
     hint = f" ({request.sign} makes this a study with units)"
     errors[before:] = [f"{message}{hint * ('has no unit' in message)}" for message in errors[before:]]
     labels = {name: np.array(texts) for name, (dim, texts) in scene.names.items() if dim == name}
     axes_in_si = [name for name in scene.values if dim_of(name, scene.lexicon) == name]
-    draft.check(labels | {name: np.asarray(scene.values[name]) for name in axes_in_si})
+    fill_in(request, labels | {name: np.asarray(scene.values[name]) for name in axes_in_si})
     errors += [] if errors else impossible(scene) + (same_cases(scene) if request.rows else [])
     if errors:
         return scene
     names = {*request.sections, *inputs}
     _measure(scene)
-    scene.assumed = assumed(names, draft.values, scene.values)
+    scene.assumed = assumed(names, request.values, scene.values)
     correlate(scene, request.correlations, errors)
     if not spreads:
         scene.spreads = scene.correlations = {}
     make_dimensionless(scene)
     errors += moving_tables(scene) + beyond_bounds(scene, inputs)
-    draft.sizes |= scene.sizes(axes)
+    request.sizes |= scene.sizes(axes)
     if not errors:  # each has been checked, with its unit or without
-        draft.values |= {name: (getattr(v, "dims", ()), np.asarray(v)) for name, v in scene.parameters.items()}
+        request.values |= {name: (getattr(v, "dims", ()), np.asarray(v)) for name, v in scene.parameters.items()}
     return scene
 
 
@@ -94,19 +92,19 @@ def _measure(scene: Scene) -> None:
     scene.metres = in_metres(scene.parameters.get("shape", ""), scene.lexicon)
 
 
-def _read(scene: Scene, draft: Draft, entry: Input) -> None:
+def _read(scene: Scene, request: Request, entry: Input) -> None:
     """Put the numbers of an input into the scene."""
-    name, before = entry.name, len(draft.errors)
+    name, before = entry.name, len(request.errors)
     has_unit = name in SCENE or name in _LIMITS or scene.lexicon.rows[name].powers != (0, 0)
     if has_unit or is_ratio(name) or entry.has_unit:
         try:
             _add(scene, entry)
         except ValueError as error:
-            draft.errors.append(f"{error}{_material(entry)}")
+            request.errors.append(f"{error}{_material(entry)}")
         return
-    draft.read(entry)
-    if len(draft.errors) == before:
-        dims, array = draft.values[name]
+    request.read(entry)
+    if len(request.errors) == before:
+        dims, array = request.values[name]
         scene.parameters[name] = xr.DataArray(array, dims=dims) if dims else array.item()
 
 
@@ -333,7 +331,7 @@ def _message(scene: Scene, entry: Input, place: Place) -> str:
     units = ((modulus, readable(unit, "Pa")), ("R", readable(R, "m")))
     here = " and ".join(f"{symbol} = {text}" for symbol, text in units if symbol in scale)
     bounds = f"{allowed(parameter._replace(interval=interval))} {word}, which is {parameter.interval} {scale}, {here}"
-    return f"{label} = {on_one_line(str(text))}: {bounds}{hint(name, _at(value, place), scene.values)}"
+    return f"{label} = {on_one_line(str(text))}: {bounds}{pull_hint(name, _at(value, place), scene.values)}"
 
 
 def _written(entry: Input, index: list[int], value: float, unit: str) -> tuple[Any, str, float]:

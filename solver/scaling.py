@@ -52,6 +52,16 @@ def dimensionless(problem):
     return replace(problem, value=value, parameters=problem.parameters | numbers)
 
 
+def dimensionless_pair(problem, solution):
+    """The problem in units R = E2* = 1, and its solution with radius, load and depth in these units."""
+    controls = {
+        name: getattr(solution, name) / (problem.E2**of_E2 * problem.R**of_R)
+        for name, (of_E2, of_R) in _UNITS.items()
+        if name in CONTROL
+    }
+    return dimensionless(problem), replace(solution, **controls)
+
+
 def without_units(problem):
     """Whether R and E2* are 1 in all cases, so that nothing need be divided or multiplied by them."""
     return bool((problem.R == 1).all() and (problem.E2 == 1).all())

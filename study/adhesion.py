@@ -9,8 +9,7 @@ from solver.bases import named
 from solver.body import BODIES
 from solver.scaling import dimensionless, with_rigid_punch
 
-from .inputs.definition import StudyError
-from .inputs.reading import from_call
+from .inputs.definition import StudyError, from_call
 from .specimen.heights.form import without_form
 from .specimen.scan import Scan
 

@@ -11,16 +11,14 @@ from typing import Any, TextIO, Unpack
 import numpy as np
 
 from .arrays import xarray_later as xr
-from .data.coordinates import with_coordinates
 from .data.dataset import DatasetParts, OneCase, labelled, parts, status_attributes
 from .data.si import dataset_in_units, in_units
 from .derivatives import sensitivities as derivatives_of
 from .in_words import FarOutside, beside_rules, doubts, far_outside
 from .inputs.checks import unloading
-from .inputs.definition import POINTS, Definition, StudyError
+from .inputs.definition import POINTS, Definition, StudyError, from_call
 from .inputs.lexicon import PACKAGE
 from .inputs.punch.stresses import none_in
-from .inputs.reading import from_call
 from .inputs.scene.hints import Parameters
 from .inputs.vocabulary import NOT_RUN, VOCABULARY
 from .specimen.foreign import plain
@@ -157,7 +155,7 @@ def solve(
         from .lazy import lazily  # imported here, since dask arrays take a while
 
         dataset = lazily(definition, plain(chunks), "study.solve")
-    dataset, left_out = with_coordinates(dataset, parameters)
+    dataset, left_out = _with_coordinates(dataset, parameters)
     for text in left_out:
         warnings.warn(text, stacklevel=2)
     if chunks is None:
@@ -183,10 +181,19 @@ def unsolved(who: str, parameters: dict[str, Any]) -> xr.Dataset:
     definition = from_call(call, [], options["same_piece"], tables, options["correlations"], who)
     unsolved_parts = labelled(definition, {"status": np.full(definition.grid.size, NOT_RUN, np.int8)}, "study.solve")
     unsolved_parts.variables["status"].attrs |= status_attributes()
-    contacts, _ = with_coordinates(
+    contacts, _ = _with_coordinates(
         dataset_in_units(definition, in_units(definition, unsolved_parts.settings_as_attributes())), call
     )
     return contacts
+
+
+def _with_coordinates(dataset: xr.Dataset, parameters: dict[str, Any]) -> tuple[xr.Dataset, list[str]]:
+    """The dataset with the coordinates of the DataArrays among the parameters, and messages about those left out."""
+    if not any(hasattr(value, "dims") for value in parameters.values()):
+        return dataset, []
+    from .data.coordinates import with_coordinates  # here: it imports xarray, which whoever has a DataArray has
+
+    return with_coordinates(dataset, parameters)
 
 
 def _stream(workers: Any, progress: Any, chunks: Any, sensitivities: Any) -> TextIO | None:

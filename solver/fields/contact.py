@@ -12,7 +12,7 @@ from ..layers import numbers_of
 from ..numerics.ladder import STACK
 from ..numerics.threads import one_blas_thread
 from ..rough.answer import answer
-from ..scaling import as_cases, dimensionless
+from ..scaling import as_cases, dimensionless_pair
 from ..sensitivity.same_mesh import meshes, solve_again, stacks
 from ..sensitivity.solved_cases import solved_cases
 from ..shapes import is_flat, shaped
@@ -75,9 +75,8 @@ def of_contacts(problem, solution, r, z, mu=0.0):
     fields = {name: np.full((len(problem), len(z) + 2 * J, len(r)), np.nan) for name in names}
     error, index = np.full(len(problem), np.nan), np.flatnonzero(have_fields(problem, solution))
     if len(index):
-        part, ended = problem.take(index), solution.take(index)
-        scaled, a = dimensionless(part), ended.a / part.R
-        ended = replace(ended, P=ended.P / (part.E2 * part.R**2))
+        scaled, ended = dimensionless_pair(problem.take(index), solution.take(index))
+        a = ended.a
         film = ~is_bare(scaled.base) & (scaled.h / a < THINNEST)
         for rows, pressure, missed in pressures_of(scaled, ended, a):
             here = index[rows]
@@ -120,6 +119,7 @@ def pressures_of(scaled, solution, a, with_errors=True):
     the pressure is that with a number of sublayers. The load then differs from that of the solution, and the stresses
     by about as much.
 
+    scaled, solution, a : in units R = E2* = 1, as :func:`~solver.scaling.dimensionless_pair` gives them
     with_errors : whether the error includes that of profiles, which takes as long as the pressure
     """
     graded = is_graded(scaled)
@@ -132,8 +132,7 @@ def pressures_of(scaled, solution, a, with_errors=True):
         return
     of_basis = by_equation(scaled, "basis")
     with_shape = np.flatnonzero(of_basis)
-    depths = solution.D[with_shape] / scaled.R[with_shape]
-    for rows, pressure, missed in shaped_pressures(scaled.take(with_shape), a[with_shape], depths):
+    for rows, pressure, missed in shaped_pressures(scaled.take(with_shape), a[with_shape], solution.D[with_shape]):
         yield with_shape[rows], pressure, missed + _LEAST
     others = np.flatnonzero(~of_basis)
     for rows, pressure, missed in _of_paraboloids(scaled.take(others), solution.take(others), a[others], with_errors):

@@ -6,7 +6,7 @@ the vocabulary that every call has, :func:`default`.
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -142,9 +142,11 @@ class Known:
 
         Raises
         ------
-        ValueError : a table cannot be used; or something is unknown, and the law of an entry point cannot be loaded
+        ValueError : a table cannot be used; two laws have one name; or something is unknown, and the law of an
+            entry point cannot be loaded
         """
         known, words = self, [law_in(word) for word in _flat(micro)]
+        _refuse_one_name_of_two(word for word in words if isinstance(word, Law))
         for word in words:
             if isinstance(word, str) and word.startswith(own_table.PREFIX) and word not in self.laws:
                 known = known.with_law(own_table.read(word))
@@ -298,6 +300,23 @@ def _declared_by_shapes(known):
                 raise ValueError(f"shape {kind.name}: the parameter {name} is that of something else")
             declared[name] = first, (*words, kind.name)
     return {name: row._replace(needed_by=("shape", words)) for name, (row, words) in declared.items()}
+
+
+def _refuse_one_name_of_two(given: Iterable[Law]) -> None:
+    """Raise ValueError for two different laws of one name: every case with the name would have the last of them."""
+    by_name: dict[str, Law] = {}
+    for law in given:
+        first = by_name.setdefault(law.name, law)
+        if first is not law and not _are_one(first, law):
+            raise ValueError(f'two micro laws of one call are called "{law.name}": give each a name of its own')
+
+
+def _are_one(law, other):
+    """Whether two objects are one law: tables of the same numbers, or copies, whose functions are the same."""
+    if laws.identity(law) != laws.identity(other):
+        return False
+    same = (getattr(law, field.name) == getattr(other, field.name) for field in fields(law))
+    return law.name.startswith(own_table.PREFIX) or all(same)
 
 
 def _flat(values):

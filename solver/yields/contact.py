@@ -8,7 +8,7 @@ from ..fields.shaped import corners
 from ..fields.stacks.section import Section
 from ..layers import numbers_of
 from ..numerics.threads import one_blas_thread
-from ..scaling import dimensionless
+from ..scaling import dimensionless_pair
 from ..shapes import shaped
 from .extremes import EXTREMES, coarsely, together
 from .loaded import Loaded
@@ -43,8 +43,8 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
     index = np.flatnonzero(have_fields(problem, solution) & ~are_infinite(problem) & below)
     residual = np.broadcast_to(residual, len(problem)) / problem.E2
     if len(index):
-        part, ended = problem.take(index), solution.take(index)
-        scaled, a = dimensionless(part), ended.a / part.R
+        scaled, ended = dimensionless_pair(problem.take(index), solution.take(index))
+        a = ended.a
         sharp = corners(scaled, a)
         for few in _some(scaled, ended, a, mu, residual[index], None if punch is None else punch[index]):
             batches = [loaded for _, loaded in few]

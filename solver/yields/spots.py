@@ -12,7 +12,7 @@ from ..fields.invariants import mises
 from ..kernels.two_layers import layer_modulus
 from ..numerics.quadrature import gauss_legendre
 from ..numerics.threads import one_blas_thread
-from ..scaling import dimensionless
+from ..scaling import dimensionless_pair
 from ..solve import solve
 from ..status import Status
 from .asperities import POINTS, hertz_part
@@ -55,8 +55,9 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0):
     for some, stress in (there & ~felt, _on_half_space), (there & felt & have_fields(problem, solution), _on_body):
         index = np.flatnonzero(some)
         if len(index):
-            part, ended = problem.take(index), solution.take(index)
-            scaled, a = dimensionless(part), ended.a / part.R
+            part = problem.take(index)
+            scaled, ended = dimensionless_pair(part, solution.take(index))
+            a = ended.a
             at_radii = with_elastic_spots(scaled, a, _RADII)
             for rows, pressure, _ in pressures_of(scaled, ended, a):
                 for few, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]]):

@@ -15,8 +15,7 @@ from ..inputs.definition import StudyError
 from ..inputs.lexicon import Lexicon, lexicon_in
 from ..inputs.punch.shapes import MICROMETRE, in_metres
 from ..inputs.punch.stresses import DECIDE, without_stresses
-from ..inputs.scene.scales import make_dimensionless
-from ..inputs.scene.scene import Scene, is_ratio, over
+from ..inputs.scene.scene import Scene, is_ratio, make_dimensionless, over
 from ..inputs.scene.stacks import moduli_of
 from ..inputs.vocabulary import CONTROLS, NUMERICS, SCENE, scene_of
 from ..rules.rule import has_units

@@ -18,8 +18,7 @@ from ..inputs.definition import Definition
 from ..inputs.grid import along, unflatten
 from ..inputs.identity import law_versions
 from ..inputs.lexicon import KNOWN, encoding_of
-from ..inputs.punch.asperities import USED, used
-from ..inputs.punch.laws import COMMENT
+from ..inputs.punch.micro_laws import COMMENT, USED, used
 from ..inputs.scene.scene import bare_variable
 from ..inputs.vocabulary import (
     BY_INPUT,

@@ -21,8 +21,8 @@ from solver.scaling import law_of, of_one_law
 
 from ..arrays import xarray_later as xr
 from ..inputs.lexicon import Lexicon, lexicon_in
-from ..inputs.punch.asperities import USED
-from ..inputs.scene.scales import without_unit
+from ..inputs.punch.micro_laws import USED
+from ..inputs.scene.scene import without_unit
 from ..inputs.vocabulary import CONTROLS, NUMERICS, ROWS, VOCABULARY, attributes
 from ..rules import rule
 from ..rules.assumptions import (  # noqa: F401 - names of study.derived

@@ -34,7 +34,7 @@ def dataset_in_units(definition: Definition, parts: DatasetParts) -> xr.Dataset:
     """The dataset of parts from `in_units`."""
     if not definition.scene or not definition.grid.sizes:  # there is nothing to search along
         return parts.dataset()
-    from .index import searchable
+    from .coordinates import searchable
 
     return searchable(parts.dataset())
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ..inputs.definition import Definition
+from ..inputs.scene.bodies import matrix
 from ..inputs.scene.changes import SCALES, changes_by_spread
-from ..inputs.scene.pieces import matrix
 from ..inputs.scene.scene import over
 from ..inputs.vocabulary import VOCABULARY
 from .dataset import DatasetParts

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import xarray_later as xr
 from ..inputs.lexicon import default, lexicon_in
-from ..inputs.scene.scales import reduced, with_unit
+from ..inputs.scene.scene import reduced, with_unit
 from ..inputs.vocabulary import Entry, no_parameter
 from ..specimen.foreign import plain
 from ..specimen.quantities import READABLE, has_unit, multiple, quantity

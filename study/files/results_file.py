@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 from xarray.conventions import encode_dataset_coordinates
 
+from ..data.coordinates import searchable
 from ..data.dataset import without_fill_values
-from ..data.index import searchable
 from ..inputs.definition import StudyError
 from ..inputs.lexicon import KNOWN, lexicon_in
 from ..terminal import on_one_line

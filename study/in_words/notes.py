@@ -1,30 +1,19 @@
-"""Sentences for special contacts: shapes, adhesion, asperities that feel the layer, spots that unload."""
+"""Sentences about some contacts alone: shapes, adhesion, asperities that feel the layer, spots that unload."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from solver import Status, solve
 from solver.bases import is_bare
 from solver.laws import heights
-from solver.laws.cell.family import MOST, REACH
-from solver.models.law_error import last_fraction, without_family
-from solver.parameters import one_of
-from solver.scaling import dimensionless, law_of
 from solver.shapes import PARABOLOID
 from solver.shapes.cone import KIND, PYRAMIDS
 
 from ..arrays import xarray_later as xr
-from ..data.contacts import Contacts
-from ..inputs.definition import StudyError
 from ..inputs.lexicon import lexicon_in
-from ..inputs.punch.asperities import USED
+from ..inputs.punch.micro_laws import USED
 from ..inputs.vocabulary import names
-from ..rules.rule import of_cases
 from ..specimen.quantities import readable
-from ..terminal import rounded
 from .numbers import in_its_unit
 
 #: Results of pull-off and pull-in that a summary lists, in this order.
@@ -33,24 +22,12 @@ OF_PULL_OFF = tuple(name for name in names("pull_off") if name != "stable")
 _CONES = {KIND.name: None} | {kind.name: float(kind.of(size=1).cot[0]) for kind in PYRAMIDS}
 #: Least correction that is worth a sentence: a smaller one is less than the spread of a material's moduli.
 _SMALL = 0.005
-#: A law that ends below this share of the largest contact fraction ends because the disc cell goes wrong.
-_EARLY = 0.999
-_FAR = f"The pitch of the asperities is above {MOST:g} h: what the layer does to them is not known there"
-_MERGED = (
-    f"The spots cover more than {REACH:g} of the area in the centre, or in a ring, and are no circles any more: the \
-law of asperities on the coated body ends there"
-)
-_HALF_SPACE = 'asperities_on = "half_space" has numbers, of a half-space of the layer\'s material.'
 #: On spheres with random heights, as from a scan: measured on six surfaces (docs/roughness.md, Which law when).
 _SPHERES = (
     "If they come from a scan: spheres touch about two thirds of the area that the scan itself touches, and their pmax "
     "is up to 1.4 times too small, up to 9 times where single points stand out. rc.roughness.law(scan), or "
     "`roughcoat scan FILE --law OUT.csv`, is the law of the scan itself (docs/roughness.md)."
 )
-#: The load is reduced to this share. Pressures that grow by less than _SAME of the largest count as unchanged.
-_LESS, _SAME = 0.9, 1e-6
-#: Radii in a at which the pressure is examined.
-_RADII = np.sin(np.linspace(0, np.pi / 2, 25))
 
 
 def sticks(contacts: xr.Dataset) -> bool:
@@ -159,62 +136,3 @@ def presses_on(case: xr.Dataset) -> str:
     return (
         ", which press on the coated body itself" if felt else ", which press on a half-space of the layer's material"
     )
-
-
-def ended(contacts: xr.Dataset) -> list[str]:
-    """Sentences on contacts at pressures beyond the end of their law of asperities, and the way out."""
-    if "asperities_used" not in contacts:
-        return []
-    outside = (contacts["status"].values == Status.OUTSIDE_LAW) & (
-        contacts["asperities_used"].values == USED.index("layer")
-    )
-    if not outside.any():
-        return []
-    try:
-        problem = Contacts.of(contacts, "summary").problem
-    except StudyError:  # of a mean, say
-        return []
-    index, last = np.flatnonzero(outside), np.full(outside.shape, np.nan)
-    part, far = problem.take(index), np.zeros_like(outside)
-    last.flat[index], far.flat[index] = last_fraction(part), without_family(part)
-    early = outside & ~far & (last < _EARLY * REACH)
-    said = []
-    if early.any():
-        text = f"On a layer this soft the disc cell goes wrong where spots cover more than {rounded(last[early].min())}"
-        said.append(f'{of_cases(early)}{text} of the area: micro = "hex_lattice" goes on to {REACH:g}.')
-    for where, text in ((far, _FAR), (outside & ~far & ~early, _MERGED)):
-        said += [f"{of_cases(where)}{text}; {_HALF_SPACE}"] * bool(where.any())
-    return said
-
-
-def falling(contacts: xr.Dataset) -> list[str]:
-    """A sentence on contacts whose asperities yield, and whose pressure somewhere was larger at 0.9 of the load."""
-    laws = [name for name, law in lexicon_in(contacts).known.laws.items() if law.yielded]
-    yielding = one_of(contacts["micro"].values.astype(str), laws)
-    if not yielding.any():
-        return []
-    try:
-        problems = Contacts.of(contacts, "summary").problem
-    except StudyError:  # of a mean, say
-        return []
-    solved = (contacts["status"].values.ravel() == Status.CONVERGED) & one_of(problems.micro, laws)
-    where, index = np.zeros(len(solved), dtype=bool), np.flatnonzero(solved)
-    if len(index):
-        problem = problems.take(index)
-        now = solve(problem, _RADII)
-        before = solve(replace(problem, control="P", value=_LESS * now.P), _RADII)
-        r = _RADII * (now.a / before.a)[:, None]
-        p, lam = (
-            np.array([np.interp(at, _RADII, values, right=0.0) for at, values in zip(r, profile, strict=True)])
-            for profile in (before.p, before.lam)
-        )
-        yielded = np.empty(len(index))
-        for name in np.unique(problem.micro):
-            some = np.flatnonzero(problem.micro == name)
-            law = law_of(dimensionless(problem.take(some)))
-            yielded[some] = np.ravel(law.law.yielded(*law.own))
-        falls = p > now.p + _SAME * now.p.max(axis=1, keepdims=True)
-        where[index] = (falls & (lam > yielded[:, None])).any(axis=1)
-    text = "The pressure falls somewhere while the load rises: spots that have yielded there unload, and stay flatter \
-than this law has them."
-    return [of_cases(where) + text] * bool(where.any())

@@ -3,26 +3,35 @@ were solved, by which model, under which assumptions, and what the model leaves 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from solver import Status
+from solver import Status, solve
 from solver.bases import is_bare, may_be_layered
 from solver.known import Known
+from solver.laws.cell.family import MOST as MOST_PITCH
+from solver.laws.cell.family import REACH
 from solver.models.estimate import estimate
+from solver.models.law_error import last_fraction, without_family
+from solver.parameters import one_of
+from solver.scaling import dimensionless, law_of
 
 from ..arrays import xarray_later as xr
+from ..data.contacts import Contacts
 from ..data.dataset import flag_words, validity_of_rows
 from ..data.si import ASSUMED
-from ..inputs.definition import Definition
+from ..inputs.definition import Definition, StudyError
 from ..inputs.grid import along, columns
-from ..inputs.lexicon import lexicon_of
+from ..inputs.lexicon import lexicon_in, lexicon_of
+from ..inputs.punch.micro_laws import USED
 from ..inputs.vocabulary import VOCABULARY, bodies_of
 from ..rules import rule
-from ..rules.rule import RULES, broken, have
+from ..rules.rule import RULES, broken, have, of_cases
 from ..terminal import rounded
 from .influence import influence
 from .margins import RUBBER, holds, which_yields
-from .notes import ended, falling, of_adhesion, of_scan, of_shape, presses_on, sticks, unit_of_length
+from .notes import of_adhesion, of_scan, of_shape, presses_on, sticks, unit_of_length
 from .pressures import largest_of_all
 
 #: A contact is far outside the model if it exceeds the limit of an assumption by this factor. The estimate is right to
@@ -51,6 +60,19 @@ WHOSE = " The asperities are the punch's; a rough surface under a polished punch
 surfaces the sum counts (docs/model.md, Elastic punch)."
 SLIDES = 'The layer slides on the body without friction, since bonding is not given. One that is deposited or glued on \
 does not slide, and if it is soft it is then much stiffer: bonding = "bonded".'
+
+#: A law that ends below this share of the largest contact fraction ends because the disc cell goes wrong.
+_EARLY = 0.999
+_WIDE_PITCH = f"The pitch of the asperities is above {MOST_PITCH:g} h: what the layer does to them is not known there"
+_MERGED = (
+    f"The spots cover more than {REACH:g} of the area in the centre, or in a ring, and are no circles any more: the \
+law of asperities on the coated body ends there"
+)
+_HALF_SPACE = 'asperities_on = "half_space" has numbers, of a half-space of the layer\'s material.'
+#: The load is reduced to this share. Pressures that grow by less than _SAME of the largest count as unchanged.
+_LESS, _SAME = 0.9, 1e-6
+#: Radii in a at which the pressure is examined.
+_RADII = np.sin(np.linspace(0, np.pi / 2, 25))
 
 
 class FarOutside(UserWarning):
@@ -97,6 +119,65 @@ def doubts(contact: xr.Dataset) -> list[str]:
 def beside_rules(contact: xr.Dataset) -> list[str]:
     """Sentences on contacts in addition to those of the rules, which cannot solve a contact again."""
     return falling(contact) + ended(contact)
+
+
+def ended(contacts: xr.Dataset) -> list[str]:
+    """Sentences on contacts at pressures that the law of asperities on their bodies does not know, and the way out."""
+    if "asperities_used" not in contacts:
+        return []
+    outside = (contacts["status"].values == Status.OUTSIDE_LAW) & (
+        contacts["asperities_used"].values == USED.index("layer")
+    )
+    if not outside.any():
+        return []
+    try:
+        problem = Contacts.of(contacts, "summary").problem
+    except StudyError:  # of a mean, say
+        return []
+    index, last = np.flatnonzero(outside), np.full(outside.shape, np.nan)
+    part, far = problem.take(index), np.zeros_like(outside)
+    last.flat[index], far.flat[index] = last_fraction(part), without_family(part)
+    early = outside & ~far & (last < _EARLY * REACH)
+    said = []
+    if early.any():
+        text = f"On a layer this soft the disc cell goes wrong where spots cover more than {rounded(last[early].min())}"
+        said.append(f'{of_cases(early)}{text} of the area: micro = "hex_lattice" goes on to {REACH:g}.')
+    for where, text in ((far, _WIDE_PITCH), (outside & ~far & ~early, _MERGED)):
+        said += [f"{of_cases(where)}{text}; {_HALF_SPACE}"] * bool(where.any())
+    return said
+
+
+def falling(contacts: xr.Dataset) -> list[str]:
+    """A sentence on contacts whose asperities yield, and whose pressure somewhere was larger at 0.9 of the load."""
+    laws = [name for name, law in lexicon_in(contacts).known.laws.items() if law.yielded]
+    yielding = one_of(contacts["micro"].values.astype(str), laws)
+    if not yielding.any():
+        return []
+    try:
+        problems = Contacts.of(contacts, "summary").problem
+    except StudyError:  # of a mean, say
+        return []
+    solved = (contacts["status"].values.ravel() == Status.CONVERGED) & one_of(problems.micro, laws)
+    where, index = np.zeros(len(solved), dtype=bool), np.flatnonzero(solved)
+    if len(index):
+        problem = problems.take(index)
+        now = solve(problem, _RADII)
+        before = solve(replace(problem, control="P", value=_LESS * now.P), _RADII)
+        r = _RADII * (now.a / before.a)[:, None]
+        p, lam = (
+            np.array([np.interp(at, _RADII, values, right=0.0) for at, values in zip(r, profile, strict=True)])
+            for profile in (before.p, before.lam)
+        )
+        yielded = np.empty(len(index))
+        for name in np.unique(problem.micro):
+            some = np.flatnonzero(problem.micro == name)
+            law = law_of(dimensionless(problem.take(some)))
+            yielded[some] = np.ravel(law.law.yielded(*law.own))
+        falls = p > now.p + _SAME * now.p.max(axis=1, keepdims=True)
+        where[index] = (falls & (lam > yielded[:, None])).any(axis=1)
+    text = "The pressure falls somewhere while the load rises: spots that have yielded there unload, and stay flatter \
+than this law has them."
+    return [of_cases(where) + text] * bool(where.any())
 
 
 def _near_0(case: xr.Dataset) -> str:

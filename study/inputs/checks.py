@@ -1,4 +1,4 @@
-"""Mistakes in the inputs together, or in a grid as a whole, although each single parameter is right."""
+"""What the inputs, or a grid, lack as a whole, though each parameter is right: defaults, and mistakes."""
 
 from collections.abc import Callable, Collection, Iterable
 from functools import partial
@@ -13,14 +13,46 @@ from solver.scaling import dimensionless, law_of
 from ..terminal import shown
 from .grid import Grid, along, same_labels, twins
 from .lexicon import Lexicon
-from .request import Request
+from .request import OBJECTS, Request
 from .vocabulary import BODIES, CONTROLS, SCENE
 
 LOADING = 'micro = "elastic_plastic" is for loading. Spots that have yielded stay flat when the load falls, so that \
 these contacts are no unloading (docs/model.md, Microscale).'
 """The end of the sentence about loads that fall though asperities yield."""
+OWNER = {"shape": "shape", "adhesion": "w_adhesion"}
+"""Role of parameters -> the one without which a grid has none of this role."""
 FITTED = ("B", "beta")
 """Parameters that are fitted to Nbar and Ra if the user gives neither (`laws.fitted`)."""
+
+
+def fill_in(request: Request, labels: dict[str, np.ndarray]) -> None:
+    """Give what is left out its default; messages for what is missing, and for dimensions on which two inputs disagree.
+
+    labels : axes that are not among the values, as they are in SI
+    """
+    values, errors, lexicon = request.values, request.errors, request.lexicon
+    errors += one_control(request.sections)
+    arrays = {name: array for name, (dims, array) in values.items() if dims}
+    errors += dimensions_that_differ(request, labels | arrays)
+    parameters = lexicon.parameters_of(request.sections)
+    for name in [name for name in parameters if name not in request.sections]:
+        parameter = lexicon.parameter(name)  # those of a law or a shape that no case has stay away
+        selector, owners, *_ = parameter.needed_by
+        if name.rpartition(".")[2] in ("cn", "ct", "profile") or name == "asperities_on":
+            continue
+        owner = OWNER.get(lexicon.rows[name].role)
+        if owner and owner not in request.sections:
+            continue
+        words = values.get(selector, ((), ""))[1]  # "": micro has been refused
+        if parameter.default is not None and (selector not in OBJECTS or np.any([words == word for word in owners])):
+            values[name] = (), np.array(parameter.default)
+    names = {*request.sections, *["n"] * request.physical}  # n follows from moduli
+    names |= {name for name in parameters if request.physical and name.endswith(".n")}
+    words = {name: array for name, (_, array) in values.items()}
+    errors += missing_everywhere(lexicon, names, lambda name: words.get(name, ()), errors)
+    if not errors:
+        rows = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in request.rows]
+        errors += equal_cases(rows)
 
 
 def missing_everywhere(

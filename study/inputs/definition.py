@@ -1,6 +1,12 @@
-"""Study files: TOML text -> a checked, frozen Definition with a digest of everything that determines its numbers."""
+"""From a request, of a call or of a study file, to a checked, frozen Definition: the grid of cases, what is stored of
+them, and the digest of what determines the numbers.
 
-from dataclasses import dataclass
+Numbers have units, `R = "5 mm"`, `h = ["2 um", "20 um"]`, `P = { start = "1 mN", ... }`, or none. Inputs may have
+spreads ("200 ± 10 GPa", materials by name). Then results have derivatives by the inputs of the solver, and from these
+follows `NAME_spread`.
+"""
+
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -9,14 +15,26 @@ from solver.bases import may_be_layered
 
 from ..specimen.foreign import plain
 from ..terminal import counted, shown
+from .checks import (
+    fill_in,
+    heights_that_yield,
+    missing_in_cases,
+    mixed_units,
+    picard_for_nothing,
+    slips_of_laws,
+)
 from .grid import Grid, along
-from .punch.asperities import many_bodies
-from .request import MOST_MESSAGES
+from .identity import digest_of, law_versions
+from .punch import micro_laws, shapes, sticking
+from .punch.stresses import none_in
+from .request import MOST_MESSAGES, Request
+from .scene.stacks import axes_in, in_layers
 from .vocabulary import finite, names
 
 POINTS = 33  # of a profile, unless the study sets them
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a mistake, so `run` wants --yes
 MOST_VALUES = 5_000_000_000  # 40 GB: no larger grid is allowed, it can be cut into several studies
+MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x as one more
 DTYPES = ("float64", "float32")
 PER_CASE = 16  # numbers of a case besides the profiles, roughly
 #: Cases in a block: of ordinary cases, of those that take some milliseconds each, of those that may take ten seconds
@@ -93,6 +111,128 @@ class Definition:
         return {names.get(dim, dim): value for dim, value in table.items()}
 
 
+def from_call(
+    parameters: dict,
+    rows: list[dict],
+    same_piece: bool,
+    tables: dict,
+    correlations: Any = None,
+    where: str = "solve",
+) -> Definition:
+    """Definition of a call of `study.solve`; tables : title and output, as those of a study file; `where` begins every
+    message."""
+    correlations = {} if correlations is None else correlations
+    return definition_of(
+        Request.in_python(parameters, rows, same_piece, correlations), tables, "solve", "", where, LARGE
+    )
+
+
+def definition_of(
+    request: Request, tables: dict, name: str, text: str, where: str, most: float = MOST_VALUES
+) -> Definition:
+    """The definition that a request describes, with its digest. Raises StudyError with every message.
+
+    tables : title, [output], the block of [numerics] and the order of [axes] are read from these
+    most : how many numbers the results may hold
+    """
+    errors, scene = request.errors, None
+    request.expand()
+    spreads = tables.get("output", {}).get("spreads", True)
+    if not isinstance(spreads, bool):
+        errors.append(f"[output] spreads = {shown(spreads)}: must be true or false")
+    if request.physical:
+        # imported here, since they load xarray, which pure numbers do not need
+        from .scene.changes import inputs_of
+        from .scene.physical_inputs import read as read_scene
+
+        scene = read_scene(request, spreads is True, axes_in(tables))
+    else:
+        for entry in request.inputs.values():
+            if not entry.is_wrong:
+                request.read(entry)
+        fill_in(request, {})
+    grid = grid_of(request)
+    if "w_adhesion" in grid.values and not errors:
+        errors += sticking.rough_and_sticking(grid, scene and scene.unit)
+    inputs = () if errors or scene is None or not scene.spreads else inputs_of(scene, grid)
+    title, x, profiles, dtype, stresses = settings(tables, errors)
+    if stresses and not errors and (reason := none_in(grid)):
+        errors.append(f"[output] stresses = true: {reason}")
+    block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
+    if type(block) is not int or not 1 <= block <= 1_000_000:
+        errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
+    some_feel = not errors and bool(micro_laws.felt(grid).any())
+    micro = grid.values["micro"][1] if "micro" in grid.values else ()
+    results = micro_laws.results_of(grid.lexicon.known.laws, micro, "w_adhesion" in grid.values, some_feel)
+    stresses += names("spot_stress") if stresses and some_feel else ()
+    definition = Definition(
+        *(name, title, text, grid, x, profiles, dtype, block, ""),
+        scene=scene,
+        results=results,
+        inputs=inputs,
+        stresses=stresses,
+        says_what_is_felt=not errors and micro_laws.is_said(grid),
+    )
+    if (numbers := definition.numbers) > most:
+        limit = f"at most {most:.0e} (fewer points, or profiles = false)"
+        errors.append(f"{grid.size} cases make {numbers:.1e} numbers: {limit}")
+    if errors:
+        raise refusal(where, in_layers(errors, request.sections))
+    return replace(definition, digest=digest_of(definition), laws=tuple(law_versions(grid)))
+
+
+def grid_of(request: Request) -> Grid:
+    """The grid of the values that have been read, after the checks of several parameters together.
+
+    B and beta are fitted where they are left out.
+    """
+    labels, errors, physical = _labels_of(request), request.errors, request.physical
+    if len(request.sizes) > MOST_DIMENSIONS:
+        errors.append(f"{len(request.sizes)} dimensions: at most {MOST_DIMENSIONS} are allowed")
+    grid = Grid(request.sizes, _in_order(request), labels, lexicon=request.lexicon)
+    if not errors and micro_laws.wants_a_fit(grid):
+        fits, wrong = micro_laws.fitted(grid)
+        request.values |= fits
+        errors += wrong
+        grid = replace(grid, values=_in_order(request), fitted=True)
+    if not errors:
+        rows = grid.lexicon.rows
+        roles = {rows[name].role for name in request.sections if name in rows}
+        errors += missing_in_cases(grid) + picard_for_nothing(grid) + heights_that_yield(grid)
+        errors += micro_laws.mistakes_of_choice(grid, request.sections)
+        errors += micro_laws.mistakes_of_tables(grid, physical)
+        errors += [] if physical else mixed_units(grid)
+        errors += shapes.mistakes(grid, request.sections, physical) if "shape" in roles else []
+        errors += sticking.mistakes(grid, request.sections) if "adhesion" in roles else []
+    errors += [] if errors else slips_of_laws(grid)
+    return grid
+
+
+def _in_order(request: Request) -> dict:
+    """The values in the order of the vocabulary."""
+    values = request.values
+    return {name: values[name] for name in request.lexicon.parameters_of(values) if name in values}
+
+
+def _labels_of(request: Request) -> dict:
+    """The coordinates of dimensions that are no inputs, as those of a Grid. Notes the lengths of dimensions."""
+    sizes: dict[str, int] = request.sizes
+    labels: dict[str, tuple] = {}
+    for dims, array in request.values.values():
+        for dim, size in zip(dims, array.shape, strict=True):
+            sizes.setdefault(dim, size)
+    for entry in request.inputs.values():
+        for dim in entry.dims if entry.array is not None else ():
+            stacked = hasattr(entry.array.indexes.get(dim), "levels")  # see `data.coordinates`
+            if dim not in request.inputs and dim in entry.array.coords and not stacked:
+                labels.setdefault(dim, ((dim,), entry.array.coords[dim].values))
+    if "case" in sizes and (request.rows or request.sample is not None or request.physical):
+        labels.setdefault("case", (("case",), np.arange(sizes["case"], dtype=np.int32)))
+    if request.labels and not request.physical:
+        labels["label"] = ("case",), np.array(request.labels, dtype=str)
+    return labels
+
+
 def settings(tables: dict, errors: list[str]) -> tuple:
     """The title, x, profiles, dtype and stresses of a Definition, from the title and the section [output]."""
     title = tables.get("title", "")
@@ -143,10 +283,10 @@ def profile_points(x, errors: list[str]) -> np.ndarray:
 
 
 def usual_block(grid: Grid) -> int:
-    """Number of cases in a block, unless the study sets it. The slowest kind of case in the grid decides."""
+    """Number of cases in a block, unless the study says it. The slowest kind of case in the grid decides."""
     n, rtol, nodes = (along(grid, name) for name in ("n", "rtol", "nodes"))
     layered = np.any(may_be_layered(along(grid, "base")))
     approximated = (along(grid, "scheme") == "picard").any()
     if layered and (approximated or (n > _STIFF).any() or (rtol < _FINE).any()):
         return SLOWEST
-    return SLOW if approximated or (nodes > _MANY_NODES).any() or many_bodies(grid) else USUAL
+    return SLOW if approximated or (nodes > _MANY_NODES).any() or micro_laws.many_bodies(grid) else USUAL

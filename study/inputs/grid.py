@@ -9,9 +9,8 @@ import numpy as np
 
 from ..terminal import shown
 from .lexicon import PACKAGE, Lexicon
-from .vocabulary import Parameter, are_within, check, finite
+from .vocabulary import Parameter, are_within, check
 
-LONGEST_AXIS = 1_000_000
 SHOWN = 3  # wrong values of one parameter that get a message each; the others are counted
 
 
@@ -140,53 +139,6 @@ def as_array(parameter: Parameter, raw: list, key: str, errors: list[str], gaps:
     return np.array([math.nan if value is None else float(value) for value in raw])
 
 
-def axis_values(raw, key: str, errors: list[str]) -> list:
-    """Expand an axis: a list, or a table {start, stop, num, spacing = "linear" | "log"}. Wrong input: messages, []."""
-    if isinstance(raw, dict):
-        return _range_values(raw, key, errors)
-    if not isinstance(raw, list):
-        errors.append(
-            f"{key} = {shown(raw)}: must be a list or {{start, stop, num, spacing}}; a single value belongs in [model]"
-        )
-    elif not raw:
-        errors.append(f"{key} is empty: must have at least one value")
-    elif len(raw) > LONGEST_AXIS:
-        errors.append(f"{key} is too long: at most {LONGEST_AXIS} values are allowed")
-    else:
-        return raw
-    return []
-
-
-def _range_values(raw: dict, key: str, errors: list[str]) -> list:
-    before = len(errors)
-    check_range(raw, key, errors, ("start", "stop", "num", "spacing"))
-    num = raw.get("num")
-    if type(num) is not int or not 2 <= num <= LONGEST_AXIS:
-        errors.append(f"{key}: {quoted('num', raw)}: must be a whole number in [2, {LONGEST_AXIS}]")
-    if len(errors) > before:
-        return []
-    make = np.geomspace if raw.get("spacing", "linear") == "log" else np.linspace
-    return make(raw["start"], raw["stop"], num).tolist()
-
-
-def check_range(raw: dict, key: str, errors: list[str], names: tuple[str, ...]) -> None:
-    """Messages for the spacing and the ends of a range, and for keys that are not among `names`."""
-    for name in raw:
-        if name not in names:
-            errors.append(f'{key}: "{name}" is not allowed; a range is {{{", ".join(names)}}}')
-    spacing = raw.get("spacing", "linear")
-    if spacing not in ("linear", "log"):
-        errors.append(f'{key}: spacing = {shown(spacing)}: must be one of "linear", "log"')
-    for end in ("start", "stop"):
-        value = raw.get(end)
-        if not finite(value) or (spacing == "log" and value <= 0):
-            also = ", > 0 for spacing log" * (spacing == "log")
-            errors.append(f"{key}: {quoted(end, raw)}: must be a finite number{also}")
-    start, stop = raw.get("start"), raw.get("stop")
-    if finite(start) and finite(stop) and not math.isfinite(float(stop) - float(start)):
-        errors.append(f"{key}: from start = {shown(start)} to stop = {shown(stop)}: must be less than 1.8e308 apart")
-
-
 def twins(values: list) -> list[tuple[int, int]]:
     """[(i, j)], the first two places with the same value, or []. On an axis neither of the two could be selected."""
     first = {}
@@ -220,8 +172,3 @@ def _same(label: object, other: object) -> bool:
         return label is other or bool(label == other) or bool(label != label and other != other)
     except (TypeError, ValueError):  # of pandas.NA, which is neither equal nor unequal
         return False
-
-
-def quoted(name: str, table: dict) -> str:
-    """An entry of a table as messages quote it: "num = 3", or "num is missing"."""
-    return f"{name} = {shown(table[name])}" if name in table else f"{name} is missing"

@@ -20,7 +20,7 @@ from solver.numerics.profiles import identity as profile_identity
 from solver.shapes.table import identity as shape_identity
 
 from .grid import Grid, along
-from .punch.asperities import stand_apart
+from .punch.micro_laws import stand_apart
 from .vocabulary import CONTROLS
 
 #: Strengths. Results are compared with them: no case depends on them, but the flags in a results file do.

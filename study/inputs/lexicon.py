@@ -141,10 +141,15 @@ def lexicon_for(tables: Iterable[Mapping[str, Any]], names: Iterable[str] = ()) 
 
     tables : parameters, cases; names : of parameters, for which laws of installed packages are looked at
     """
-    known = known_by_default()
-    for micro, wanted in (([table.get("micro") for table in tables], ()), ((), names)):
-        with suppress(ValueError):
-            known = known.with_laws_of(micro, wanted)
+    known, words = known_by_default(), [table.get("micro") for table in tables]
+    try:
+        known = known.with_laws_of(words)
+    except ValueError:  # the others are as they should be, and so are their parameters
+        for word in words:
+            with suppress(ValueError):
+                known = known.with_laws_of(word)
+    with suppress(ValueError):
+        known = known.with_laws_of((), names)
     return lexicon_of(known)
 
 

@@ -1,15 +1,9 @@
-"""From a study file, or the parameters of a call, to a checked, frozen Definition.
-
-Numbers have units, `R = "5 mm"`, `h = ["2 um", "20 um"]`, `P = { start = "1 mN", ... }`, or none. Inputs may have
-spreads ("200 ± 10 GPa", materials by name). Then results have derivatives by the inputs of the solver, which give
-`NAME_spread`.
-"""
+"""Study files: from TOML text to a checked, frozen Definition."""
 
 import errno
 import math
 import re
 import tomllib
-from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -17,15 +11,9 @@ from typing import Any
 from solver.numerics.userfile import NoFile, opened
 
 from ..terminal import on_one_line, shown
-from .definition import LARGE, MOST_VALUES, Definition, StudyError, refusal, settings, usual_block
-from .draft import Draft
-from .identity import digest_of, law_versions
-from .punch import asperities, sticking
-from .punch.laws import results_of
-from .punch.stresses import none_in
+from .definition import Definition, StudyError, definition_of
 from .request import MOST_MESSAGES, Request
-from .scene.stacks import axes_in, in_layers
-from .vocabulary import NUMERICS, absent, names, suggest
+from .vocabulary import NUMERICS, absent, suggest
 
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
 KEYS = {
@@ -61,73 +49,7 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     unknown = islice((key for key in tables if key not in SECTIONS), MOST_MESSAGES)
     errors = [_no_section(key, tables[key]) for key in unknown]
     tables = tables | {section: _table(tables, section, keys, errors) for section, keys in KEYS.items()}
-    return complete(Request.in_file(tables, errors), tables, name, text, where)
-
-
-def from_call(
-    parameters: dict,
-    rows: list[dict],
-    same_piece: bool,
-    tables: dict,
-    correlations: Any = None,
-    where: str = "solve",
-) -> Definition:
-    """Definition of a call of `study.solve`; tables : title and output, as those of a study file; `where` begins every
-    message."""
-    correlations = {} if correlations is None else correlations
-    return complete(Request.in_python(parameters, rows, same_piece, correlations), tables, "solve", "", where, LARGE)
-
-
-def complete(request: Request, tables: dict, name: str, text: str, where: str, most: float = MOST_VALUES) -> Definition:
-    """The definition that a request describes, with its digest. Raises StudyError with every message.
-
-    tables : they have the title, [output], the block of [numerics] and the order of [axes]
-    most : largest number of numbers in the results
-    """
-    draft, errors, scene = Draft(request), request.errors, None
-    draft.expand()
-    spreads = tables.get("output", {}).get("spreads", True)
-    if not isinstance(spreads, bool):
-        errors.append(f"[output] spreads = {shown(spreads)}: must be true or false")
-    if request.physical:
-        # imported here, since they load xarray, which pure numbers do not need
-        from .scene.changes import inputs_of
-        from .scene.physical_inputs import read as read_scene
-
-        scene = read_scene(request, draft, spreads is True, axes_in(tables))
-    else:
-        for entry in request.inputs.values():
-            if not entry.is_wrong:
-                draft.read(entry)
-        draft.check({})
-    draft.put_dimensions()
-    grid = draft.finish()
-    errors += [] if errors else sticking.rough_and_sticking(grid, scene and scene.unit)
-    inputs = () if errors or scene is None or not scene.spreads else inputs_of(scene, grid)
-    title, x, profiles, dtype, stresses = settings(tables, errors)
-    if stresses and not errors and (reason := none_in(grid)):
-        errors.append(f"[output] stresses = true: {reason}")
-    block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
-    if type(block) is not int or not 1 <= block <= 1_000_000:
-        errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
-    some_feel = not errors and bool(asperities.felt(grid).any())
-    micro = grid.values["micro"][1] if "micro" in grid.values else ()
-    results = results_of(grid.lexicon.known.laws, micro, "w_adhesion" in grid.values, some_feel)
-    stresses += names("spot_stress") if stresses and some_feel else ()
-    definition = Definition(
-        *(name, title, text, grid, x, profiles, dtype, block, ""),
-        scene=scene,
-        results=results,
-        inputs=inputs,
-        stresses=stresses,
-        says_what_is_felt=not errors and asperities.is_said(grid),
-    )
-    if (numbers := definition.numbers) > most:
-        limit = f"at most {most:.0e} (fewer points, or profiles = false)"
-        errors.append(f"{grid.size} cases make {numbers:.1e} numbers: {limit}")
-    if errors:
-        raise refusal(where, in_layers(errors, request.sections))
-    return replace(definition, digest=digest_of(definition), laws=tuple(law_versions(grid)))
+    return definition_of(Request.in_file(tables, errors), tables, name, text, where)
 
 
 def parsed(path) -> tuple[dict, str, str, str]:

@@ -1,22 +1,30 @@
-"""The request of a Python call or of a study file, in one form for both. No number is read here."""
+"""What a call of Python or a study file asks for, in one form for both, and its numbers and words without units."""
 
+import math
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from ..specimen.foreign import plain
 from ..specimen.quantities import Quantity, has_unit
 from ..terminal import shown
-from .grid import LONGEST_AXIS, equal_values
+from .grid import as_array, equal_values
 from .lexicon import Lexicon, default, lexicon_for, lexicon_of
-from .punch.shapes import ANGLES, in_degrees
-from .sample import LIMITS
-from .scene.stacks import in_call, in_tables
-from .vocabulary import BODIES, NUMERICS, SCENE, no_parameter
+from .punch.shapes import ANGLES, PREFIX, WORDS, as_written, in_degrees
+from .sample import LIMITS, LONGEST_AXIS, range_values, sampled
+from .scene.scene import INFINITE
+from .scene.stacks import in_call, in_tables, is_of_layers
+from .vocabulary import BODIES, NUMERICS, SCENE, Parameter, finite, no_parameter
 
 MOST_MESSAGES = 30  # shown for a study at a time
 #: Attributes `units` of pure numbers. pint writes "dimensionless".
 PURE = ("1", "", "dimensionless")
+#: Inputs that are names of objects.
+OBJECTS = ("micro", "shape")
+#: Bounds of load and depth under adhesion.
+_PULLED = "[-1000, 1000]"
 #: The end of a message about `same_piece`.
 NEEDS_NAMES = (
     "no two of punch, layer and body are of one material by name, such as punch and body of PMMA; leave it out"
@@ -84,18 +92,19 @@ class Input:
 
 @dataclass
 class Request:
-    """All inputs of a call or of a study file.
+    """All inputs of a call or of a study file, in one form, and what has been read of them.
 
     errors : messages, without the name of the file
     inputs : name -> input; cases come before axes, as `case` is the first dimension
     sections : name -> the section of the file where it stands, "" in Python
     rows : of [[cases]]; sample : the section of this name
     labels : of the cases
-    same_piece : whether bodies of one material are cut from one piece
+    same_piece : whether bodies of one material are one piece of it
     correlations : pair of inputs -> correlation of their spreads
     sign : the input, in words, that makes this a study with units; "" if none does. It has a unit, or exists only in
         such studies
     lexicon : what its words stand for
+    values, sizes : of the parameters and dimensions that have been read, as those of a Grid
     """
 
     errors: list[str] = field(default_factory=list)
@@ -108,6 +117,8 @@ class Request:
     correlations: Any = field(default_factory=dict)
     sign: str = ""
     lexicon: Lexicon = field(default_factory=default)
+    values: dict[str, tuple[tuple[str, ...], np.ndarray]] = field(default_factory=dict)
+    sizes: dict[str, int] = field(default_factory=dict)
 
     @property
     def physical(self) -> bool:
@@ -119,7 +130,8 @@ class Request:
         """Parameters of a call: DataArrays, 1-D sequences or single values, and rows of cases."""
         request = cls(correlations=correlations, lexicon=lexicon_for((parameters, *rows)))  # laws have parameters
         request._same_piece(same_piece, "")
-        parameters, rows = in_call(parameters, rows, request.errors)
+        if any(is_of_layers(name) for table in (parameters, *rows) for name in table):
+            parameters, rows = in_call(parameters, rows, request.errors)
         if rows:
             request._cases(rows)
         for name, value in parameters.items():
@@ -265,3 +277,91 @@ class Request:
         order = {"[[cases]]": 0, "[sample]": 0, "[model]": 2, "[[layers]]": 2}
         self.inputs = dict(sorted(self.inputs.items(), key=lambda pair: order.get(pair[1].section, 1)))
         return self
+
+    def expand(self) -> None:
+        """Make ranges and [sample] lists of values."""
+        if self.sample is not None:
+            names = [name for name, entry in self.inputs.items() if entry.section == "[sample]"]
+            columns = sampled(self, names, self.checked)
+            for name in names:
+                self.inputs[name].values = columns.get(name)
+        for name, entry in self.inputs.items():
+            if entry.dims == (name,) and entry.array is None:
+                is_range = isinstance(entry.values, dict)
+                entry.values = range_values(name, entry.values, self) if is_range else self._listed(name, entry.values)
+                entry.values = entry.values or None
+
+    def _listed(self, key: str, raw: Any) -> list:
+        """The values of an axis. Wrong input: messages, []."""
+        if not isinstance(raw, list):
+            form = "must be a list or {start, stop, num, spacing}; a single value belongs in [model]"
+            self.errors.append(f"{key} = {shown(raw)}: {form}")
+        elif not raw:
+            self.errors.append(f"{key} is empty: must have at least one value")
+        elif len(raw) > LONGEST_AXIS:
+            self.errors.append(f"{key} is too long: at most {LONGEST_AXIS} values are allowed")
+        else:
+            return raw
+        return []
+
+    def read(self, entry: Input) -> None:
+        """Read the numbers or words of an input without a unit. A gap in [[cases]] becomes the default, or NaN."""
+        name, gaps = entry.name, entry.section == "[[cases]]"
+        default = self.lexicon.parameter(name).default
+        raw = entry.values if entry.array is None else entry.array.values.ravel().tolist()
+        raw = [default if gaps and value is None else value for value in raw]
+        array = self.checked(name, raw, gaps=gaps, distinct=entry.dims == (name,))
+        self.values[name] = entry.dims, array.reshape(entry.shape)
+
+    def checked(self, name: str, raw: list, gaps: bool = False, distinct: bool = False) -> np.ndarray:
+        """The values as an array, with messages for those that are not allowed.
+
+        gaps : None is allowed, and becomes NaN; distinct : values that are equal get a message
+        """
+        before = len(self.errors)
+        if name in OBJECTS:
+            try:
+                raw = self._named(name, raw)
+            except ValueError as error:
+                self.errors.append(f"{name}: {error}")
+                return np.empty(len(raw))
+        if name.endswith(".profile") and any(self._is_without_file(word) for word in raw):
+            return np.empty(len(raw))
+        raw = as_written(raw) if name in WORDS else raw
+        endless = INFINITE.get(name, ())
+        raw = [math.inf if isinstance(value, str) and value.lower() in endless else value for value in raw]
+        array = as_array(row_of(name, self.sections, self.lexicon), raw, name, self.errors, gaps)
+        if len(self.errors) > before and len(raw) == 1:
+            self.errors[-1] += pull_hint(name, raw[0], self.sections)
+        if distinct and len(self.errors) == before:
+            self.errors += equal_values(name, array.tolist())
+        return array
+
+    def _is_without_file(self, word: Any) -> bool:
+        """Whether a word is a table of a profile that could not be read: the request has said why."""
+        is_table = isinstance(word, str) and word.startswith(PREFIX)
+        return is_table and word not in self.lexicon.known.profiles
+
+    def _named(self, name: str, raw: list) -> list:
+        """The values of `micro` or `shape` as names that the lexicon has. Raises ValueError for what cannot be used."""
+        if name == "micro":
+            self.learn(raw)
+            return self.lexicon.names_of(raw)
+        words = as_written(raw)
+        try:
+            self.learn_shapes(words)
+        except ValueError as error:
+            raise ValueError(str(error).removeprefix("shape ")) from None
+        return words
+
+
+def row_of(name: str, sections: Any, lexicon: Lexicon) -> Parameter:
+    """The row of a parameter in a call that gives `sections`: under adhesion load and depth may be 0 and negative."""
+    row = lexicon.parameter(name)
+    return row._replace(interval=_PULLED) if name in ("P", "D") and "w_adhesion" in sections else row
+
+
+def pull_hint(name: str, value: Any, sections: Any) -> str:
+    """The end of a message about a load or depth that only a punch that sticks has; "" for others."""
+    pulls = name in ("P", "D") and "w_adhesion" not in sections and finite(value) and value <= 0
+    return "; a pull needs w_adhesion, the work of adhesion" * pulls

@@ -1,5 +1,6 @@
 """Values that follow from a rule in the study file: ranges, and random cases, the same on every machine."""
 
+import math
 import re
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -8,29 +9,61 @@ import numpy as np
 
 from ..specimen.quantities import Quantity, quantity
 from ..terminal import shown
-from .grid import LONGEST_AXIS, axis_values, check_range, quoted
 from .lexicon import Lexicon
 from .scene.bodies import of_names
 from .scene.scene import si
-from .vocabulary import BODIES, Parameter, check, si_unit
+from .vocabulary import BODIES, Parameter, check, finite, si_unit
 
+LONGEST_AXIS = 1_000_000
 KEYS = ("start", "stop", "spacing", "over")  # of a range
 LIMITS = {"size": (1, LONGEST_AXIS), "seed": (0, 2**32 - 1)}
 ANY_NUMBER = Parameter(interval="(-inf, inf)")
-"""Bounds of a range of SI numbers in [sample]. The random numbers are checked later, like all inputs with units."""
+"""Bounds of a range of SI numbers in [sample]. The numbers that are drawn are checked later, as all with units are."""
 
 
-def values_of_axis(entry: Any, request: Any) -> list | None:
-    """The values of a list or a range, which are in SI for a range with units. None if it has a mistake.
-
-    entry : an input of the request
-    """
-    name, raw, errors, lexicon = entry.name, entry.values, request.errors, request.lexicon
-    before, ranged = len(errors), request.physical and isinstance(entry.values, dict)
-    in_si = ranged and _is_number(name, lexicon) and lexicon.all_rows[name].unit != "1"
+def range_values(name: str, raw: dict, request: Any) -> list:
+    """The values of a range, an input of the request; with units they are in SI. [] if it has a mistake."""
+    errors, lexicon, before = request.errors, request.lexicon, len(request.errors)
+    in_si = request.physical and _is_number(name, lexicon) and lexicon.all_rows[name].unit != "1"
     raw = _in_si(raw, name, lexicon.all_rows[name].unit, errors) if in_si else raw
-    values = axis_values(raw, name, errors) if len(errors) == before else []
-    return (list(map(Quantity, values)) if in_si else values) or None
+    values = _range_values(raw, name, errors) if len(errors) == before else []
+    return list(map(Quantity, values)) if in_si else values
+
+
+def _range_values(raw: dict, key: str, errors: list[str]) -> list:
+    """The values of {start, stop, num, spacing = "linear" | "log"}. Wrong input: messages, []."""
+    before = len(errors)
+    check_range(raw, key, errors, ("start", "stop", "num", "spacing"))
+    num = raw.get("num")
+    if type(num) is not int or not 2 <= num <= LONGEST_AXIS:
+        errors.append(f"{key}: {quoted('num', raw)}: must be a whole number in [2, {LONGEST_AXIS}]")
+    if len(errors) > before:
+        return []
+    make = np.geomspace if raw.get("spacing", "linear") == "log" else np.linspace
+    return make(raw["start"], raw["stop"], num).tolist()
+
+
+def check_range(raw: dict, key: str, errors: list[str], names: tuple[str, ...]) -> None:
+    """Messages for the spacing and the ends of a range, and for keys that are not among `names`."""
+    for name in raw:
+        if name not in names:
+            errors.append(f'{key}: "{name}" is not allowed; a range is {{{", ".join(names)}}}')
+    spacing = raw.get("spacing", "linear")
+    if spacing not in ("linear", "log"):
+        errors.append(f'{key}: spacing = {shown(spacing)}: must be one of "linear", "log"')
+    for end in ("start", "stop"):
+        value = raw.get(end)
+        if not finite(value) or (spacing == "log" and value <= 0):
+            also = ", > 0 for spacing log" * (spacing == "log")
+            errors.append(f"{key}: {quoted(end, raw)}: must be a finite number{also}")
+    start, stop = raw.get("start"), raw.get("stop")
+    if finite(start) and finite(stop) and not math.isfinite(float(stop) - float(start)):
+        errors.append(f"{key}: from start = {shown(start)} to stop = {shown(stop)}: must be less than 1.8e308 apart")
+
+
+def quoted(name: str, table: dict) -> str:
+    """An entry of a table as messages quote it: "num = 3", or "num is missing"."""
+    return f"{name} = {shown(table[name])}" if name in table else f"{name} is missing"
 
 
 def sampled(request: Any, names: list[str], check_values: Callable) -> dict[str, list]:

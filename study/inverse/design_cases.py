@@ -14,10 +14,9 @@ from solver.status import Status
 from ..data.units import with_unit
 from ..inputs.definition import Definition
 from ..inputs.grid import along, columns
-from ..inputs.punch.laws import DIGITS, fits_to
+from ..inputs.punch.micro_laws import DIGITS, fits_to
 from ..inputs.scene.changes import inputs_of
-from ..inputs.scene.scales import make_dimensionless
-from ..inputs.scene.scene import Scene, over
+from ..inputs.scene.scene import Scene, make_dimensionless, over
 from ..inputs.vocabulary import VOCABULARY
 from ..work.cases import compute, parcel
 

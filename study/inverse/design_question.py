@@ -4,9 +4,8 @@ import math
 from typing import Any
 
 from ..derivatives import QUANTITIES
-from ..inputs.definition import Definition, StudyError
+from ..inputs.definition import Definition, StudyError, from_call
 from ..inputs.lexicon import lexicon_for
-from ..inputs.reading import from_call
 from ..inputs.scene.scene import si
 from ..inputs.scene.stacks import short
 from ..inputs.vocabulary import NUMERICS, ROWS, SCENE, VOCABULARY, finite, no_parameter, suggest

@@ -10,8 +10,7 @@ from solver.body import BODIES
 from solver.parameters import LAYER
 from solver.scaling import dimensionless
 
-from ..inputs.definition import StudyError
-from ..inputs.reading import from_call
+from ..inputs.definition import StudyError, from_call
 
 #: Inputs of a contact that do not matter here, and the modulus of a body for which only ratios are given.
 _USUAL = {"R": "1 um", "P": "1 uN", "micro": "smooth"}

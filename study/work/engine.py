@@ -31,7 +31,7 @@ from solver.compiled.newton_in_c import BASES, TAKEN
 from ..data.dataset import failed_cases
 from ..inputs.definition import USUAL, Definition, usual_block
 from ..inputs.grid import along
-from ..inputs.punch.asperities import many_bodies
+from ..inputs.punch.micro_laws import many_bodies
 from ..terminal import counted
 from . import cases
 from .cases import Failure, can_travel, guarded, parcel

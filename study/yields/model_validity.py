@@ -13,7 +13,7 @@ from ..arrays.labelled import Labelled
 from ..data.contacts import Contacts
 from ..data.dataset import validity_of_rows
 from ..inputs.identity import is_strength
-from ..inputs.punch.laws import results_of
+from ..inputs.punch.micro_laws import results_of
 from ..rules.rule import RULES, broken, of_cases, validity_attributes
 from ..work.cases import arrays_of
 

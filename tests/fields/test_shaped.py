@@ -34,6 +34,19 @@ def test_flat_punch_on_a_half_space():
     )
 
 
+@pytest.mark.parametrize("control", [{"D": 0.01}, {"P": 2e-3}])
+def test_stresses_have_the_unit_of_the_problem(control):
+    """Those of a flat punch follow from its depth: a length of the problem, which need not be 1 in it."""
+    flat, units = {"shape": "flat", "flat_radius": 0.1, "h": 0.05, "n": 3.0} | control, {"P": 3.0 * 2.0**2, "D": 2.0}
+    problem, solution = solved(**LAYER | flat)
+    scaled = {name: value * units[name] for name, value in control.items()}
+    in_units = solved(**LAYER | flat | scaled | {"flat_radius": 0.2, "h": 0.1, "R": 2.0, "E2": 3.0})
+    inside = of_contacts(problem, solution, R, Z).inside
+    for name, values in of_contacts(*in_units, R, Z).inside.items():
+        unit = 2.0 if name.startswith("u") else 3.0
+        assert_allclose(values / unit, inside[name], rtol=1e-12, atol=1e-14)
+
+
 def test_the_edge_of_a_flat_punch():
     problem, solution = solved(shape="flat", flat_radius=0.1, D=[0.01, -0.01], w_adhesion=1e-2, **BARE)
     inside = of_contacts(problem, solution, np.array([1.0]), np.array([0.0, 1e-6]), mu=0.2).inside

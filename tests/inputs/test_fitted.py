@@ -7,7 +7,7 @@ import xarray as xr
 import study
 from solver import fit_power_law
 from study.__main__ import main
-from study.inputs.punch import laws
+from study.inputs.punch import micro_laws as laws
 from study.inputs.reading import from_tables
 
 LAYER = {"P": 1e-5, "h": 0.02, "n": 0.5, "micro": "power_law"}

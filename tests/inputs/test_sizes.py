@@ -5,7 +5,7 @@ import pytest
 
 import study
 from study import solving
-from study.inputs import definition, grid, request, sample
+from study.inputs import definition, request, sample
 from study.inputs.reading import from_tables
 
 SMOOTH = {"micro": "smooth", "base": "half_space"}
@@ -93,8 +93,8 @@ def test_just_allowed_and_just_refused():
 
 
 def test_longest_axis(monkeypatch):
-    assert grid.LONGEST_AXIS == request.LONGEST_AXIS == sample.LIMITS["size"][1] == 1_000_000
-    for module in (grid, request):
+    assert sample.LONGEST_AXIS == request.LONGEST_AXIS == sample.LIMITS["size"][1] == 1_000_000
+    for module in (sample, request):
         monkeypatch.setattr(module, "LONGEST_AXIS", 100)
     assert sized(100).grid.size == 100
     with pytest.raises(study.StudyError, match=r"P: num = 101: must be a whole number in \[2, 100\]"):

@@ -11,8 +11,8 @@ import pytest
 
 import study
 from solver.known import PACKAGE, default
+from study.inputs.definition import from_call
 from study.inputs.identity import case_keys
-from study.inputs.reading import from_call
 
 THREADS, ROUNDS = 8, 20
 #: Calls of a thread in a round: with all rounds (make verify) each thread makes 1,000.

@@ -1,10 +1,13 @@
 """What holds of every law of this package: no pressure, full contact, and that no law has the numbers of another."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solver import laws
+import study
+from solver import Problem, laws
 from solver.laws import Curve, Law, heights
 
 ROUGH = [law for law in laws.BUILT_IN if law.rough]
@@ -50,6 +53,22 @@ def test_a_law_of_ones_own_without_pressure():
     found = law.at(np.array([0.0, 0.25, np.nan]), 1.0)
     assert_allclose(found.A, [0.0, 0.25, np.nan], rtol=1e-13)
     assert_allclose(found.lam, [0.0, 0.2, np.nan], rtol=1e-13)
+
+
+def test_two_laws_of_one_name_in_one_call_are_refused():
+    """Else every case would have the last of them. A copy is the same law, and so is a law that is given twice."""
+    first, second = (replace(laws.LAWS[name], name="mine", version="1") for name in ("disc_cell", "hex_lattice"))
+    case = {"P": 1e-5, "h": 0.02, "n": 0.5, "Nbar": 250_000.0, "Ra": 0.004}
+    message = 'two micro laws of one call are called "mine": give each a name of its own'
+    with pytest.raises(ValueError, match=f"^{message}$"):
+        Problem.of(**case, micro=[first, second])
+    cases = [{"micro": law} for law in (first, second)]
+    with pytest.raises(study.StudyError, match=f"^solve: micro: {message}$"):
+        study.solve(**case, cases=cases)
+    del case["h"]
+    same = study.solve(**case, cases=[{"micro": first, "h": 0.02}, {"micro": replace(first), "h": 0.03}])
+    alone = study.solve(**case, h=0.02, micro=first)
+    assert_allclose(same.a[0], alone.a, rtol=1e-12)  # in other company sums have another order
 
 
 def test_distributions_of_the_same_heights_have_tables_of_their_own():

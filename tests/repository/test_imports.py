@@ -252,9 +252,10 @@ def test_only_blocks_and_dataset_and_tables_know_the_solver():
     """The seam between solver and study stays narrow: the vocabulary knows the table of parameters alone."""
     users = {path.stem: {full for full in imported(path) if full.split(".")[0] == "solver"} for path in STUDY}
     assert users["vocabulary"] == {"solver.parameters"}
-    own = {"solver.parameters", "solver.laws", "solver.laws.power_law_fit"}
-    assert users["laws"] == own, "those of the words of a study, and fits"
-    assert not any(users[name] for name in ("grid", "request", "draft", "run", "api", "units", "progress"))
+    own = {"solver.bases", "solver.laws", "solver.laws.own_table", "solver.laws.power_law_fit"}
+    own |= {"solver.parameters", "solver.problem"}
+    assert users["micro_laws"] == own, "those of the words of a study, fits, and what asperities press on"
+    assert not any(users[name] for name in ("grid", "request", "run", "api", "units", "progress"))
 
 
 def alone(script: str) -> None:
@@ -269,7 +270,7 @@ NOT_HEAVY = "assert not {'xarray', 'dask', 'netCDF4', 'matplotlib'} & set(sys.mo
 def test_light_modules_stay_light():
     """Complaints about a study file come at once, and worker processes, which import `processes`, start soon."""
     light = (
-        *("inputs.vocabulary", "inputs.grid", "inputs.draft", "inputs.reading", "commands.arguments"),
+        *("inputs.vocabulary", "inputs.grid", "inputs.definition", "inputs.reading", "commands.arguments"),
         "work.processes",
     )
     alone("; ".join(f"import study.{module}; {NOT_HEAVY}" for module in (*light, "specimen.materials")))

@@ -9,8 +9,8 @@ import xarray as xr
 from numpy.testing import assert_allclose
 
 import study
+from study.inputs.definition import from_call
 from study.inputs.identity import case_keys
-from study.inputs.reading import from_call
 from study.rules.slope_and_adhesion import SLOPE
 
 ALONE = {"base": "half_space", "micro": "smooth"}

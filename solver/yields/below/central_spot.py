@@ -13,7 +13,7 @@ from ...fields.contact import have_fields, pressures_of
 from ...fields.invariants import mises
 from ...laws.cell.sums import LATTICES
 from ...numerics.threads import one_blas_thread
-from ...scaling import dimensionless
+from ...scaling import dimensionless_pair
 from ..contact import alike
 from ..extremes import farthest_of
 from ..peaks import chebyshev_nodes, in_patch
@@ -90,8 +90,8 @@ def _cells(problem, solution, mu, residual):
     if not len(index):
         return
     residual = np.broadcast_to(residual, len(problem)) / problem.E2
-    part, ended = problem.take(index), solution.take(index)
-    scaled, a = dimensionless(part), ended.a / part.R
+    scaled, ended = dimensionless_pair(problem.take(index), solution.take(index))
+    a = ended.a
     elastic = with_elastic_spots(scaled, a, np.zeros(1))
     cells = felt_cells(scaled, a, elastic.lam, elastic.p0)
     for rows, pressure, _ in pressures_of(scaled, ended, a):

@@ -16,7 +16,7 @@ from ...fields.shaped import corners
 from ...fields.stacks.section import Section
 from ...layers import numbers_of
 from ...numerics.threads import one_blas_thread
-from ...scaling import dimensionless
+from ...scaling import dimensionless_pair
 from ..contact import of_contacts as of_one_layer
 from ..extremes import VALUES
 from .patches import climbed
@@ -69,8 +69,9 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
     made = {name: np.full((3, len(problem), N), np.nan) for name in names}
     index = np.flatnonzero(have_fields(problem, solution) & ~are_infinite(problem) & is_stack(problem.base))
     if len(index):
-        part, ended = problem.take(index), solution.take(index)
-        scaled, a = dimensionless(part), ended.a / part.R
+        part = problem.take(index)
+        scaled, ended = dimensionless_pair(part, solution.take(index))
+        a = ended.a
         sharp = np.isfinite(corners(scaled, a))
         residual = np.broadcast_to(residual, (len(problem), N))[index] / part.E2[:, None]
         for rows, pressure, _ in pressures_of(scaled, ended, a):

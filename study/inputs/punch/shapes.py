@@ -1,4 +1,4 @@
-"""Shapes of the punch in calls and study files: their names, angles in degrees, tables, and their inputs."""
+"""Shapes of the punch in calls and study files: their names, angles in degrees, tables, and what each of them needs."""
 
 from functools import partial
 from typing import Any
@@ -16,7 +16,8 @@ from ..lexicon import Lexicon
 
 #: Inputs besides the shape that are words: capitals, blanks and hyphens in them do not matter.
 WORDS = ("tip", "adhesion", "branch")
-#: Bases that take the paraboloid alone, and nothing that sticks.
+#: How the words of tables of the user's own begin.
+PREFIX = table.PREFIX
 #: Angles of the punch: numbers of degrees.
 ANGLES = ("half_angle",)
 #: The shapes with a flat end, beyond which a contact reaches.
@@ -34,8 +35,8 @@ def as_written(values: list) -> list:
 
 def _plain(word: str) -> str:
     """A word in small letters with "_" for gaps; the path of a table as it is."""
-    if word.lower().startswith(table.PREFIX):
-        return table.PREFIX + word[len(table.PREFIX) :]
+    if word.lower().startswith(PREFIX):
+        return PREFIX + word[len(PREFIX) :]
     return word.strip().lower().replace(" ", "_").replace("-", "_")
 
 
@@ -63,11 +64,6 @@ def _degrees(name: str, value: Any) -> Any:
         value = f"{value} deg"
     angle = quantity(name, value, "degree")
     return angle if angle.spread else angle.value
-
-
-def left_out(name: str, sections: Any, lexicon: Lexicon) -> bool:
-    """Whether a parameter of shapes stays out of a grid, since no shape is given; `sections` : names that are given."""
-    return "shape" not in sections and _of_shapes(name, lexicon)
 
 
 def _of_shapes(name: str, lexicon: Lexicon) -> bool:

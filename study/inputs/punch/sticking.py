@@ -1,4 +1,4 @@
-"""Adhesion in calls and study files: inputs that go together, and inputs that are refused."""
+"""Adhesion in calls and study files: which inputs go together, and what is refused."""
 
 from functools import partial
 from typing import Any
@@ -6,37 +6,17 @@ from typing import Any
 import numpy as np
 
 from solver.bases import on_springs
-from solver.parameters import Parameter, one_of
+from solver.parameters import one_of
 
 from ...specimen.quantities import readable
 from ...terminal import shown
 from ..grid import Grid, along
-from ..lexicon import Lexicon
-from ..vocabulary import finite, names
+from ..vocabulary import names
 
 OF_ADHESION = names("adhesion")
-#: Bounds of load and depth under adhesion.
-_PULLED = "[-1000, 1000]"
 #: Each summit of the asperities pulls with at most 1.5 π w Ra: their adhesion counts as negligible if that makes less
 #: than this share of the mean pressure.
 _NEGLIGIBLE = 0.01
-
-
-def row_of(name: str, sections: Any, lexicon: Lexicon) -> Parameter:
-    """The row of a parameter in a call that gives `sections`: under adhesion load and depth may be 0 and negative."""
-    row = lexicon.parameter(name)
-    return row._replace(interval=_PULLED) if name in ("P", "D") and "w_adhesion" in sections else row
-
-
-def hint(name: str, value: Any, sections: Any) -> str:
-    """The end of a message about a load or depth that is possible only for a punch that sticks; "" for others."""
-    pulls = name in ("P", "D") and "w_adhesion" not in sections and finite(value) and value <= 0
-    return "; a pull needs w_adhesion, the work of adhesion" * pulls
-
-
-def left_out(name: str, sections: Any) -> bool:
-    """Whether a parameter of adhesion stays out of a grid, since no work of adhesion is given."""
-    return name in OF_ADHESION and "w_adhesion" not in sections
 
 
 def adhesive(grid: Grid) -> np.ndarray:

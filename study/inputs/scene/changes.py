@@ -9,10 +9,9 @@ from solver.laws.own_table import LAW_UNIT
 
 from ..grid import Grid
 from ..identity import acts
-from ..punch.laws import slopes_of_fit
+from ..punch.micro_laws import slopes_of_fit
 from ..vocabulary import CONTROLS, SCENE
-from .scales import make_dimensionless
-from .scene import Scene, is_ratio
+from .scene import Scene, is_ratio, make_dimensionless
 from .stacks import moduli_of
 
 SCALES = ("length", "modulus")

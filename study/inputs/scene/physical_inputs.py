@@ -11,19 +11,24 @@ from typing import Any
 
 import numpy as np
 
+from solver.bases import is_bare
+from solver.laws.own_table import PREFIX
+from solver.parameters import allowed as within
+from solver.parameters import ends
+from solver.shapes import PARABOLOID
+
 from ...arrays import xarray_later as xr
-from ...specimen.quantities import READABLE, quantity
+from ...specimen.quantities import READABLE, multiple, quantity, readable, unit_in
 from ...terminal import on_one_line
-from ..draft import Draft
+from ..checks import equal_cases, fill_in
 from ..grid import equal_values
-from ..punch.shapes import LENGTHS, MICROMETRE, in_metres
-from ..request import NEEDS_NAMES, Input, Request
-from ..vocabulary import SCENE, bodies_of
-from .bodies import assumed, with_materials
-from .mistakes import beyond_bounds, impossible, missing, moving_tables, same_cases
-from .pieces import correlate, none_alike
-from .scales import make_dimensionless
-from .scene import Scene, dim_of, is_ratio, si
+from ..punch.micro_laws import laws_in_metres
+from ..punch.shapes import LENGTHS, MICROMETRE, in_metres, radius_needed
+from ..request import NEEDS_NAMES, Input, Request, pull_hint, row_of
+from ..vocabulary import SCENE, allowed, bodies_of
+from .bodies import assumed, correlate, layered, none_alike, with_materials
+from .scene import Scene, dim_of, is_ratio, make_dimensionless, si, with_unit
+from .stacks import moduli_of
 
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
 #: Bounds of inputs from which others are derived: (must be above, must be at most, words for a message).
@@ -32,15 +37,18 @@ _LIMITS |= dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
 _E1, _NU1 = ("E1", "E1_spread", "n"), ("nu1", "nu1_spread")
 #: Input that a case without a layer may leave out -> the coordinates that then have no value in this case, "" or NaN.
 _OF_LAYER = {"layer": ("layer", *_E1, *_NU1), "E1": _E1, "n": _E1, "h": ("h", "h_spread"), "nu1": _NU1, "bonding": ()}
+Place = dict[str, int]
+"""Dimension -> index along it."""
+_RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
 
-def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scene:
-    """The physical scene that inputs describe. The dimensionless parameters go to the draft.
+def read(request: Request, spreads: bool, axes: list[str]) -> Scene:
+    """The physical scene that inputs describe. The dimensionless parameters become values of the request.
 
-    Mistakes become messages of the draft: a missing unit, a unit of another kind, a missing R or modulus.
+    Mistakes become messages of the request: no unit, a unit of something else, a missing R or modulus.
 
     spreads : whether the results shall have spreads
-    axes : dimensions in the wanted order, after `case`
+    axes : dimensions in the order that they shall have, behind `case`
     """
     scene = Scene(same_piece=request.same_piece, labels=request.labels, lexicon=request.lexicon)
     errors = request.errors
@@ -51,29 +59,29 @@ def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scen
     inputs = {n: replace(entry, dims=tuple(in_si.get(dim, dim) for dim in entry.dims)) for n, entry in inputs.items()}
     for entry in inputs.values():
         if not entry.is_wrong:
-            _read(scene, draft, entry)
+            _read(scene, request, entry)
     scene.lexicon = request.lexicon  # with the laws and tables that have been read
     errors += [f"same_piece: {NEEDS_NAMES}"] * (request.same_piece and not errors and none_alike(scene.names))
-    errors += missing(request, draft.values)
+    errors += missing(request, request.values)
     hint = f" ({request.sign} makes this a study with units)"
     errors[before:] = [f"{message}{hint * ('has no unit' in message)}" for message in errors[before:]]
     labels = {name: np.array(texts) for name, (dim, texts) in scene.names.items() if dim == name}
     axes_in_si = [name for name in scene.values if dim_of(name, scene.lexicon) == name]
-    draft.check(labels | {name: np.asarray(scene.values[name]) for name in axes_in_si})
+    fill_in(request, labels | {name: np.asarray(scene.values[name]) for name in axes_in_si})
     errors += [] if errors else impossible(scene) + (same_cases(scene) if request.rows else [])
     if errors:
         return scene
     names = {*request.sections, *inputs}
     _measure(scene)
-    scene.assumed = assumed(names, draft.values, scene.values)
+    scene.assumed = assumed(names, request.values, scene.values)
     correlate(scene, request.correlations, errors)
     if not spreads:
         scene.spreads = scene.correlations = {}
     make_dimensionless(scene)
     errors += moving_tables(scene) + beyond_bounds(scene, inputs)
-    draft.sizes |= scene.sizes(axes)
+    request.sizes |= scene.sizes(axes)
     if not errors:  # each has been checked, with its unit or without
-        draft.values |= {name: (getattr(v, "dims", ()), np.asarray(v)) for name, v in scene.parameters.items()}
+        request.values |= {name: (getattr(v, "dims", ()), np.asarray(v)) for name, v in scene.parameters.items()}
     return scene
 
 
@@ -84,19 +92,19 @@ def _measure(scene: Scene) -> None:
     scene.metres = in_metres(scene.parameters.get("shape", ""), scene.lexicon)
 
 
-def _read(scene: Scene, draft: Draft, entry: Input) -> None:
+def _read(scene: Scene, request: Request, entry: Input) -> None:
     """Put the numbers of an input into the scene."""
-    name, before = entry.name, len(draft.errors)
+    name, before = entry.name, len(request.errors)
     has_unit = name in SCENE or name in _LIMITS or scene.lexicon.rows[name].powers != (0, 0)
     if has_unit or is_ratio(name) or entry.has_unit:
         try:
             _add(scene, entry)
         except ValueError as error:
-            draft.errors.append(f"{error}{_material(entry)}")
+            request.errors.append(f"{error}{_material(entry)}")
         return
-    draft.read(entry)
-    if len(draft.errors) == before:
-        dims, array = draft.values[name]
+    request.read(entry)
+    if len(request.errors) == before:
+        dims, array = request.values[name]
         scene.parameters[name] = xr.DataArray(array, dims=dims) if dims else array.item()
 
 
@@ -198,3 +206,141 @@ def _of_array(entry: Input, unit: str) -> xr.DataArray:
     if unit != "1" or entry.unit != "1":
         values = values * quantity(name, f"1 {array.attrs['units']}", unit).value
     return xr.DataArray(values, dims=entry.dims)
+
+
+def missing(request: Request, values: dict) -> list[str]:
+    """Messages for inputs that a physical scene needs but lacks, and for inputs that exclude each other.
+
+    values : of the inputs without units, like those of a Grid
+    """
+    names, messages = {*request.sections}, []
+    pair = [name for name in ("R1", "R2") if name in names]
+    round_ = radius_needed(values.get("shape", ((), PARABOLOID))[1])
+    messages += [_RADIUS] if round_ and "R" not in names and not pair else []
+    if len(pair) == 1:
+        other = "R2" if pair == ["R1"] else "R1"
+        messages.append(f'{other} is missing: R1 and R2 go together; of a flat body {other} = "flat"')
+    if pair and "R" in names:
+        messages.append(f"R and {pair[0]} are both given: R = 1/(1/R1 + 1/R2) follows from R1 and R2")
+    if not {"E2", "body"} & names:
+        messages.append('E2 is missing: Young\'s modulus of the body (under the layer, if there is one), or "rigid"')
+    several = "sublayers" in names
+    lacking = layered(values) and not {"E1", "n", "layer"} & names
+    if lacking and not several:
+        messages.append('E1 is missing: Young\'s modulus of the layer (without a layer: base = "half_space")')
+    others = [name.removesuffix(".h") for name in names if name.startswith("layers.") and name.endswith(".h")]
+    without = [name for name in sorted(others) if not {f"{name}.{field}" for field in ("E1", "n", "material")} & names]
+    without = ["layers.1"] * (lacking and several) + without
+    messages += [f"{name}.E1 is missing: Young's modulus of this layer, or its material" for name in without]
+    for modulus, _, ratio in bodies_of(names).values():
+        if modulus in names and ratio in names:
+            messages.append(f"{modulus} and {ratio} are both given: one follows from the other")
+    if "nu_punch" in names and not {"E_punch", "punch"} & names:
+        messages.append("nu_punch is given without E_punch: a punch without a modulus is rigid")
+    return messages
+
+
+def same_cases(scene: Scene) -> list[str]:
+    """A message for two of [[cases]] that are the same, in whatever units they are given."""
+    arrays = [v for table in (scene.values, scene.spreads, scene.parameters) for v in table.values()]
+    columns = [v.values.tolist() for v in arrays if xr.is_array(v) and v.dims == ("case",)]
+    columns += [texts for dim, texts in scene.names.values() if dim == "case"]
+    return equal_cases(list(zip(*columns, strict=True)))
+
+
+def impossible(scene: Scene) -> list[str]:
+    """Messages for bodies that cannot touch."""
+    values, messages = scene.values, []
+    if "R1" in values and not np.all(1 / values["R1"] + 1 / values["R2"] > 0):
+        R1, R2 = (f"{name} = {_shown(values[name])} m" for name in ("R1", "R2"))
+        messages.append(f"{R1}, {R2}: 1/R1 + 1/R2 must be > 0: a cup (the negative radius) must be wider than its ball")
+    rigid = np.isinf(values["E2"])
+    if not np.any(rigid):
+        wrong = 'n = 0 is a rigid base: give E2 = "rigid" and E1, the modulus of the layer'
+        return messages + [wrong] * bool(np.any(scene.parameters.get("n", values.get("n", 1.0)) == 0))
+    if np.any(rigid & (is_bare(scene.parameters.get("base", "layered")))):
+        swap = "a rigid body and an elastic ball are the same contact as a rigid ball on a body of the ball's modulus"
+        messages.append(f'E2 is rigid and base = "half_space": no layer is there to yield; {swap}')
+    if "n" in scene.parameters:
+        messages.append("E2 is rigid and n is given: give E1, the modulus of the layer")
+    return messages
+
+
+def moving_tables(scene: Scene) -> list[str]:
+    """A message if a table of the user's, whose lengths are in R, would change with the spread of a radius."""
+    words = [np.ravel(np.array(scene.parameters.get(name, ""), dtype=object)).tolist() for name in ("micro", "shape")]
+    tables = [str(word) for word in sum(words, []) if str(word).startswith(PREFIX)]
+    lengths = (in_metres, laws_in_metres)
+    table = next((word for word in tables if not any(given(word, scene.lexicon) for given in lengths)), "")
+    moved = sorted({"R", "R1", "R2"} & {*scene.spreads})
+    if not (table and moved):
+        return []
+    return [f"{moved[0]} has a spread: the lengths in {table} are in R and would change with it; give {moved[0]} none"]
+
+
+def _shown(value: Any) -> str:
+    return ", ".join(f"{number:g}" for number in np.ravel(value)[:3].tolist()) + " ..." * (np.size(value) > 3)
+
+
+def beyond_bounds(scene: Scene, inputs: dict[str, Input]) -> list[str]:
+    """A message for each input with a unit, and each ratio of moduli, that is outside its interval.
+
+    inputs : E and ν in place of materials
+    """
+    with_units = [name for name in scene.values if name not in SCENE and scene.lexicon.rows[name].powers != (0, 0)]
+    messages = [_message(scene, inputs[name], place) for name in with_units for place in _first_outside(scene, name)]
+    moduli = {ratio: modulus for modulus, _, ratio in (*bodies_of(scene.values).values(), *moduli_of(scene.values))}
+    for ratio, modulus in moduli.items():
+        for place in _first_outside(scene, ratio) if ratio and modulus in scene.values else ():
+            entry, value = scene.lexicon.rows[ratio], _at(scene.parameters[ratio], place)
+            modulus_text = f"{modulus} = {readable(_at(scene.values[modulus], place), 'Pa')}"
+            bounds = allowed(scene.lexicon.parameter(ratio))
+            messages.append(f"{modulus_text}: {entry.long_name}: {ratio} = {value:.4g}: {bounds}")
+    return messages
+
+
+def _first_outside(scene: Scene, name: str) -> list[Place]:
+    """The place of the first dimensionless value of a parameter that is outside its interval; [] if all are inside."""
+    values = scene.parameters[name]
+    inside = within(row_of(name, scene.values, scene.lexicon), np.asarray(values))
+    outside = [] if inside.all() else np.argwhere(~inside)[:1].tolist()  # argwhere takes as long as all else here
+    return [dict(zip(getattr(values, "dims", ()), index, strict=True)) for index in outside]
+
+
+def _at(value: Any, place: Place) -> Any:
+    """The number of an array at a place, the first one along dimensions that the place does not have."""
+    if not xr.is_array(value):
+        return value
+    return value.isel({dim: place.get(dim, 0) for dim in value.dims}).item()
+
+
+def _message(scene: Scene, entry: Input, place: Place) -> str:
+    """The message for the value of an input at a place."""
+    name = entry.name
+    value, row = scene.values[name], scene.lexicon.rows[name]
+    parameter = row_of(name, scene.values, scene.lexicon)
+    index = [place[dim] for dim in getattr(value, "dims", ())]
+    label = f"{name}{index}" if index else name
+    text, word, size = _written(entry, index, _at(value, place), scene.lexicon.all_rows[name].unit)
+    R, unit = _at(scene.R, place), _at(scene.unit, place)
+    # the bounds in the unit of the value
+    low, high = (f"{with_unit(end, row.powers, unit, R) / size:.4g}" for end in ends(parameter.interval)[:2])
+    interval = f"{parameter.interval[0]}{low}, {high}{parameter.interval[-1]}"
+    modulus = "E1*" if np.isinf(_at(scene.values["E2"], place)) else "E2*"
+    scale = row.scale.replace("E2*", modulus)
+    units = ((modulus, readable(unit, "Pa")), ("R", readable(R, "m")))
+    here = " and ".join(f"{symbol} = {text}" for symbol, text in units if symbol in scale)
+    bounds = f"{allowed(parameter._replace(interval=interval))} {word}, which is {parameter.interval} {scale}, {here}"
+    return f"{label} = {on_one_line(str(text))}: {bounds}{pull_hint(name, _at(value, place), scene.values)}"
+
+
+def _written(entry: Input, index: list[int], value: float, unit: str) -> tuple[Any, str, float]:
+    """The text of a value, the word for its unit, and the size of that unit in the SI `unit`.
+
+    A value of a range has no text, and some units are no single word. Then the word is a multiple of the SI unit that
+    suits the value.
+    """
+    text = entry.at(index)
+    word = (entry.unit if entry.array is not None else unit_in(text)) or multiple(abs(value), unit)[0]
+    size = quantity("", f"1 {word}", unit).value
+    return f"{value / size:g} {word}" if text is None else text, word, size

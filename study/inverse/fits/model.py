@@ -12,8 +12,7 @@ from solver.shapes import PARABOLOID
 
 from ...inputs.definition import Definition, StudyError
 from ...inputs.punch.shapes import ANGLES
-from ...inputs.scene.scales import make_dimensionless, with_unit
-from ...inputs.scene.scene import Scene
+from ...inputs.scene.scene import Scene, make_dimensionless, with_unit
 from ...inputs.vocabulary import VOCABULARY
 
 #: Two rows of exponents for each pair (x, y). The first has q, e, r of Hertz's contact on a half-space of the layer's

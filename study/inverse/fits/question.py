@@ -11,10 +11,9 @@ import numpy as np
 
 from solver.parameters import ends
 
-from ...inputs.definition import Definition, StudyError
+from ...inputs.definition import Definition, StudyError, from_call
 from ...inputs.lexicon import Lexicon, lexicon_for
 from ...inputs.punch.shapes import ANGLES
-from ...inputs.reading import from_call
 from ...inputs.scene.stacks import short
 from ...inputs.vocabulary import BODIES, CONTROLS, ROWS, scene_of, suggest
 from ...specimen.quantities import has_unit, quantity

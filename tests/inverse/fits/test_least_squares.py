@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from study.inputs.reading import from_call
+from study.inputs.definition import from_call
 from study.inverse.fits.curve import MeasuredCurves
 from study.inverse.fits.intervals import covariance_of
 from study.inverse.fits.least_squares import HUBER, Data, minimise, scale

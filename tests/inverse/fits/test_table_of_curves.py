@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from study.inputs.reading import from_call
+from study.inputs.definition import from_call
 from study.inverse.fits.model import HERTZ, CurveModel
 from study.inverse.fits.tables.ratio_table import STEP, Cubics, RatioTable
 from study.inverse.fits.tables.tiles import WIDE, Chebyshev, Lattice

@@ -15,8 +15,7 @@ from children import PATIENCE
 import study
 from solver import laws
 from solver.compiled.library import core
-from study.inputs.definition import StudyError
-from study.inputs.reading import from_call
+from study.inputs.definition import StudyError, from_call
 from study.work import engine
 from study.work.cases import guarded
 from study.work.processes import python_command

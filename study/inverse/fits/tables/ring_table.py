@@ -15,7 +15,7 @@ import numpy as np
 from solver.smooth.adhesion.rings import rings
 
 from ....inputs.punch.shapes import ANGLES
-from ....inputs.scene.scales import with_unit
+from ....inputs.scene.scene import with_unit
 from ..model import is_ratio
 from .terms import Terms
 from .tiles import WIDE, Chebyshev, Lattice, Position

@@ -15,8 +15,7 @@ from solver.bases import named
 from solver.shapes import PARABOLOID
 from solver.smooth.adhesion.curve_terms import curve_terms
 
-from ....inputs.scene.scales import with_unit
-from ....inputs.scene.scene import Scene
+from ....inputs.scene.scene import Scene, with_unit
 from ..model import CurveModel, is_ratio
 
 #: Powers of E, w, the unit of a, R and the cotangent in P₀, D₀, pull_P and pull_D.

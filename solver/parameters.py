@@ -41,6 +41,12 @@ class Parameter(NamedTuple):
     instead : of a parameter without a default, the name of another one that serves where it is not given; "": a case
         can do without both. None: it must be given.
     symbol, long_name : what tables and figures call a parameter that a registered law declares.
+
+    Examples
+    --------
+    >>> angle = Parameter(0.5, interval="(0, 1.57)")
+    >>> allowed(angle, [1.0, 2.0]).tolist()
+    [True, False]
     """
 
     default: float | int | str | None = None

@@ -87,13 +87,16 @@ def test_materials_by_name_bring_their_spreads(capsys):
         (["P"], ['"P": must be NAME=VALUE, such as R="5 mm"']),
         (["P=", "=3"], ['"P=": must be NAME=VALUE, such as R="5 mm"', '"=3": must be NAME=VALUE, such as R="5 mm"']),
         (["P=1e-5", "P=2e-5"], ["P is given twice"]),
-        (["P=1e-5", "x=5"], ["x says nothing of one contact: leave it out"]),
+        (["P=1e-5", "x=5"], ["x does not apply to one contact: leave it out"]),
         *(
-            (["P=1e-5", f"{name}=3"], [f"{name} says nothing of one contact: leave it out"])
+            (["P=1e-5", f"{name}=3"], [f"{name} does not apply to one contact: leave it out"])
             for name in ("profiles", "cases", "title", "workers")
         ),
         (["body=steel 52100", "E2=210 GPa"], ["body and E2 are both given: E2 follows from body"]),
-        (["layer=DLC"], ['layer: "DLC" is no material; did you mean "DLC ta-C" or "DLC a-C:H"? (or give E1 and nu1)']),
+        (
+            ["layer=DLC"],
+            ['layer: "DLC" is not a material; did you mean "DLC ta-C" or "DLC a-C:H"? (or give E1 and nu1)'],
+        ),
         (
             ["P=1e-5", "h=0.02", "n=0.5", "accuracy=5%", "micro=smooth", "R=2 mm", "E2=5 GPa"],
             ['P = 1e-05 has no unit: must be a force, such as "2 N" (accuracy = "5%" makes this a study with units)'],

@@ -33,7 +33,7 @@ FAR = 10.0
 #: more the softer the layer is. A choice, for the time falls evenly as n rises.
 SOFT = 0.1
 MOST = 100  # contacts of a grid that are looked at, evenly spread: so few that it is not noticed
-SAID = f"far outside what the model describes: an estimate exceeds limits {FAR:g} times and more. It may take long."
+SAID = f"far outside what the model describes: estimates exceed limits {FAR:g} times or more. Solving may take long."
 _BASES = {
     "half_space": "a half-space",
     "layer_alone": "a half-space of the layer's material",
@@ -45,12 +45,12 @@ _BASES = {
 MODELS = {base: f"{words} under the asperities" for base, words in _BASES.items()}
 MODELS |= {f"smooth_{base}": f"{words}, without asperities" for base, words in _BASES.items()}
 EXCEEDED = "None of the assumptions that `validity` checks is violated, except that a strength is exceeded, as follows."
-NOT_VIOLATED = "None of the assumptions that are checked is violated (docs/model.md, Four answers)."
+NOT_VIOLATED = "None of the checked assumptions is violated (docs/model.md, Four answers)."
 #: Behind a model with asperities.
-WHOSE = " The asperities are the punch's; a rough surface under a polished punch is the same contact, and of two rough \
-surfaces the sum counts (docs/model.md, Elastic punch)."
-SLIDES = 'The layer slides on the body without friction, since bonding is not given. One that is deposited or glued on \
-does not slide, and if it is soft it is then much stiffer: bonding = "bonded".'
+WHOSE = " The asperities belong to the punch. A rough surface under a polished punch is the same contact; if both \
+surfaces are rough, their heights add up (docs/model.md, Elastic punch)."
+SLIDES = 'The layer slides on the body without friction because bonding is not given. A deposited or glued layer does \
+not slide, and a soft one is then much stiffer: give bonding = "bonded".'
 
 
 class FarOutside(UserWarning):
@@ -102,7 +102,7 @@ def beside_rules(contact: xr.Dataset) -> list[str]:
 def _near_0(case: xr.Dataset) -> str:
     """The second size to which an error is relative: with adhesion a load or a depth may be 0."""
     names = [name for name in "PD" if abs(case[name]) < abs(case.get(f"{name}_off", 0.0))]
-    return f" ({' and '.join(names)}: of the size at pull-off)" * bool(names)
+    return f" ({' and '.join(names)} relative to the size at pull-off)" * bool(names)
 
 
 def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
@@ -113,8 +113,8 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
     word, used = (flag_words(case[name]).item() for name in ("status", "model_used"))
     if word == "converged":
         *first, last = (VOCABULARY[name].symbol for name in judged if np.isfinite(case[name]))
-        within = f"{', '.join(first)} and {last} are within a relative {float(case['error']):.1g}"
-        found = [f"Solved: {within} of the model's solution{_near_0(case)}."]
+        of = f"{', '.join(first)} and {last}{_near_0(case)}"
+        found = [f"Solved: the estimated relative error of {of} is {float(case['error']):.1g}."]
         found += [f"Spreads: {text}" for text in influence(case, "p_max" if "p_max" in judged else "p0")]
     else:
         known = {one.name.lower(): one.meaning for one in Status}
@@ -146,5 +146,5 @@ def assumed(case: xr.Dataset) -> list[str]:
     found = unit_of_length(case) + [SLIDES] * bool("bonding" in taken and not is_bare(v["base"].item()))
     for modulus, ratio, _ in bodies_of(v).values():
         if ratio in taken and modulus in v and v[modulus].attrs.get("units") == "Pa" and v[modulus] < RUBBER:
-            found.append(f"{ratio} = {v[ratio].item():g}. Of rubbers and gels, as soft as this, it is nearly 0.5.")
+            found.append(f"{ratio} = {v[ratio].item():g}. Rubbers and gels, as soft as this, have nearly 0.5.")
     return found

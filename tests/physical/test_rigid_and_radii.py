@@ -145,7 +145,10 @@ def test_the_mask_of_a_cup_over_axes_and_cases_and_in_a_file(tmp_path):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"E2": "rigid", "base": "half_space"}, 'E2 is rigid and base = "half_space": no layer is there to yield'),
+        (
+            {"E2": "rigid", "base": "half_space"},
+            'E2 is rigid and base = "half_space": there is no layer that could deform',
+        ),
         ({"E2": "rigid", "E1": None, "n": 0.5}, "E2 is rigid and n is given: give E1"),
         ({"E1": None, "n": 0}, 'n = 0 is a rigid base: give E2 = "rigid" and E1, the modulus of the layer'),
         ({"E1": None, "n": [0.5, 0]}, 'n = 0 is a rigid base: give E2 = "rigid"'),

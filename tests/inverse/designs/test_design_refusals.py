@@ -14,7 +14,7 @@ TARGET, BY = {"p0": "20 MPa"}, {"h": ("1 um", "1 mm")}
     [
         ("p0", BY, {}, '"p0": give exactly one wanted result with its value, such as {"p_max": "180 MPa"}'),
         (TARGET | {"D": "1 um"}, BY, {}, "2 targets: give exactly one wanted result"),
-        ({"p_maxx": "1 MPa"}, BY, {}, '"p_maxx" is no result that can be wanted; did you mean "p_max"?'),
+        ({"p_maxx": "1 MPa"}, BY, {}, '"p_maxx" is not a result that can be wanted; did you mean "p_max"?'),
         ({"p0": "20 um"}, BY, {}, 'p0 = "20 um" is a length: must be a pressure'),
         ({"p0": 20}, BY, {}, "p0 = 20 has no unit: must be a pressure"),
         ({"p0": "20 ± 1 MPa"}, BY, {}, "a wanted value has no ±"),
@@ -22,7 +22,7 @@ TARGET, BY = {"p0": "20 MPa"}, {"h": ("1 um", "1 mm")}
         ({"Ar_An": 1.5}, BY, {}, "Ar_An = 1.5: must be in (0, 1]"),
         ({"p0": ["20 MPa", "30 MPa"]}, BY, {}, "p0 = ['20 MPa', '30 MPa']: must be a pressure"),
         ({"P": "1 N"}, BY, {}, "P is the target, and P is given: leave it out"),
-        ({"h": "1 um"}, BY, {}, '"h" is no result that can be wanted'),
+        ({"h": "1 um"}, BY, {}, '"h" is not a result that can be wanted'),
         (TARGET, {"h": ("1 mm", "1 um")}, {}, 'by: h = ("1 mm", "1 um"): the first bound must be below the second'),
         (TARGET, {"h": ("1 um", "1000 nm")}, {}, "the first bound must be below the second"),
         (TARGET, {"h": (1, 2)}, {}, 'h = 1 has no unit: must be a length, such as "2 mm"'),

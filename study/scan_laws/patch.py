@@ -79,7 +79,7 @@ class Pressing:
         start = np.ones_like(self.depths) if self.pressures is None else self.pressures
         field, A, ended = pressed(self.depths, self.response, p, start * (p / start.mean()), self.mirrored)
         if not ended:
-            raise ValueError(f"{name}: the contact at p = {p:.3g} E1* has not come to rest: take a smaller patch")
+            raise ValueError(f"{name}: the contact at p = {p:.3g} E1* has not converged: take a smaller patch")
         self.pressures = field
         return float(A), np.count_nonzero(field) / field.size, float(field.max())
 

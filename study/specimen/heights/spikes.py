@@ -18,7 +18,7 @@ def despiked(z: np.ndarray, despike: float | None, name: str) -> tuple[np.ndarra
 
     A spike is further than `despike` robust deviations from the median of its eight neighbours. The robust deviation
     is 1.4826 times the median of all these distances; where that is 0, heights in coarse steps, √(π/2) times their
-    mean. A tilt counts for nothing: the medians of the differences along each axis are taken off first. Beyond a border
+    mean. A tilt counts for nothing: the medians of the differences along each axis are removed first. Beyond a border
     the heights go on as their mirror image through it, of a profile through the median of its last three points.
 
     Raises ValueError: a `despike` that is no positive number.

@@ -122,7 +122,10 @@ def array(values, *dims, **coords):
             "Ra has other values of s, or in another order, than P",
         ),
         ({"P": 1, "Ra": array([1, 2], "P")}, "P is a dimension and a parameter over other dimensions"),
-        ({"P": 1, "Ra": array([1, 2], "h")}, "the dimension h is called like a parameter that is not given: rename it"),
+        (
+            {"P": 1, "Ra": array([1, 2], "h")},
+            "the dimension h has the name of a parameter that is not given: rename it",
+        ),
         ({"P": 1, "Ra": array([1, 2], "lam")}, 'a dimension cannot be called "lam", which is the name of a result'),
         ({"P": 1, "Ra": array([1, 2], "x")}, 'a dimension cannot be called "x", which is the name of a result'),
         ({"P": array([], "s")}, "P is empty: must have at least one value"),

@@ -66,7 +66,7 @@ def correlate(scene: Scene, pairs: Any, errors: list[str]) -> None:
             correlations[pair] = float(value)
     dims = tuple({dim for value in correlations.values() for dim in getattr(value, "dims", ())})
     if pairs and not errors and np.linalg.eigvalsh(matrix(scene, dims)).min() < -_ROUNDING:
-        errors.append("correlations: no inputs have all of these: their matrix has a negative eigenvalue")
+        errors.append("correlations: these cannot all hold: their matrix has a negative eigenvalue")
 
 
 def matrix(scene: Scene, dims: tuple[str, ...]) -> np.ndarray:

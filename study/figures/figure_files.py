@@ -75,7 +75,7 @@ def read(path: Path, _: tuple) -> Text:
         nodes = list(ast.walk(ast.parse(content(path, LARGEST_TEXT))))
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:  # some of a null byte, or of deep brackets
         line = f"line {error.lineno}: " if isinstance(error, SyntaxError) and error.lineno else ""
-        raise StudyError([f"{path.as_posix()}: is no Python: {line}{getattr(error, 'msg', error)}"]) from None
+        raise StudyError([f"{path.as_posix()}: is not valid Python: {line}{getattr(error, 'msg', error)}"]) from None
     except OSError as error:
         raise StudyError([f"{path.as_posix()}: cannot be read: {error.strerror}"]) from None
     imports = [node for node in nodes if isinstance(node, ast.ImportFrom)]

@@ -21,7 +21,7 @@ def map_of(
 ) -> tuple[Figure, Columns]:
     """The figure, and its numbers in columns. look : "linear", "log" or "", and the limits of the colour or None.
 
-    Raises StudyError: x or y is no axis of the quantity, or there is a third one.
+    Raises StudyError: x or y is not an axis of the quantity, or there is a third one.
     """
     values = contacts[colour].squeeze(
         [dim for dim, n in contacts[colour].sizes.items() if n == 1 and dim not in (x, y)]

@@ -322,7 +322,7 @@ def _axis(name: str, values: Any, signed: bool) -> np.ndarray:
     if values.ndim != 1 or not values.size or bad.size:
         wrong = f"{name} = {bad[0]:g}" if bad.size else f"{name} of shape {values.shape}"
         bound = "" if signed else ", and at least 0" + (" where mu is 0" if name == "r" else "")
-        raise StudyError([f"{wrong}: must be one-dimensional, of finite numbers in units of a{bound}"])
+        raise StudyError([f"{wrong}: must be one-dimensional, with finite numbers in units of a{bound}"])
     return values
 
 

@@ -131,7 +131,9 @@ def _histogram(name, z, share):
         raise ValueError("column z: must ascend in equal steps")
     law = heights.histogram(name, z, share, _digest(z, share))
     if law.error > _FAR:
-        raise ValueError("column share: a few summits stand far above the many: leave out the highest rows, of so few")
+        raise ValueError(
+            "column share: a few summits stand far above the many: leave out the highest rows, which describe so few"
+        )
     return law
 
 

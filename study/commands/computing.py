@@ -136,7 +136,10 @@ def cost_line(name: str, cost: Estimate) -> str:
 
 def failure_lines(report: Report, name: str) -> list[str]:
     lines = [f"{name}: block {block} failed: {reason}" for block, reason in sorted(report.failures.items())]
-    return [*lines, f"{name}: {counted(len(lines), 'block')} failed; the others are kept, the same command tries again"]
+    return [
+        *lines,
+        f"{name}: {counted(len(lines), 'block')} failed; the others are kept, and the same command tries again",
+    ]
 
 
 def report_line(report: Report, name: str) -> str:

@@ -73,7 +73,7 @@ def of_fit(fitted: xr.Dataset) -> str:
         words, counts = np.unique(decode(fitted["fit_status"]).values.astype(str), return_counts=True)
         lines += [
             "",
-            f"and {count - MOST_CURVES} more. Of all: "
+            f"and {count - MOST_CURVES} more. For all of them: "
             + ", ".join(f"{n} {w}" for w, n in zip(words, counts, strict=True)),
         ]
     return "\n".join([*lines, *([""] * (count > 1) + [text] if (text := fitted.attrs.get("assumed")) else [])])

@@ -81,7 +81,7 @@ def measured(source: Any, least: int = 2, reading: Reading = _AS_IT_IS, area: An
         return _of_columns(of_instrument(Path(source), reading), least=least)
     options = reading._replace(curve=None)._asdict()
     if strange := [name for name, value in options.items() if value != getattr(_AS_IT_IS, name)]:
-        kind = "of files of instruments, and the columns of all else are taken as they are"
+        kind = "for files of instruments; columns of other files are taken as they are"
         raise StudyError([f"curves: {strange[0]} is {kind}: leave it out"])
     dataset = _of_source(source, is_file, least, area)
     if is_file and least > 1 and dataset.sizes["point"] < 2:

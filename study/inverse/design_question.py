@@ -30,9 +30,9 @@ def read_wanted(
     name = short(written)  # as results have it: "h" of "layers.1.h"
     rest = {key: entry for key, entry in parameters.items() if entry is not None}
     twice = any({name, written} & {*table} for table in (rest, *rows))
-    wrong = [f"{written} is given, and looked for (by): leave one of them out"] * twice
+    wrong = [f"{written} is both given and searched for (by): leave one of them out"] * twice
     wrong += [f"{target} is the target, and {target} is given: leave it out"] * any(target in t for t in (rest, *rows))
-    wrong += [f"{target} is the target, and looked for (by)"] * (name == target)
+    wrong += [f"{target} is both the target and searched for (by)"] * (name == target)
     if wrong:
         raise StudyError(f"design: {text}" for text in wrong)
     ends = [_definition(rest | {written: bound}, rows, same_piece, correlations) for bound in bounds]
@@ -67,7 +67,7 @@ def _looked_for(by: Any, tables: tuple) -> tuple[str, tuple]:
         raise StudyError([f"design: by: {no_parameter(name, [*lexicon.parameters, *SCENE])}"])
     parameter = lexicon.parameter(shortened) if shortened in lexicon.rows else None
     if name in NUMERICS or (parameter and (not parameter.interval or parameter.whole)):
-        raise StudyError([f"design: by: {name} is not a number of the contact that can be looked for"])
+        raise StudyError([f"design: by: {name} is not a number of the contact that can be searched for"])
     bounds = tuple(map(plain, bounds)) if isinstance(bounds, (tuple, list)) else bounds
     if not isinstance(bounds, tuple) or len(bounds) != 2 or any(isinstance(end, (tuple, list)) for end in bounds):
         raise StudyError([f"design: by: {name} = {shown(bounds)}: must be two bounds, {_BOUNDS}"])

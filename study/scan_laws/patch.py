@@ -93,7 +93,7 @@ class Pressing:
 def patch_of(scan: Any, form: Any, cutoff: float | None, periodic: str, refine: int, caller: str) -> Patch:
     """The period of a scan, or of heights (ny, nx) in m. Raises ValueError for what is no map without gaps."""
     if not isinstance(scan, Scan) or scan.z.ndim != 2:
-        raise ValueError(f"{caller}: a map of heights is needed, of roughness.read or roughness.height_map")
+        raise ValueError(f"{caller}: needs a map of heights, from roughness.read or roughness.height_map")
     if np.isnan(scan.z).any():
         gaps = int(np.isnan(scan.z).sum())
         raise ValueError(f'{scan.name}: {gaps} points are missing: read it with missing="fill", or crop it')

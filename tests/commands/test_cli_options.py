@@ -202,7 +202,7 @@ def test_failed_blocks_are_told_in_their_order():
     assert failure_lines(report, "s") == [
         "s: block 3 failed: early",
         "s: block 12 failed: late",
-        "s: 2 blocks failed; the others are kept, the same command tries again",
+        "s: 2 blocks failed; the others are kept, and the same command tries again",
     ]
 
 

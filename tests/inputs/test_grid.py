@@ -232,5 +232,5 @@ def chunked_definition():
 @pytest.mark.parametrize(("start", "stop"), [(1e-6, 1e-5), ("1 N", "2 N")])
 def test_a_range_of_a_study_file_is_answered_with_what_python_takes(start, stop):
     """It "must be a finite number", or "must be a force"."""
-    with pytest.raises(study.StudyError, match="P: a range stands in study files; here give its values, as of numpy"):
+    with pytest.raises(study.StudyError, match="P: ranges are for study files; here give the values, as numpy"):
         study.solve(P={"start": start, "stop": stop, "num": 3}, h=0.02, n=0.5, micro="smooth")

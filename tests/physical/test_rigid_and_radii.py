@@ -52,7 +52,7 @@ def test_rigid_bases_among_others_and_rigid_punches():
 
 def test_dimensionless_numbers_of_two_units_do_not_mix():
     given = {"P": 1e-5, "h": 0.01, "micro": "smooth"}
-    with pytest.raises(study.StudyError, match="n = 0, a rigid base, is among others: its numbers are in E1"):
+    with pytest.raises(study.StudyError, match="n = 0, a rigid base, is among other values: its numbers are in E1"):
         study.solve(**given, n=[0, 0.5])
     both = study.solve(**given, n=0, base=["layered", "half_space"], x=2)
     np.testing.assert_allclose(both.a.sel(base="half_space"), np.cbrt(0.75e-5), rtol=1e-12)

@@ -45,7 +45,7 @@ def test_words_say_whether_it_is_stable_and_when_it_comes_off():
     off = study.summary(study.solve(**STICKY, P="-50 nN"))
     assert "NOT SOLVED (pulled_off)" in off and "comes off at P = -23.562 nN" in off
     open_ = study.summary(study.solve(**STICKY, a="0.5 um"))
-    assert "This contact is not stable" in open_
+    assert "This contact is unstable" in open_
     assert "so the surfaces do not adhere" in study.summary(study.solve(**GEL, P="1 nN", w_adhesion="0 J/m^2"))
 
 
@@ -122,7 +122,7 @@ def test_stresses_of_what_sticks():
     sz = study.stresses(contact, r=[0.0, 1.0], z=[0.0]).sz.squeeze("z")
     assert_allclose(sz.sel(r=0.0), -contact.p0, rtol=1e-9)
     assert np.all(sz.sel(r=1.0) == np.inf)
-    with pytest.raises(study.StudyError, match="extremes: there are no largest stresses .* where the surfaces stick"):
+    with pytest.raises(study.StudyError, match="extremes: there are no largest stresses .* where the surfaces adhere"):
         study.extremes(contact)
     with pytest.raises(study.StudyError, match='no stresses of contacts that adhere yet, except with adhesion = "jkr"'):
         study.stresses(study.solve(P=1e-5, w_adhesion=1e-7, adhesion="dmt", **ALONE))

@@ -56,7 +56,7 @@ def test_failed_blocks_stand_in_their_order():
     assert failure_lines(report, "a") == [
         "a: block 2 failed: MemoryError",
         "a: block 10 failed: full disk",
-        "a: 2 blocks failed; the others are kept, the same command tries again",
+        "a: 2 blocks failed; the others are kept, and the same command tries again",
     ]
 
 

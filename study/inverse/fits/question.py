@@ -141,9 +141,7 @@ def _too_many(unknowns: _Unknowns, wrong: bool) -> list[str]:
     """Why a curve cannot say these unknowns; that there are none only if nothing else is `wrong`."""
     every, errors = unknowns.every, []
     if "k_machine" in every:
-        errors.append(
-            "free: k_machine: where a punch comes off is read from the points, so they do not say what held it"
-        )
+        errors.append("free: k_machine: the points show where the punch comes off, not the stiffness of the machine")
     errors += [f"free: {a} and {b}: {_ALIKE_WORDS}" for a, b in _ALIKE if a in every and b in every]
     if not (unknowns.free or wrong or errors):
         errors.append('free: name at least one input, such as free=["E1"]')

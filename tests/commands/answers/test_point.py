@@ -164,7 +164,7 @@ def test_a_picture_that_cannot_be_drawn_is_told_before_anything_is_solved(capsys
     assert main(["point", "--stresses", "ball.doc", *words(**BALL, P="10 N")]) == 2
     assert "--stresses ball.doc: must end with one of .png, .pdf, .svg" in capsys.readouterr().err
     assert main(["point", "--stresses", "ball.png", *words(**BALL, P="10 N, 20 N")]) == 2
-    assert "--stresses ball.png: the picture is of one contact, and there is a list" in capsys.readouterr().err
+    assert "--stresses ball.png: the picture shows one contact, and the call has a list" in capsys.readouterr().err
     stamp = ["shape=flat", "flat_radius=0.1", "P=1e-5", "base=half_space", "micro=smooth"]
     assert main(["point", "--stresses", "stamp.png", *stamp]) == 2
     said = capsys.readouterr()

@@ -65,7 +65,7 @@ def test_several_curves_and_one_without_contact(folder, capsys):
     code, text, _ = run(capsys, "two.csv", *CALL, "free=E1", "--json")
     assert code == 1 and [curve["curve"] for curve in json.loads(text)] == ["left", "right"]
     code, words, _ = run(capsys, "noise.csv", *CALL, "free=E1")
-    assert code == 1 and "there is no contact in it" in words
+    assert code == 1 and "it contains no contact" in words
     code, text, _ = run(capsys, "noise.csv", *CALL, "free=E1", "--json")
     assert code == 1 and json.loads(text)["E1"]["value"] is None
 

@@ -92,7 +92,7 @@ def test_the_depth_of_an_elastic_punch_is_said_to_be_of_both():
 
 
 def test_whose_asperities():
-    words = "The asperities are the punch's; a rough surface under a polished punch is the same contact"
+    words = "The asperities belong to the punch. A rough surface under a polished punch is the same contact"
     for layer in ({"base": "half_space"}, {"h": 0.02, "n": 0.5}, {"h": 0.02, "n": 0.5, "base": "thin_layer"}):
         rough = study.summary(study.solve(P=1e-5, **layer, Nbar=250000, Ra=0.004, x=2))
         assert re.search(rf"\nModel: .*\. {words}", rough)

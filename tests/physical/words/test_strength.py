@@ -138,7 +138,7 @@ def test_of_a_law_of_ones_own_pmax_is_compared(tmp_path):
     found = quiet(**DLC | {"R": "10 mm"}, P=["1 uN", "30 N"], micro=f"table:{tmp_path / 'law.csv'}")
     text = strength(found.isel(P=1))
     assert text.startswith("The asperities would yield: the stress as of a sphere under pmax, ")
-    assert "The law of the asperities does not say what is below them" in text
+    assert "The law of the asperities does not give the stress below them" in text
     share = (found.p_max - found.p0).values / 1.5547 / (8e9 / 2.84)
     assert float(re.search(r"([\d.]+) times the", text)[1]) == pytest.approx(share[1], rel=0.06)
     assert (found.validity.values & 1024 > 0).tolist() == (share > 1).tolist() == [False, True]

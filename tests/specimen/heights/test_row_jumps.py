@@ -68,7 +68,7 @@ def test_jumps_are_named_with_their_size_and_taken_off(size, seed):
     assert not nothing and after.Nbar > 1.3 * before.Nbar
     stated = float(note.split("by some ")[1].split(" nm")[0])
     assert_allclose(stated, size, rtol=0.25)  # of 128 offsets
-    assert note.startswith("the rows jump") and 'rows="median" takes them off' in note
+    assert note.startswith("the rows jump") and 'rows="median" removes them' in note
     assert not any("long, not round" in one for one in after.notes)
     mended, quiet = said(jumped, rows="median")
     assert not quiet and mended.filter.startswith(

@@ -33,7 +33,7 @@ def _refuse_others() -> None:
         other = sys.modules.get(name)
         place = next(iter(getattr(other, "__path__", ())), getattr(other, "__file__", None) or "")
         if other and os.path.realpath(place) != os.path.realpath(os.path.join(_BESIDE, name)):
-            wrong = f"has been imported as {name}, which is a package of roughcoat as well: give it another name"
+            wrong = f"has been imported as {name}, which is also a package of roughcoat: give it another name"
             raise ImportError(f"{getattr(other, '__file__', None) or place}: {wrong}", name=name, path=place)
 
 

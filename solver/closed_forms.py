@@ -19,6 +19,12 @@ class SmoothContact(NamedTuple):
     Attributes
     ----------
     P, a, D, p0 : load, contact radius, indentation depth, and central pressure p(0)
+
+    Examples
+    --------
+    >>> contact = hertz(a=0.04)
+    >>> print(f"D = {contact.D:.4f}, p0 = {contact.p0:.4f}")
+    D = 0.0016, p0 = 0.0255
     """
 
     P: np.ndarray

@@ -58,7 +58,8 @@ class LayerWords:
         """The numbers of a list of layers by their names, and messages about mistakes in the list."""
         is_list = hasattr(layers, "__len__") and not isinstance(layers, (str, Mapping)) and len(layers)
         if not is_list or not all(isinstance(layer, Mapping) for layer in layers):
-            return {}, [f"layers = {self.shown(layers)}: must be a list of layers, {self.example}"]
+            words = "; in a terminal write layers.1.h=..., layers.2.h=... instead" * isinstance(layers, str)
+            return {}, [f"layers = {self.shown(layers)}: must be a list of layers, {self.example}{words}"]
         if len(layers) > MOST:
             return {}, [_too_many(len(layers))]
         numbers, errors = {}, []
@@ -151,7 +152,7 @@ def base_of_layers(base: Any, errors: list[str]) -> Any:
     """
     several = base if isinstance(base, (list, tuple)) else [base]
     if any(isinstance(word, str) and is_exact(word) and not is_stack(word) for word in several):
-        errors.append('base = "layered" has one layer: of layers it is "stack"')
+        errors.append('base = "layered" has one layer; several layers need base = "stack"')
     words = [_BASES.get(word, word) if isinstance(word, str) else word for word in several]
     return words if isinstance(base, (list, tuple)) else words[0]
 
@@ -238,7 +239,7 @@ def fields_of(layer: Mapping, number: int) -> dict[str, Any]:
     if isinstance(profile, str) and profile.startswith(profiles.PREFIX):
         moduli = [field for field in ("n", "E1", "material") if field in fields]
         if moduli:
-            raise ValueError(f"{where}.{moduli[0]} is given beside a table of E*/E2*: the table says it")
+            raise ValueError(f"{where}.{moduli[0]} is given beside a table of E*/E2*: the table contains it")
         return fields | {"n": float(profiles.read(profile).n[0])}
     graded = profile != "uniform"
     for field in ("n", "nu", "E1") if graded else ():

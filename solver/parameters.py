@@ -42,6 +42,12 @@ class Parameter(NamedTuple):
     instead : for a parameter without a default, the name of another one that can replace it; "": a case can do without
         it. None: it must be given.
     symbol, long_name : the symbol and the name, in tables and figures, of a parameter that a registered law declares.
+
+    Examples
+    --------
+    >>> angle = Parameter(0.5, interval="(0, 1.57)")
+    >>> allowed(angle, [1.0, 2.0]).tolist()
+    [True, False]
     """
 
     default: float | int | str | None = None

@@ -80,6 +80,11 @@ class Problem:
     max_iterations = 0 : most steps on a mesh, or approximations at one radius; 0: the limit of the scheme
     R, E2 = 1 : radius of the punch, and reduced modulus E2* of the half-space, both > 0, in any units
     known : the vocabulary of the parameters: laws, shapes and profiles by their names (solver/known)
+
+    Examples
+    --------
+    >>> Problem.of(P=[1e-5, 2e-5], base="half_space", micro="smooth")
+    Problem(2 cases, P = 1e-05 ... 2e-05, base: half_space, micro: smooth)
     """
 
     control: str
@@ -181,6 +186,11 @@ class Problem:
         Returns
         -------
         Problem
+
+        Examples
+        --------
+        >>> Problem.of(P=[1e-5, 2e-5, 4e-5], base="half_space", micro="smooth").take([0, 2]).value.tolist()
+        [1e-05, 4e-05]
         """
         parameters = {name: v[index] for name, v in self.parameters.items()}
         return Problem(self.control, self.value[index], parameters, self.known)
@@ -195,6 +205,11 @@ class Problem:
         Returns
         -------
         Problem
+
+        Examples
+        --------
+        >>> Problem.of(P=1e-5, base="half_space", micro="smooth").but(nu2=0.4).nu2.tolist()
+        [0.4]
         """
         new = {name: np.broadcast_to(v, len(self)) for name, v in parameters.items()}
         return Problem(self.control, self.value, self.parameters | new, self.known)
@@ -210,6 +225,11 @@ class Problem:
         Returns
         -------
         numpy.ndarray : (B,) bool, whether the case has asperities
+
+        Examples
+        --------
+        >>> Problem.of(P=1e-5, base="half_space", micro="smooth").rough().tolist()
+        [False]
         """
         return np.all([self.micro != name for name, law in self.known.laws.items() if not law.rough], axis=0)
 
@@ -219,6 +239,11 @@ class Problem:
         Returns
         -------
         numpy.ndarray : (B,) bool: the base is an exact layer or stack, or "auto", and the micro law takes its kernel
+
+        Examples
+        --------
+        >>> Problem.of(P=1e-5, h=0.02, n=2, Nbar=1e5, Ra=0.004, base=["layered", "thin_layer"]).can_feel().tolist()
+        [True, False]
         """
         return can_feel(self.base, self.micro, self.known.laws)
 
@@ -228,6 +253,11 @@ class Problem:
         Returns
         -------
         numpy.ndarray : (B,) bool: they can, and `asperities_on` is "layer", or it is "auto" and their pitch is above h
+
+        Examples
+        --------
+        >>> Problem.of(P=1e-5, h=0.02, n=0.5, Nbar=[250000, 1000], Ra=0.004).feels_layer().tolist()  # pitch < h, > h
+        [False, True]
         """
         return feels(self.base, self.micro, self.asperities_on, self.Nbar, self.h, self.known.laws)
 
@@ -237,6 +267,11 @@ class Problem:
         Returns
         -------
         numpy.ndarray : (B,) bool: there is adhesion, and P or D is given
+
+        Examples
+        --------
+        >>> Problem.of(P=-1e-6, base="half_space", micro="smooth", w_adhesion=1e-5).may_pull().tolist()
+        [True]
         """
         return (self.w_adhesion > 0) & (self.control != "a")
 
@@ -246,6 +281,11 @@ class Problem:
         Returns
         -------
         numpy.ndarray : (B,) bool: the case is smooth and its scheme is "picard", which is for asperities
+
+        Examples
+        --------
+        >>> Problem.of(P=1e-5, base="half_space", micro="smooth", scheme="picard").without_scheme().tolist()
+        [True]
         """
         return (self.scheme == "picard") & ~self.rough()
 
@@ -256,6 +296,11 @@ class Problem:
         -------
         numpy.ndarray : (B,) bool: a number that the case needs is not finite or out of bounds, or those of its micro
             law do not go together; or `asperities_on` is "layer", but the asperities cannot feel it
+
+        Examples
+        --------
+        >>> Problem.of(P=[1e-5, -1.0], base="half_space", micro="smooth").invalid().tolist()
+        [False, True]
         """
         bad = ~(allowed(CONTROL[self.control], self.value) | self.may_pull() & (np.abs(self.value) <= _PULL))
         bad |= (self.asperities_on == "layer") & ~self.can_feel()

@@ -33,7 +33,14 @@ _SHARES, _ROUNDING = ("Ar_An", "lam"), 1e-10
 
 class Model(Codes):
     """The model with which a case was solved. The code of a smooth model is that of the rough one plus 1. It solves a
-    smooth punch; with "auto" the asperities are added afterwards."""
+    smooth punch; with "auto" the asperities are added afterwards.
+
+    Examples
+    --------
+    >>> from solver import Problem, solve
+    >>> Model(solve(Problem.of(P=1e-5, base="half_space", micro="smooth")).model_used.item()).name
+    'SMOOTH_HALF_SPACE'
+    """
 
     NONE = 0
     HALF_SPACE = 1
@@ -84,6 +91,15 @@ class Solution:
     P_in, a_in : load and radius to which the contact jumps when the punch touches
     p : (B, m); nominal pressure at the radii (E2)
     lam : (B, m), in [0, 1]; relative contact area λ (11) at the radii, 1 inside the contact of a smooth punch
+
+    Examples
+    --------
+    >>> from solver import Problem, solve
+    >>> solution = solve(Problem.of(P=[1e-5, 2e-5], base="half_space", micro="smooth"))
+    >>> solution
+    Solution(2 cases: 2 converged; profiles at 2 radii)
+    >>> print(f"{solution.a[1]:.5f}")
+    0.02466
     """
 
     a: np.ndarray
@@ -131,6 +147,11 @@ class Solution:
         Returns
         -------
         Solution
+
+        Examples
+        --------
+        >>> Solution.of(2, 0, a=0.04).a.tolist()
+        [0.04, 0.04]
         """
 
         def array(name):
@@ -155,6 +176,12 @@ class Solution:
         Returns
         -------
         Solution
+
+        Examples
+        --------
+        >>> first, last = Solution.of(1, 0, a=0.04), Solution.of(1, 0, a=0.05)
+        >>> Solution.join(2, 0, [([0], first), ([1], last)]).a.tolist()
+        [0.04, 0.05]
         """
         pieces = list(pieces)
         if pieces and _is_all(pieces[-1][0], size) and pieces[-1][1].p.shape == (size, points):
@@ -175,6 +202,13 @@ class Solution:
         Returns
         -------
         Solution
+
+        Examples
+        --------
+        >>> from solver import Problem, solve
+        >>> solution = solve(Problem.of(P=[1e-5, 2e-5], base="half_space", micro="smooth"))
+        >>> len(solution.take([1]).a)
+        1
         """
         return Solution(**{name: values[index] for name, values in vars(self).items()})
 
@@ -192,6 +226,13 @@ class Solution:
         -------
         numpy.ndarray : (B,) bool: by its status the case has numbers, but one of them other than `model_error` is NaN
             or infinite
+
+        Examples
+        --------
+        >>> from solver import Problem, solve
+        >>> solution = solve(Problem.of(P=[1e-5, 2e-5], base="half_space", micro="smooth"))
+        >>> solution.not_finite().tolist()
+        [False, False]
         """
         ended = one_of(self.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
         right = ended.copy()
@@ -215,6 +256,13 @@ class Solution:
         Returns
         -------
         numpy.ndarray : (B,) bool: some number is negative, 0 or above 1, although it cannot be
+
+        Examples
+        --------
+        >>> from solver import Problem, solve
+        >>> solution = solve(Problem.of(P=[1e-5, 2e-5], base="half_space", micro="smooth"))
+        >>> solution.out_of_range().tolist()
+        [False, False]
         """
         ended = self.status == Status.CONVERGED
         right = ended.copy()
@@ -238,6 +286,13 @@ class Solution:
         Returns
         -------
         Solution
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> refused = Solution.of(2, 0, a=0.04).refused(np.array([False, True]), Status.LIFT_OFF)
+        >>> refused.a.tolist(), refused.status.tolist()
+        ([0.04, nan], [0, 8])
         """
         if not mask.any():
             return self

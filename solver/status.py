@@ -19,7 +19,15 @@ class Codes(IntEnum, metaclass=_Quiet):
 
 class Status(Codes):
     """Status of one case; `meaning` explains it in a sentence. A case that fails has a status, and raises no
-    exception."""
+    exception.
+
+    Examples
+    --------
+    >>> Status(10).name
+    'OUTSIDE_LAW'
+    >>> Status.OUTSIDE_LAW.meaning
+    'the contact is outside the range of the micro law, or of the table of a tip; no numbers'
+    """
 
     CONVERGED = 0, "the iteration closed and the estimated error is within rtol"
     ITERATION_LIMIT = 1, "the iteration did not close within its limit; the last numbers are kept"
@@ -27,17 +35,17 @@ class Status(Codes):
     DIVERGED = 3, "the iteration diverged, or ended in a number that cannot be; no numbers"
     THIN_LAYER_NOT_APPLICABLE = 4, "the thin-layer equation does not apply (C <= 0 in Eq. (3)); no numbers"
     TOLERANCE_NOT_MET = 5, "the estimated error exceeds rtol at the finest mesh; the numbers are kept"
-    INVALID_INPUT = 6, "a parameter is not finite, out of bounds, or does not go with the others; no numbers"
+    INVALID_INPUT = 6, "a parameter is not finite, is out of bounds, or does not fit the others; no numbers"
     # 7 was a status of numerics version 2 and is not used again
     LIFT_OFF = 8, "the punch lifts off inside the contact, or the pressure is tensile there; no numbers"
-    BUDGET_SPENT = 9, "the work that one case may take is spent; last numbers, if any, kept"
+    BUDGET_SPENT = 9, "the case has used up its share of work; the last numbers, if any, are kept"
     OUTSIDE_LAW = (
         10,
-        "the contact is not in the range of the micro law, or of the table of a tip; no numbers",
+        "the contact is outside the range of the micro law, or of the table of a tip; no numbers",
     )
     PULLED_OFF = (
         11,
-        "no state of the asked branch has this load or depth; numbers of pull-off and pull-in alone",
+        "no state of the branch asked for has this load or depth; only pull-off and pull-in have numbers",
     )
 
     meaning: str

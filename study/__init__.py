@@ -142,7 +142,7 @@ def _take_our_solver() -> None:
         folders = list(getattr(other, "__path__", ()))  # a module that is a file has none
         if [os.path.realpath(folder) for folder in folders] != [os.path.realpath(os.path.dirname(ours.origin or ""))]:
             file = getattr(other, "__file__", None) or folders[0]
-            wrong = "has been imported as solver, which is a package of roughcoat as well: give it another name"
+            wrong = "has been imported as solver, which is also a package of roughcoat: give it another name"
             raise ImportError(f"{file}: {wrong}", name="solver", path=file)
     sys.meta_path.insert(0, _OurPackages)
 

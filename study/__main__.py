@@ -28,14 +28,14 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VEC
     os.environ.setdefault(_name, "1")
 
 DIR = {"type": folder, "metavar": "DIR"}
-KEPT = "; finished blocks are kept, the same command goes on from there"
+KEPT = "; finished blocks are kept, and the same command continues from there"
 
 
 def parser() -> argparse.ArgumentParser:
     """All subcommands and their options."""
     top = Parser(prog=program(), description="Parameter studies of rough coated contacts.")
     top.add_argument("-v", "--verbose", action="store_true", help="show the log")
-    top.add_argument("--version", action=Version, nargs=0, help="say which version this is")
+    top.add_argument("--version", action=Version, nargs=0, help="print the version")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     def command(module: str, name: str, text: str, items: str = "", *, least: str = "+") -> argparse.ArgumentParser:
@@ -48,76 +48,85 @@ def parser() -> argparse.ArgumentParser:
             sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
         return sub
 
-    sub = command("point", "point", "solve one contact and say in words what was found", "NAME=VALUE")
-    sub.add_argument("--json", action="store_true", help="as numbers, for a program")
-    sub.add_argument("--stresses", type=folder, metavar="FILE", help="draw its stresses too: .png, .pdf or .svg")
+    sub = command("point", "point", "solve one contact and describe the result in words", "NAME=VALUE")
+    sub.add_argument("--json", action="store_true", help="print the numbers as JSON, for a program")
+    sub.add_argument("--stresses", type=folder, metavar="FILE", help="also draw its stresses: .png, .pdf or .svg")
     add_columns(sub)
     sub.epilog = (
-        'such as R="5 mm" punch="steel 52100" h="2 um" layer="DLC a-C:H" body="steel 52100" P="10 N" micro=smooth'
+        f'for example: {program()} point R="5 mm" punch="steel 52100" h="2 um" layer="DLC a-C:H" body="steel 52100" '
+        'P="10 N" micro=smooth'
     )
     sub = command("fitting", "fit", "fit inputs of a contact to a measured curve, with intervals", "FILE")
     sub.usage = "%(prog)s FILE NAME=VALUE ... [--json] [--plot FILE]"
-    sub.add_argument("--json", action="store_true", help="as numbers, for a program")
+    sub.add_argument("--json", action="store_true", help="print the numbers as JSON, for a program")
     sub.add_argument("--plot", type=folder, metavar="FILE", help="draw the fit over the points: .png, .pdf or .svg")
     sub.epilog = (
-        'such as roughcoat fit curve.csv R="5 um" punch=rigid nu1=0.49 h="1.5 ± 0.1 um" bonding=bonded '
-        'body="glass soda-lime" micro=smooth free=E1, of columns "D [nm]" and "P [nN]"'
+        f'for example: {program()} fit curve.csv R="5 um" punch=rigid nu1=0.49 h="1.5 ± 0.1 um" bonding=bonded '
+        'body="glass soda-lime" micro=smooth free=E1; curve.csv has the columns "D [nm]" and "P [nN]"'
     )
-    text = "find the input that makes a wanted result, with its ±"
+    text = "find the input that gives a wanted result, with its ±"
     sub = command("designing", "design", text, "NAME=VALUE")
-    sub.add_argument("--json", action="store_true", help="as numbers, for a program")
+    sub.add_argument("--json", action="store_true", help="print the numbers as JSON, for a program")
     sub.epilog = (
-        'such as p_max="180 MPa" h="1 um .. 1 mm" R="5 mm" punch="steel 52100" layer=PTFE bonding=bonded '
-        'body="steel 52100" P="5 N" Nbar="1e5 1/mm^2" Ra="2 um"'
+        f'for example: {program()} design p_max="180 MPa" h="1 um .. 1 mm" R="5 mm" punch="steel 52100" layer=PTFE '
+        'bonding=bonded body="steel 52100" P="5 N" Nbar="1e5 1/mm^2" Ra="2 um"'
     )
-    sub = command("beginning", "explore", "write a page that solves contacts in a browser, without a network")
+    sub = command("beginning", "explore", "write a page that solves contacts in a browser and needs no network")
     sub.add_argument("--out", type=folder, default="contact.html", metavar="FILE", help="default: contact.html")
     sub = command("lookup", "scan", "measure the asperities of a scan of a rough surface", "FILE")
     sub.usage = "%(prog)s FILE [NAME=VALUE ...]"
-    sub.add_argument("--law", type=folder, metavar="OUT.csv", help="write the micro law of the scan itself, no spheres")
-    sub.epilog = "such as wafer.csv unit=um height_unit=nm cutoff='2.5 um'; all names: " + f"{program()} docs roughness"
-    command("lookup", "materials_", "list the materials that are known by name; say all of one", "NAME", least="*")
-    command("lookup", "docs", "list the pages of the documentation; show one: docs/model.md", "PAGE", least="*")
-    command("beginning", "doctor", "say what this installation has, and whether it solves a contact rightly")
-    sub = command("beginning", "new", "write a study file to edit, NAME.toml, with comments", "NAME")
-    text = "a copy of this study, such as dlc_on_steel"
+    text = "write the micro law of the scan itself, without spheres in its place"
+    sub.add_argument("--law", type=folder, metavar="OUT.csv", help=text)
+    sub.epilog = (
+        f"for example: {program()} scan wafer.csv unit=um height_unit=nm cutoff='2.5 um'; "
+        f"all names are in {program()} docs roughness"
+    )
+    text = "list the materials that have a name; print all that is known of one"
+    command("lookup", "materials_", text, "NAME", least="*")
+    command("lookup", "docs", "list the pages of the documentation, or print one", "PAGE", least="*")
+    command("beginning", "doctor", "report what is installed, and whether it solves a contact correctly")
+    sub = command("beginning", "new", "write a study file with comments, NAME.toml, for you to edit", "NAME")
+    text = "start from a copy of this study, such as dlc_on_steel"
     source = sub.add_argument("--from", dest="source", metavar="STUDY", help=text)
     source.completer = partial(proposed, "show")
-    command("beginning", "show", "print a study file, of yours or of this package", "STUDY")
-    sub = command("computing", "list_", "list the study files, their size and state")
-    text = "default: the working folder and studies, or those of this package"
+    command("beginning", "show", "print a study file of yours or of this package", "STUDY")
+    sub = command("computing", "list_", "list the study files with their size and state")
+    text = "folder to look in (default: the working folder and ./studies, or the studies of this package)"
     sub.add_argument("folder", type=folder, nargs="?", help=text)
     command("checking", "check", "check study files without computing", "FILE")
     sub = command("computing", "run", "compute what is missing and write the results", "FILE")
     add_engine(sub)
-    sub.add_argument("--part", type=part, default=(1, 1), metavar="I/N", help="compute the I-th of N parts only")
-    sub.add_argument("--force", action="store_true", help="replace results of which cases would be lost")
-    sub.add_argument("--dry-run", action="store_true", help="say what it would cost, compute a sample only")
-    sub = command("computing", "retry", "compute cases of some status again", "FILE")
+    sub.add_argument("--part", type=part, default=(1, 1), metavar="I/N", help="compute only part I of N")
+    sub.add_argument("--force", action="store_true", help="replace results even if some of their cases are lost")
+    text = "estimate time, memory and disk from a sample, and compute no more"
+    sub.add_argument("--dry-run", action="store_true", help=text)
+    sub = command("computing", "retry", "compute again the cases that ended with one status", "FILE")
     add_engine(sub)
     status_option = sub.add_argument(
         "--status", required=True, action="append", metavar="NAME", help="such as iteration_limit"
     )
     status_option.completer = partial(proposed, "--status")
-    sub = command("computing", "status", "say what has been computed", "FILE")
-    sub.add_argument("--yes", action="store_true", help="count however many cases there are")
-    text = "compare results with their digest: exit code 1 for what is damaged or has none"
+    sub = command("computing", "status", "report what has been computed", "FILE")
+    sub.add_argument("--yes", action="store_true", help="count the cases, however many there are")
+    text = "compare results with their digest: exit code 1 if a file is damaged or has no digest"
     command("computing", "verify", text, "FILE")
-    text = "remove blocks that do not serve a study as it is now, say which; never results"
+    text = "remove the blocks that a study no longer needs, and list them; results are never removed"
     command("computing", "clean", text, "FILE")
     for name, text in (("plot", "draw figures from results"), ("table", "write tables from results")):
         kind = text.split()[1]
-        sub = command("drawing", name, f"{text}; all: those that no long study is needed for", "NAME")
-        sub.add_argument(f"--{kind}", dest="folder", default=kind, **DIR, help=f"their folder (default: {kind})")
-        sub.add_argument("--run", action="store_true", help="run the studies that they need; skip what is up to date")
+        sub = command("drawing", name, f"{text}; all: those that need no long study", "NAME")
+        text = f"folder of the {kind} (default: {kind})"
+        sub.add_argument(f"--{kind}", dest="folder", default=kind, **DIR, help=text)
+        sub.add_argument("--run", action="store_true", help="first run the studies needed; skip what is up to date")
         if name == "plot":
-            sub.add_argument("--bare", action="store_true", help="without the parameters above, which captions have")
+            text = "leave out the parameters above a figure, which are in its caption"
+            sub.add_argument("--bare", action="store_true", help=text)
             add_curves(sub)
         else:
-            text = "of the rows of a study, or of a file .nc, that is named (default: csv)"
+            text = "format for the rows of a study or of a .nc file (default: csv)"
             sub.add_argument("--format", choices=("csv", "xlsx"), default="csv", help=text)
             add_columns(sub)
-    sub = command("drawing", "tradeoff", "measure error against time of every way to solve")
+    sub = command("drawing", "tradeoff", "measure error against time for every way to solve")
     sub.add_argument("--force", action="store_true", help="measure again what has been measured")
     return top
 

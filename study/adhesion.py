@@ -52,7 +52,7 @@ def effective_work(scan: Scan, *, form: Any = "plane", periodic: bool = False, *
     '0.049935'
     """
     if not isinstance(scan, Scan) or scan.z.ndim != 2:
-        raise StudyError(["effective_work: a map of heights is needed, of roughness.read or roughness.height_map"])
+        raise StudyError(["effective_work: needs a map of heights, from roughness.read or roughness.height_map"])
     if np.isnan(scan.z).any():
         raise StudyError([f"effective_work: {scan.name} has missing points: crop it, or fill them"])
     if not isinstance(periodic, (bool, np.bool_)):

@@ -34,6 +34,12 @@ class Study:
     definition : what the study computes
     results : folder of the results
     home : the folder to which `results` is relative, if it is; None: the working folder at the time of the call
+
+    Examples
+    --------
+    >>> import study
+    >>> study.load("main_case").definition.title
+    "The paper's main case: rough and smooth, layered (thin and exact) and homogeneous"
     """
 
     definition: Definition
@@ -70,7 +76,11 @@ class Study:
 
         Examples
         --------
-        `rc.load("studies/mine.toml").run(workers=4)`: docs/studies.md.
+        >>> import tempfile, study
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     report = study.load("reference_load", results=folder).run()
+        >>> report.cases, report.computed
+        (1, 1)
         """
         return run(self.definition, self._folder, command=command_line(), **options)
 
@@ -87,6 +97,13 @@ class Study:
         Returns
         -------
         Estimate : cases, seconds, bytes in memory and on disk
+
+        Examples
+        --------
+        >>> import study
+        >>> estimate = study.load("main_case", results="of_an_example").dry_run()
+        >>> estimate.cases, estimate.present
+        (6, 0)
         """
         return dry_run(self.definition, self._folder, workers=workers, force=force)
 
@@ -106,6 +123,12 @@ class Study:
         Returns
         -------
         dict : "state", "cases", "counts" (status -> number of cases), "path" of the results, "reason"
+
+        Examples
+        --------
+        >>> import study
+        >>> study.load("main_case", results="of_an_example").status()["state"]
+        'new'
         """
         with suppress(FileNotFoundError):  # somebody removed the results meanwhile: look once more
             return glance(self._store).summary()
@@ -118,6 +141,12 @@ class Study:
         -------
         Condition : its `kind` is "sound" if nothing is wrong, otherwise `reason` says what is: `study.files.examine`.
             It is "outdated" for undamaged results of another definition
+
+        Examples
+        --------
+        >>> import study
+        >>> study.load("main_case", results="of_an_example").verify().kind
+        'missing'
         """
         return verified(self._store).verdict()
 
@@ -127,6 +156,12 @@ class Study:
         Returns
         -------
         list of str : lines that say what was removed, and what stays
+
+        Examples
+        --------
+        >>> import study
+        >>> study.load("main_case", results="of_an_example").clean()
+        ['of_an_example/.main_case.blocks: is not there, nothing to remove']
         """
         return clean(self._store)
 
@@ -148,6 +183,16 @@ class Study:
         Raises
         ------
         StudyError : there are no results of this definition, or they are damaged
+
+        Examples
+        --------
+        >>> import tempfile, study
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     reference = study.load("reference_load", results=folder)
+        ...     _ = reference.run()
+        ...     contacts = reference.open()
+        >>> print(f"{contacts.P.item():.4g}")
+        2.704e-05
         """
         grid = self.definition.grid  # it has the laws and tables of the results
         values = {name: array for name, (_, array) in grid.values.items()}
@@ -169,6 +214,19 @@ class Study:
         Raises
         ------
         StudyError : there are no results, or `study.plot` raises it
+
+        Examples
+        --------
+        >>> import pathlib, tempfile, study
+        >>> lines = ["[model]", 'base = "half_space"', 'micro = "smooth"', "[axes]", "P = [1e-5, 2e-5]"]
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     file = pathlib.Path(folder, "loads.toml")
+        ...     _ = file.write_text("\\n".join(lines))
+        ...     loads = study.load(file, results=folder)
+        ...     _ = loads.run()
+        ...     figure = loads.plot(x="P", y="a")
+        >>> len(figure.axes)
+        1
         """
         from .figures.plots import plot
 

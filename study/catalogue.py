@@ -111,6 +111,19 @@ def compose(name: str, results: Folder = "results") -> tuple[Figure, Columns, st
     Raises
     ------
     StudyError : there is no such figure, a study it needs has no results, or its function does not return columns
+
+    Examples
+    --------
+    >>> from study import figure
+    >>> @figure("parabola")
+    ... def parabola(axes):
+    ...     "A parabola."
+    ...     axes.plot([0, 1, 2], [0, 1, 4])
+    ...     return {"x": [0, 1, 2], "y": [0, 1, 4]}
+    >>> drawn, columns, title = compose("parabola")
+    >>> columns["y"], title
+    ([0, 1, 4], 'parabola')
+    >>> _ = FIGURES.pop("parabola")
     """
     recipe = entry("figure", name)
     datasets = open_studies(name, recipe.studies, results)
@@ -149,6 +162,13 @@ def draw(name: str, results: Folder = "results", folder: Folder = "figures", bar
     Raises
     ------
     StudyError : as for `compose`
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     print([path.name for path in draw("fig01", folder=folder)])
+    ['fig01.svg', 'fig01.pdf', 'fig01.png']
     """
     if name == CAPTIONS:
         return [write(Path(folder) / "captions.md", captions(results))]
@@ -180,6 +200,11 @@ def captions(results: Folder = "results") -> str:
     Returns
     -------
     str : in Markdown
+
+    Examples
+    --------
+    >>> print(captions(results="of_an_example").partition(" ")[2][:8])
+    Captions
     """
     lines = ["# Captions", "", "Lengths are in R, pressures in E2*, loads in E2* R² unless an axis says otherwise.", ""]
     lines += [NOT_THIN, ""]
@@ -221,6 +246,20 @@ def tabulate(name: str, results: Folder = "results", folder: Folder = "tables") 
     Raises
     ------
     StudyError : there is no such table, a study it needs has no results, or its function returns other rows
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from study import table
+    >>> @table("squares", columns="x | d; square | d")
+    ... def squares():
+    ...     "The first squares."
+    ...     return [(1, 1), (2, 4)]
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     files = tabulate("squares", folder=folder)
+    ...     print(files[1].read_text().splitlines())
+    ['x,square', '1,1', '2,4']
+    >>> _ = TABLES.pop("squares")
     """
     table = entry("table", name)
     rows = table.rows(*open_studies(name, table.studies, results))

@@ -128,7 +128,7 @@ def stresses(
             variables[f"{name}{end}"] = _labelled(contacts, values, axes, about)
     about = {"long_name": "error of any stress, relative to the largest"}
     variables["stress_error"] = _labelled(contacts, fields.error, (), about)
-    coords = {"r": ("r", r, {"long_name": "radius over a" if mu == 0 else "x over a, behind the contact < 0"})}
+    coords = {"r": ("r", r, {"long_name": "radius over a" if mu == 0 else "x over a, negative behind the contact"})}
     coords["z"] = ("z", z, {"long_name": "depth over a"})
     coords |= numbered(contacts, "interface") if stacked else {}
     if contacts.scene:
@@ -323,7 +323,7 @@ def _mirrored(r: np.ndarray) -> np.ndarray:
 def _axis(name: str, values: Any, signed: bool) -> np.ndarray:
     try:
         if np.asarray(values).dtype == bool:
-            raise TypeError("True is no number")
+            raise TypeError("True is not a number")
         values = np.atleast_1d(np.asarray(values, dtype=float))
     except (TypeError, ValueError):
         raise StudyError([f"{name} = {shown(values)}: must be numbers, in units of a"]) from None
@@ -331,7 +331,7 @@ def _axis(name: str, values: Any, signed: bool) -> np.ndarray:
     if values.ndim != 1 or not values.size or bad.size:
         wrong = f"{name} = {bad[0]:g}" if bad.size else f"{name} of shape {values.shape}"
         bound = "" if signed else ", and at least 0" + (" where mu is 0" if name == "r" else "")
-        raise StudyError([f"{wrong}: must be one-dimensional, of finite numbers in units of a{bound}"])
+        raise StudyError([f"{wrong}: must be one-dimensional, with finite numbers in units of a{bound}"])
     return values
 
 

@@ -85,7 +85,7 @@ def _lengths(chunks: Any, definition: Definition) -> tuple[tuple[int, ...], ...]
     wrong, dims = [], ", ".join(sizes) or "the results have none"
     for name, length in chunks.items():
         if name not in sizes:
-            wrong.append(f"chunks: {shown(name)} is no dimension of the grid ({dims})")
+            wrong.append(f"chunks: {shown(name)} is not a dimension of the grid ({dims})")
         elif not _fits(length, sizes[name]):
             several = f"a tuple of lengths that together are {sizes[name]}"
             what = f'a whole number, 1 or more, -1 for all, or {several}, or "auto"'

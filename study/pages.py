@@ -41,7 +41,7 @@ def page(name: str) -> str:
         return _text(f"{stem}.md")
     near = difflib.get_close_matches(stem.lower(), pages, n=1, cutoff=0.75)
     hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(pages)}"
-    raise StudyError([f"docs {shown(name)} is no page; {hint}"])
+    raise StudyError([f"docs {shown(name)} is not a page; {hint}"])
 
 
 def _text(name: str) -> str:

@@ -91,7 +91,7 @@ def solve(
     branch : which of two contacts under one load or at one depth: "stable", with the larger radius, or "unstable"
     k_machine : stiffness of the cantilever or machine that moves the punch; it decides when the contact breaks
     scheme, k : numerical scheme, and the relaxation of "picard"
-    rtol : wanted relative error
+    rtol : required relative error
     accuracy : allowed relative model error of base = "auto"
     model_check : how the model error of base = "thin_layer" is estimated
     nodes, max_iterations : of the numerical solution; 0: chosen automatically
@@ -202,7 +202,7 @@ def _stream(workers: Any, progress: Any, chunks: Any, sensitivities: Any) -> Tex
         raise StudyError([f"workers = {shown(workers)}: must be a whole number, 1 or more"])
     stream = screen_of(plain(progress))
     if chunks is not None and (workers is not None or plain(progress)):
-        raise StudyError(["chunks: dask divides the work and says how far it is: leave out workers and progress"])
+        raise StudyError(["chunks: dask divides the work and shows its progress: leave out workers and progress"])
     if not isinstance(sensitivities, (bool, np.bool_)) or (sensitivities and chunks is not None):
         raise StudyError([f"sensitivities = {shown(sensitivities)}: must be true or false, and false beside chunks"])
     return stream
@@ -211,7 +211,7 @@ def _stream(workers: Any, progress: Any, chunks: Any, sensitivities: Any) -> Tex
 def _refuse_ranges(parameters: dict[str, Any]) -> None:
     ranges = [name for name, value in parameters.items() if isinstance(value, dict) and {"start", "stop"} <= {*value}]
     if ranges:
-        hint = "a range stands in study files; here give its values, as of numpy.geomspace"
+        hint = "ranges are for study files; here give the values, as numpy.geomspace makes them"
         raise StudyError([f"{name}: {hint}" for name in ranges])
 
 

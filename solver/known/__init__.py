@@ -245,7 +245,14 @@ def register(kind: Law | Kind) -> Law | Kind:
 
     Examples
     --------
-    docs/own_law.md shows a law in one file.
+    docs/own_law.md shows a law in one file. A law of this package is known already, and stays as it is.
+
+    >>> from dataclasses import replace
+    >>> register(laws.LAWS["disc_cell"]).name
+    'disc_cell'
+    >>> register(replace(laws.LAWS["disc_cell"], name="my law"))
+    Traceback (most recent call last):
+    ValueError: micro law "my law": must have a name of its own, of letters, digits and _
     """
     _default.change(lambda known: known.with_law(kind) if isinstance(kind, Law) else known.with_shape(kind))
     return kind

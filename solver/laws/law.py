@@ -37,6 +37,15 @@ class Curve(NamedTuple):
     ----------
     q, g : p/p* and A/A*; arrays of the shape of y
     dq, dg : their derivatives by y
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from solver.laws import LAWS
+    >>> disc_cell = LAWS["disc_cell"].bind(np.ones(1), Nbar=np.array([250000.0]), Ra=np.array([0.004]))
+    >>> point = disc_cell.evaluate(np.array([[0.1]]))
+    >>> print(f"p/p* = {point.q.item():.5f}, A/A* = {point.g.item():.5f}")
+    p/p* = 0.00063, A/A* = 0.00907
     """
 
     q: np.ndarray
@@ -96,6 +105,12 @@ class Law:
     end : (*own) -> largest p/p* for which the law has numbers, if it depends on the case; None: there is no such limit
     body : parameter -> number or word, lengths in m: the coated body on which a table was computed. A study refuses
         contacts on another body. None: a half-space, whatever lies under it
+
+    Examples
+    --------
+    >>> from solver.laws import LAWS
+    >>> LAWS["disc_cell"].arguments, LAWS["smooth"].rough
+    (('Nbar', 'Ra'), False)
     """
 
     name: str
@@ -142,6 +157,14 @@ class Law:
         Returns
         -------
         Bound
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from solver.laws import LAWS
+        >>> disc_cell = LAWS["disc_cell"].bind(np.ones(1), Nbar=np.array([250000.0]), Ra=np.array([0.004]))
+        >>> print(f"{disc_cell.p_star.item():.4f} {disc_cell.A_star.item():.3e}")
+        0.1881 3.183e-04
         """
         p_star, A_star, *own = self.scales(E, **{name: values[name] for name in self.arguments})
         ones = np.ones(np.shape(E))
@@ -159,6 +182,13 @@ class Law:
         Returns
         -------
         Spots : A, lam and p_max, of the shape to which all arguments broadcast
+
+        Examples
+        --------
+        >>> from solver.laws import LAWS
+        >>> spots = LAWS["disc_cell"].at(0.01, 1.0, Nbar=250000, Ra=0.004)
+        >>> print(f"A = {spots.A:.3e}, λ = {spots.lam:.4f}, p_max = {spots.p_max:.4f}")
+        A = 3.899e-05, λ = 0.1864, p_max = 0.0804
         """
         names = self.arguments
         p, E, *values = np.broadcast_arrays(*(np.asarray(v, float) for v in (p, E, *(numbers[name] for name in names))))

@@ -89,7 +89,7 @@ def _text_of(path):
     try:
         return content(path, LARGEST).decode("utf-8-sig")
     except IsADirectoryError:
-        raise ValueError(f"is no file but a folder: {no_table}") from None
+        raise ValueError(f"is not a file but a folder: {no_table}") from None
     except NoFile as error:
         raise ValueError(f"{error}: {no_table}") from None
     except TooLarge as error:
@@ -105,7 +105,7 @@ def _of_text(name, text):
         return _histogram(name, **_columns(text, HEIGHTS, 2))
     unit = next((match[1] for word in words if (match := _WITH_UNIT.fullmatch(word))), "")
     if unit and unit not in _UNITS:
-        raise ValueError(f"column A: [{unit}] is no unit of length: one of {', '.join(_UNITS)}")
+        raise ValueError(f"column A: [{unit}] is not a unit of length: one of {', '.join(_UNITS)}")
     columns = _columns(text, COLUMNS, _FEWEST)
     _check(**columns)
     columns["A"] = columns["A"] * _UNITS.get(unit, 1.0)
@@ -136,7 +136,9 @@ def _histogram(name, z, share):
         raise ValueError("column z: must ascend in equal steps")
     law = heights.histogram(name, z, share, _digest(z, share))
     if law.error > _FAR:
-        raise ValueError("column share: a few summits stand far above the many: leave out the highest rows, of so few")
+        raise ValueError(
+            "column share: a few summits stand far above the many: leave out the highest rows, which describe so few"
+        )
     return law
 
 
@@ -188,7 +190,7 @@ def _check(p, A, lam, p_max):
             value = {"p": p, "A": A, "lam": lam, "p_max": p_max}[name][row - 1]
             raise ValueError(f"column {name}, row {row}: {value:g}: {words}")
     if np.median(np.log(A[1:] / A[0]) / np.log(p[1:] / p[0])) > _BENT:  # one wrong row is named below
-        raise ValueError(f"column A, rows 1 to {len(p)}: rises faster than p, but spots that grow give way less")
+        raise ValueError(f"column A, rows 1 to {len(p)}: rises faster than p, but growing spots deform less and less")
     last = max(1, int(((p <= 10 * p[0]) & (lam < _LIGHT)).sum())) - 1
     rise = {name: np.log(X[last] / X[0]) for name, X in (("p", p), ("A", A), ("lam", lam), ("p_max", p_max))}
     if rise["lam"] < 0.75 * rise["p_max"] and rise["A"] < _ROUND * rise["p"]:

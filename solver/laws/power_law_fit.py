@@ -15,6 +15,12 @@ class Fit(NamedTuple):
     ----------
     B, beta : factor (unit Ra/E1*^β), and exponent β
     max_error : largest relative error |B p^β/A[p] - 1| over the interval `check`
+
+    Examples
+    --------
+    >>> fitted = fit_power_law(4.0)
+    >>> print(f"A = {fitted.B:.3f} p^{fitted.beta:.3f}, to {fitted.max_error:.1%}")
+    A = 0.092 p^0.491, to 4.6%
     """
 
     B: float

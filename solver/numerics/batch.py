@@ -28,6 +28,13 @@ def take(batch: Any, index: Any) -> Any:
     Returns
     -------
     Any : a batch of the same kind
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from solver import Problem
+    >>> Problem.of(P=[1e-5, 2e-5, 4e-5], base="half_space", micro="smooth").take([0, 2]).value.tolist()
+    [1e-05, 4e-05]
     """
     values = batch if isinstance(batch, tuple) else [getattr(batch, name) for name in _names(type(batch))]
     # most values are arrays: calling a function for each would take as long as everything else here

@@ -98,6 +98,6 @@ def _check(status, most):
     if stat.S_ISDIR(status.st_mode):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
     if not stat.S_ISREG(status.st_mode):
-        raise NoFile("is no file but a pipe or device")
+        raise NoFile("is not a file but a pipe or device")
     if status.st_size > most:
         raise TooLarge(f"has {status.st_size} bytes: must have at most {most}")

@@ -45,6 +45,14 @@ class Sensitivities(NamedTuple):
         0
     slopes : quantity -> (B, k), d quantity/d ln input in the unit of the quantity, even where the quantity is 0
     p, lam : (B, k, m), d p/d ln input at fixed r/a, in the unit of p, and d λ/d ln input
+
+    Examples
+    --------
+    >>> from solver import Problem, solve
+    >>> problem = Problem.of(a=0.04, micro="smooth", base="half_space")
+    >>> slopes = sensitivities(problem, solve(problem), inputs=("a",))
+    >>> print(slopes.inputs, f"{slopes.logs['P'].item():.4f}")
+    ('a',) 3.0000
     """
 
     inputs: tuple

@@ -75,7 +75,7 @@ def _pyramid(name, degrees, words):
 _SHARP = np.degrees(np.arctan(np.sqrt(_AREA / np.pi)))
 KIND = Kind("cone", {"half_angle": HALF_ANGLE}, _of_angle, "a cone")
 PYRAMIDS = (
-    _pyramid("berkovich", _SHARP, "a Berkovich pyramid, taken for the cone of the same area"),
-    _pyramid("vickers", _SHARP, "a Vickers pyramid, taken for the cone of the same area"),
-    _pyramid("cube_corner", _CUBE_CORNER, "the corner of a cube, taken for the cone of the same area"),
+    _pyramid("berkovich", _SHARP, "a Berkovich pyramid, replaced by the cone of the same area"),
+    _pyramid("vickers", _SHARP, "a Vickers pyramid, replaced by the cone of the same area"),
+    _pyramid("cube_corner", _CUBE_CORNER, "the corner of a cube, replaced by the cone of the same area"),
 )

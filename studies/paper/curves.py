@@ -16,8 +16,8 @@ CURVES = {"1": "rough, layered", "2": "rough, homogeneous", "1′": "smooth, lay
 EXACT_LAYER = {"1": "rough, exact layer", "1′": "smooth, exact layer"}
 DEPTH = r"$D\ /\ (10^{-3} R)$"
 PAPER = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9, "zorder": 1.5}
-LAYER_THIN = """The layer is the paper's thin one. It is said where it is not thin: the largest relative error of a, P,
-D, p(0), pmax and Ar/An against the exact layer then exceeds 10 %, as `model_error` estimates it."""
+LAYER_THIN = """The layer is the paper's thin one. The figure marks where it is not thin: there the largest relative
+error of a, P, D, p(0), pmax and Ar/An against the exact layer exceeds 10 %, as `model_error` estimates."""
 LAYER_EXACT = "The layer is exact; thin dotted lines: the same on the paper's thin layer."
 LOAD = """P0 = 2.704e-5 E2* R² presses contact 1 to a0 = 0.04 R. The paper prints 2.72e-5 for it, 0.6 % more: its
 successive approximations end before they have converged (docs/tradeoff.md)."""

@@ -37,20 +37,25 @@ class Version(argparse.Action):
 
 def add_engine(sub: argparse.ArgumentParser) -> None:
     """Options of the commands that compute."""
-    sub.add_argument("--workers", type=positive, metavar="N", help="threads or processes (default: one per processor)")
+    text = "number of threads or processes (default: one per processor)"
+    sub.add_argument("--workers", type=positive, metavar="N", help=text)
     sub.add_argument("--scheduler", type=address, metavar="ADDRESS", help="compute on workers of this dask scheduler")
     either = sub.add_mutually_exclusive_group()
     either.add_argument("--fail-fast", action="store_true", help="stop at the first block with a failed case")
-    either.add_argument("--keep-going", action="store_false", dest="fail_fast", help="compute the others (default)")
-    sub.add_argument("--yes", action="store_true", help="go on however large the study is")
+    text = "compute the other blocks (default)"
+    either.add_argument("--keep-going", action="store_false", dest="fail_fast", help=text)
+    sub.add_argument("--yes", action="store_true", help="compute the study, however large it is")
 
 
 def add_columns(sub: argparse.ArgumentParser) -> None:
     """Options of a table of numbers: which columns, in which units, and beside what."""
-    option = sub.add_argument("--columns", type=words, metavar="NAME,...", help="these alone, such as h,P,a,p_max")
+    text = "show only these columns, such as h,P,a,p_max"
+    option = sub.add_argument("--columns", type=words, metavar="NAME,...", help=text)
     option.completer = partial(proposed, "--x")
-    sub.add_argument("--units", type=words, metavar="UNIT,...", help="numbers in these, such as um,N,MPa; else in SI")
-    sub.add_argument("--beside", choices=("bare",), help="the body without its layer too, in columns of its own")
+    text = "use these units, such as um,N,MPa, where they fit; other columns stay in SI units"
+    sub.add_argument("--units", type=words, metavar="UNIT,...", help=text)
+    text = "add columns for the same contact on the body without its layer"
+    sub.add_argument("--beside", choices=("bare",), help=text)
 
 
 def words(text: str) -> list[str]:
@@ -63,19 +68,22 @@ def words(text: str) -> list[str]:
 
 def add_curves(sub: argparse.ArgumentParser) -> None:
     """Options of `plot` to draw curves of the results of a study, or of a results file, instead of a known figure."""
-    group = sub.add_argument_group("curves of the results of a study, or of a file .nc")
+    group = sub.add_argument_group("curves and maps from the results of a study, or from a .nc file")
     for name, word, text in (
         ("--x", "QUANTITY", "abscissa, such as P, or a"),
         ("--y", "QUANTITY", "ordinate, such as p_max; also An, spots, p_peak, E_eff ..."),
-        ("--hue", "AXIS", "a curve for each of its values, such as n, or label"),
+        ("--hue", "AXIS", "draw one curve for each value of this axis, such as n, or label"),
     ):
         option = group.add_argument(name, metavar=word, default="", help=text)
         option.completer = partial(proposed, "--x")
-    option = group.add_argument("--colour", metavar="QUANTITY", default="", help="a map of it over the axes x and y")
+    text = "draw a map of this quantity over the axes x and y"
+    option = group.add_argument("--colour", metavar="QUANTITY", default="", help=text)
     option.completer = partial(proposed, "--x")
-    group.add_argument("--scale", choices=("linear", "log"), default="", help="of y, or of the colour")
-    group.add_argument("--limits", type=words, metavar="LOW,HIGH", help="of y, or of the colour, such as 0,2GPa")
-    group.add_argument("--where", action="append", type=assignment, default=[], metavar="AXIS=VALUE", help="this alone")
+    group.add_argument("--scale", choices=("linear", "log"), default="", help="scale of y, or of the colour")
+    text = "limits of y, or of the colour, such as 0,2GPa"
+    group.add_argument("--limits", type=words, metavar="LOW,HIGH", help=text)
+    text = "draw only the contacts with this value"
+    group.add_argument("--where", action="append", type=assignment, default=[], metavar="AXIS=VALUE", help=text)
 
 
 def assignment(text: str) -> tuple[str, float | str]:
@@ -132,7 +140,7 @@ def folder(text: str) -> str:
     """A folder. A leading ~ is expanded, since the shell does not expand it in --results=~/there."""
     path = os.path.expanduser(text)
     if not path or path.startswith("~"):
-        raise argparse.ArgumentTypeError(f'"{text}": must be a folder; ./{text} is one that is called so')
+        raise argparse.ArgumentTypeError(f'"{text}": must be a folder; write ./{text} if it has this name')
     return path
 
 

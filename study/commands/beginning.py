@@ -40,7 +40,7 @@ def new(options, name: str) -> int:
     except FileNotFoundError:
         raise StudyError([f"{path.as_posix()}: there is no folder {path.parent.as_posix()}"]) from None
     except FileExistsError:
-        raise StudyError([f"{path.as_posix()}: exists, and is left as it is: choose another name"]) from None
+        raise StudyError([f"{path.as_posix()}: exists and is not overwritten: choose another name"]) from None
     return answer(f"{path.as_posix()}: edit it, then `{program()} check {path.as_posix()}` and `run`")
 
 
@@ -65,7 +65,7 @@ def doctor(*_) -> int:
         f"roughcoat      {package_version('roughcoat')}, numerics {NUMERICS_VERSION}",
         f"Python         {platform.python_version()}; {packages}",
         f"compiled core  {_core()}",
-        f"processors     {os.cpu_count()}; a run has a worker for each, and each worker one BLAS thread",
+        f"processors     {os.cpu_count()}; a run starts one worker for each, with one BLAS thread in each worker",
     ]
     for extra, (package, purpose) in EXTRAS.items():
         state = package_version(package) if find_spec(package) else f"missing: pip install 'roughcoat[{extra}]'"
@@ -82,7 +82,7 @@ def _core() -> str:
     variants = available()
     chosen = os.environ.get(VARIABLE, "")
     if variants and chosen != "numpy":
-        return f"{chosen or variants[0]}; this processor has {', '.join(variants)} of {', '.join(VARIANTS)}"
+        return f"{chosen or variants[0]}; this processor runs {', '.join(variants)} of the built {', '.join(VARIANTS)}"
     why = f"{VARIABLE} chooses numpy" if variants else "none was built: install a C compiler, then roughcoat again"
     return f"none, numpy computes, 3 to 6 times slower ({why})"
 
@@ -93,7 +93,7 @@ def explore(options, _) -> int:
     if path.is_dir():
         raise StudyError([f"--out {path} is a folder: name a file in it, such as {path / 'contact.html'}"])
     if path.exists() and not _is_page(path):
-        raise StudyError([f"--out {path}: there is a file that is no page of the explorer; it stays"])
+        raise StudyError([f"--out {path}: the file there is not a page of the explorer and is not overwritten"])
     path.parent.mkdir(parents=True, exist_ok=True)
     with replacing(path) as temporary:
         temporary.write_text(page(), encoding="utf-8")

@@ -33,7 +33,7 @@ def items(options) -> list:
 def list_(options, file: Path) -> int:
     """Say the size and the state of a study."""
     if file.suffix != ".toml":
-        raise StudyError([f"{file.as_posix()}: is no folder"])
+        raise StudyError([f"{file.as_posix()}: is not a folder"])
     study = load(file, options.results)
     return answer(state_line(study.definition, study.status()))
 
@@ -110,20 +110,21 @@ def completed(study: Study, **options) -> int:
 
 
 def state_line(definition: Definition, state: dict) -> str:
-    """ "fig04      2000 cases  partial (500 of 2000 cases)  title"."""
+    """ "fig04                  2000 cases  partial (500 of 2000 cases)  title"."""
     cases, missing = state["cases"], state["counts"].get(NOT_RUN, 0)
     text = {"partial": " ({} of {} cases)", "outdated": " ({} of {} cases can be used again)"}.get(state["state"], "")
     done = text.format(cases - missing, cases) if state["counts"] else ""
-    line = f"{definition.name:<16} {cases:>8} cases  {state['state']}{done}  {on_one_line(definition.title, 200)}"
+    number = f"{cases:>6} {'cases' if cases != 1 else 'case '}"
+    line = f"{definition.name:<20} {number}  {state['state']}{done}  {on_one_line(definition.title, 200)}"
     return line + f"\n    {state['path']}: {state['reason']}" * bool(state["reason"])
 
 
 def verified_line(name: str | Path, condition: Condition) -> str:
     """The words of `verify` on a results file."""
     said = {
-        "sound": "verified, every number is the one that was written"
+        "sound": "verified: every number is as it was written"
         + f"; it holds results of the study {condition.name}" * (condition.name not in ("", Path(name).stem)),
-        "unverified": "xarray or an earlier version wrote it, without a digest to compare; nothing wrong was seen",
+        "unverified": "xarray or an earlier version wrote it, without a digest to compare; no damage was found",
         "missing": "does not exist",
     }
     return f"{name}: {said.get(condition.kind, condition.reason)}"
@@ -135,7 +136,10 @@ def cost_line(name: str, cost: Estimate) -> str:
 
 def failure_lines(report: Report, name: str) -> list[str]:
     lines = [f"{name}: block {block} failed: {reason}" for block, reason in sorted(report.failures.items())]
-    return [*lines, f"{name}: {counted(len(lines), 'block')} failed; the others are kept, the same command tries again"]
+    return [
+        *lines,
+        f"{name}: {counted(len(lines), 'block')} failed; the others are kept, and the same command tries again",
+    ]
 
 
 def report_line(report: Report, name: str) -> str:
@@ -145,12 +149,12 @@ def report_line(report: Report, name: str) -> str:
     if not report.complete:
         missing = report.counts.get(NOT_RUN, 0)
         now = counted(report.computed, "case")
-        return f"{name}: {now} computed now, {missing} of {report.cases} are missing: other parts"
+        return f"{name}: {now} computed now, {missing} of {report.cases} are left to other parts"
     refused = {value: count for value, count in report.counts.items() if value in NO_SOLUTION}
     failed = {value: count for value, count in report.counts.items() if value and value not in NO_SOLUTION}
     remarks = [f"{report.path}: {counted(report.cases, 'case')}", f"{report.computed} computed now"]
     if refused:
-        remarks.append(f"{by_status(refused)}: no solution exists, which is no failure")
+        remarks.append(f"{by_status(refused)}: no solution exists, which is not a failure")
     if failed:
         remarks.append(f"{sum(failed.values())} of them not converged ({by_status(failed)}): see `status` in the file")
     return ", ".join(remarks)

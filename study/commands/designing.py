@@ -51,7 +51,7 @@ def question_of(parameters: dict[str, Any]) -> tuple[dict, dict, dict]:
     ranges = {name: value for name, value in parameters.items() if isinstance(value, str) and ".." in value}
     if len(ranges) != 1:
         many = ", ".join(ranges) or "none"
-        raise StudyError([f'the input that is looked for has two bounds, such as h="1 um .. 1 mm"; here: {many}'])
+        raise StudyError([f'exactly one input must have two bounds, such as h="1 um .. 1 mm"; here: {many}'])
     by = {name: tuple(map(number_or_text, _RANGE.split(value))) for name, value in ranges.items()}
     rest = {name: value for name, value in parameters.items() if name not in by}
     targets = {name: value for name, value in rest.items() if name in _RESULTS}

@@ -39,7 +39,7 @@ def fit(options, texts: list[str]) -> int:
     """Fit and say it. Exit code 1 if a curve has no fit that can be used."""
     path, *words = texts
     if "=" in path and not Path(path).exists():
-        raise StudyError([f"{path}: the file of the curve comes first, then what is known: fit curve.csv {path} ..."])
+        raise StudyError([f"{path}: the file of the curve comes first, then the inputs: fit curve.csv {path} ..."])
     reading = _reading([word for word in words if _name(word) in _READING])
     free, settings, parameters = question_of([word for word in words if _name(word) not in _READING])
     picture = options.plot
@@ -91,7 +91,7 @@ def question_of(words: list[str]) -> tuple[Any, dict, dict]:
     free |= bounds
     names = [word.partition("=")[0].strip() for word in words]
     errors = [f"{name} is given twice" for name in _OPTIONS if names.count(name) > 1]
-    errors += [] if free else ['name what is fitted, such as free=E1, or E1="1 kPa .. 1 MPa"']
+    errors += [] if free else ['name the inputs to fit, such as free=E1, or E1="1 kPa .. 1 MPa"']
     for name in _SWITCHES:
         if name in settings:
             value = SWITCH.get(settings[name].lower())

@@ -108,7 +108,7 @@ def _arguments(texts: list[str], kinds: "Kinds") -> dict[str, Any]:
             if name not in kinds:
                 near = meant(name, kinds)
                 says = f"did you mean {near}?" if near else f"it takes {', '.join(kinds)}"
-                raise ValueError(f"{shown(name)} is nothing that `scan` takes; {says}")
+                raise ValueError(f"`scan` does not take {shown(name)}; {says}")
             if name in arguments:
                 raise ValueError(f"{name} is given twice")
             arguments[name] = kinds[name](name, text.partition("=")[2].strip())

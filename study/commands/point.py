@@ -38,8 +38,8 @@ _LIST = re.compile(r",\s|(?<=[^\W\d_]),(?=[-+.\d])")
 _NUMBERS = re.compile(r"[-+]?(?:\d*\.\d+|\d+(?:\.\d*)?e[-+]?\d+)(?:,[-+]?(?:\d*\.\d+|\d+(?:\.\d*)?e[-+]?\d+))+", re.I)
 #: Arguments of the stresses of a contact -> what is said of them.
 _OF_STRESSES = {
-    "mu": "changes the stresses of a contact and not the contact: rc.stresses, rc.extremes and rc.first_yield take it",
-    "sigma_res": "adds to the stresses of a contact: rc.stresses, rc.extremes and rc.first_yield take it",
+    "mu": "changes the stresses of a contact, not the contact: give it to rc.stresses, rc.extremes or rc.first_yield",
+    "sigma_res": "adds to the stresses of a contact: give it to rc.stresses, rc.extremes or rc.first_yield",
 }
 
 
@@ -56,7 +56,7 @@ def point(options, texts: list[str]) -> int:
     several = any(isinstance(value, list) for value in parameters.values())
     as_table = _is_table(options)
     if picture and several:
-        raise StudyError([f"--stresses {picture}: the picture is of one contact, and there is a list of values"])
+        raise StudyError([f"--stresses {picture}: the picture shows one contact, and the call has a list of values"])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the summary has the sentences, though it may take long
         warnings.simplefilter("always", FarOutside)
@@ -144,7 +144,7 @@ def parameters_of(texts: list[str]) -> dict[str, Any]:
             errors += [f"{text}: must be same_piece=true or same_piece=false"] * (str(value).lower() not in SWITCH)
             value = SWITCH.get(str(value).lower())
         elif name in solve.__kwdefaults__:
-            errors.append(f"{name} says nothing of one contact: leave it out")
+            errors.append(f"{name} does not apply to one contact: leave it out")
         parameters[name] = listed(value)
     if errors:
         raise StudyError(errors)

@@ -51,7 +51,9 @@ def _of_file(name: str) -> Dataset:
 def write_rows(options, name: str) -> int:
     """Write a row for each contact, and one for each point of each profile, and say which files they are in."""
     if options.format == "xlsx" and find_spec("openpyxl") is None:
-        raise StudyError(["table --format xlsx needs openpyxl: pip install 'roughcoat[xlsx]', or leave it out for CSV"])
+        raise StudyError(
+            ["table --format xlsx needs openpyxl: pip install 'roughcoat[xlsx]', or leave out --format for CSV"]
+        )
     dataset = results_of(options, name)
     if isinstance(dataset, int):
         return dataset

@@ -111,7 +111,7 @@ def _checked(contact: xr.Dataset, who: str) -> dict[str, Any]:
     units_of = {name: lexicon.all_rows[name].unit for name in coordinates}
     units = {unit == contact[name].attrs.get("units") for name, unit in units_of.items() if unit != "1"}
     if units == {True, False} or has_units(contact) != ("R" in coordinates and "E2" in coordinates):
-        raise StudyError([f"{who} needs all in SI units, as study.solve gives them, or all without units"])
+        raise StudyError([f"{who} needs all inputs in SI units, as study.solve gives them, or all without units"])
     unknown = {*np.unique(contact["micro"].values.astype(str)).tolist()} - {*lexicon.known.laws}
     if unknown:
         raise StudyError([f"micro = {shown(min(unknown))}: no law of this name is registered here"])

@@ -76,6 +76,14 @@ def quantity(name: str) -> Callable:
     Raises
     ------
     ValueError : there is no row of this name
+
+    Examples
+    --------
+    >>> QUANTITIES["An"] is nominal_area  # which has the decorator @quantity("An")
+    True
+    >>> quantity("mean_depth")
+    Traceback (most recent call last):
+    ValueError: mean_depth has no row in study/inputs/vocabulary.toml: a quantity needs one
     """
     if name not in VOCABULARY:
         raise ValueError(f"{name} has no row in study/inputs/vocabulary.toml: a quantity needs one")
@@ -90,7 +98,8 @@ def quantity(name: str) -> Callable:
                     raise ValueError(f"{key} is in {unit}: {name} follows from results in SI units, or without units")
             return named(formula(dataset), name, rule.has_units(dataset))
 
-        computed.__doc__ = cleandoc(formula.__doc__ or "") + SECTIONS_OF_QUANTITIES
+        words, heading, examples = cleandoc(formula.__doc__ or "").partition("\n\nExamples\n")
+        computed.__doc__ = words + SECTIONS_OF_QUANTITIES + heading.removeprefix("\n") + examples
         QUANTITIES[name] = computed
         return computed
 
@@ -99,7 +108,15 @@ def quantity(name: str) -> Callable:
 
 @quantity("An")
 def nominal_area(dataset: xr.Dataset) -> xr.DataArray:
-    """Nominal contact area An = πa², in R²."""
+    """Nominal contact area An = πa², in R².
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=1e-5, base="half_space", Nbar=250000, Ra=0.004)
+    >>> print(f"{nominal_area(contact).item():.5f}")
+    0.00157
+    """
     return np.pi * dataset["a"] ** 2
 
 
@@ -113,25 +130,56 @@ def nominal_area_ratio(dataset: xr.Dataset, a0: float | xr.DataArray) -> xr.Data
     Returns
     -------
     xarray.DataArray : over the dimensions of the contacts
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(a=0.04, base="half_space", micro="smooth")
+    >>> nominal_area_ratio(contact, 0.02).item()
+    4.0
     """
     return named((dataset["a"] / a0) ** 2, "An_ratio")
 
 
 @quantity("p_mean")
 def mean_pressure(dataset: xr.Dataset) -> xr.DataArray:
-    """Mean nominal pressure P/An, in E2*."""
+    """Mean nominal pressure P/An, in E2*.
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=1e-5, base="half_space", micro="smooth")
+    >>> print(f"{(contact.p0 / mean_pressure(contact)).item():.3f}")
+    1.500
+    """
     return dataset["P"] / (np.pi * dataset["a"] ** 2)
 
 
 @quantity("spots")
 def number_of_spots(dataset: xr.Dataset) -> xr.DataArray:
-    """Number of contact spots N̄ An; NaN where there is no roughness."""
+    """Number of contact spots N̄ An; NaN where there is no roughness.
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=1e-5, base="half_space", Nbar=250000, Ra=0.004)
+    >>> print(f"{number_of_spots(contact).item():.0f}")
+    392
+    """
     return rule.spots(dataset).where(rule.have("rough", dataset["micro"], lexicon_in(dataset).known))
 
 
 @quantity("b0")
 def spot_radius(dataset: xr.Dataset) -> xr.DataArray:
-    """Radius of the central contact spot b = sqrt(λ/(π N̄)), Eq. (11), in R; NaN where there is no roughness."""
+    """Radius of the central contact spot b = sqrt(λ/(π N̄)), Eq. (11), in R; NaN where there is no roughness.
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=1e-5, base="half_space", Nbar=250000, Ra=0.004)
+    >>> print(f"{spot_radius(contact).item():.6f}")
+    0.000513
+    """
     return rule.spot_radius(dataset).where(rule.have("rough", dataset["micro"], lexicon_in(dataset).known))
 
 
@@ -141,13 +189,28 @@ def largest_nominal_pressure(dataset: xr.Dataset) -> xr.DataArray:
 
     A hard coating with a > h bends like a plate and presses most in a ring near the edge. 33 points miss up to 3 % of
     it, 17 up to 6 % (tests/physical/words/test_largest_pressure.py). It needs the profile p.
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=1e-3, h=0.02, n=30, bonding="bonded", micro="smooth")
+    >>> print(f"{largest_nominal_pressure(contact).item():.3f}, in the centre {contact.p0.item():.3f}")
+    0.118, in the centre 0.065
     """
     return _profile(dataset, "p_ring").max("x", skipna=False)
 
 
 @quantity("r_ring")
 def ring_radius(dataset: xr.Dataset) -> xr.DataArray:
-    """Radius in R at which the nominal pressure is largest, a point of the profile. Needs the profile p."""
+    """Radius in R at which the nominal pressure is largest, a point of the profile. Needs the profile p.
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=1e-3, h=0.02, n=30, bonding="bonded", micro="smooth")
+    >>> print(f"{(ring_radius(contact) / contact.a).item():.2f}")
+    0.81
+    """
     p = _profile(dataset, "r_ring")
     return dataset["a"] * dataset["x"].where(p >= (1 - ROUNDING) * p.max("x", skipna=False)).min("x")
 
@@ -159,6 +222,13 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     The two differ where p peaks in a ring (`p_ring`). Needs the profile p; NaN for a law that is not registered in the
     version of the results. Results with units must have R and E2 in SI units: the laws take their parameters in R and
     E2*.
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=1e-5, base="half_space", Nbar=250000, Ra=0.004)
+    >>> print(f"{peak_pressure(contact).item():.4f}")
+    0.0851
     """
     pressures = _profile(dataset, "p_peak")
     unit, R = _scales(dataset, "p_peak")
@@ -224,13 +294,20 @@ def depth_of_the_body(dataset: xr.Dataset) -> xr.DataArray:
     rigid punch does not give way. The integrand is a cubic spline through the profile p, in arcsin(r/a). The depth is
     NaN where that spline misses the load by more than LOAD_MISSED. It needs all that `peak_pressure` needs, and p at 5
     points.
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=1e-5, m=0.5, base="half_space", micro="smooth")
+    >>> print(f"{(depth_of_the_body(contact) / contact.D).item():.4f}")
+    0.6667
     """
     m = dataset.get("m", xr.DataArray(0.0))
     if (m == 0).all():
         return dataset["D"] + 0 * m
     p = _profile(dataset, "D_body")
     if dataset.sizes["x"] < LEAST_POINTS:
-        raise ValueError(f"D_body needs the profile p at {LEAST_POINTS} points or more, x = 33 say")
+        raise ValueError(f"D_body needs the profile p at {LEAST_POINTS} points or more, such as x = 33")
     along, over_area = (xr.DataArray(weights, dims="x") for weights in _weights(dataset["x"].values))
     integral, load = (p * along).sum("x", skipna=False), 2 * np.pi * dataset["a"] ** 2 * (p * over_area).sum("x")
     share = m / (1 + m) * dataset["A0"].where(_rough_model(dataset["model_used"]), 0.0)
@@ -294,6 +371,13 @@ def effective_modulus(dataset: xr.Dataset) -> xr.DataArray:
 
     A smooth punch on a half-space has E_eff = E*. On a layer E_eff is that of a flat punch of radius a, whatever the
     shape of the smooth punch, since dP/dD at p(a) = 0 does not change with a; roughness lowers it.
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=1e-5, base="half_space", micro="smooth")
+    >>> print(f"{effective_modulus(contact).item():.4f}")
+    1.0000
     """
     return dataset["dP_dD"] / (2 * dataset["a"])
 

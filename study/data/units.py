@@ -181,7 +181,9 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
     if not xr.is_dataset(dataset):
         raise ValueError("readable takes the dataset, not an array of it: study.readable(contact).a")
     if "fit_status" in dataset:
-        raise ValueError("readable takes contacts: a dataset of study.fit stays in SI, study.summary says it readably")
+        raise ValueError(
+            "readable takes contacts: a dataset of study.fit stays in SI, and study.summary prints it in readable units"
+        )
     if PHYSICAL_SCALE not in dataset.attrs:
         raise ValueError("the dataset is dimensionless: study.to_physical gives it units")
     changed = {}
@@ -193,7 +195,7 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
         finite = np.abs(owner.values[np.isfinite(owner.values)])
         word, size = multiple(finite.max() if finite.size else np.inf, unit)
         changed[name] = xr.Variable(variable.dims, variable.data / size, variable.attrs | {"units": word})
-    scale = "readable multiples of SI units, by the attribute units"
+    scale = "readable multiples of SI units, named by the attribute units"
     return dataset.assign(changed).assign_attrs({PHYSICAL_SCALE: scale})
 
 

@@ -65,7 +65,7 @@ const Contact = ((Core, Numbers, DATA) => {
       else if (own && MATERIALS[own]) {
         v[modulus] = { value: MATERIALS[own].E, spread: MATERIALS[own].E_spread };
         v[ratio] = { value: MATERIALS[own].nu, spread: MATERIALS[own].nu_spread };
-      } else if (own) problems[body] = `${body}: "${own}" is no material of the table`;
+      } else if (own) problems[body] = `${body}: "${own}" is not a material of the table`;
       else { take(modulus); take(ratio); }
     }
     for (const [name, words] of Object.entries(CHOICES)) {
@@ -219,7 +219,7 @@ const Contact = ((Core, Numbers, DATA) => {
     if (p.layered) {
       const given = Math.min(q.D / p.h, q.p0 / E1), pulled = E1 * Math.min(p.h, q.a) * q.a ** 2 / 8 / q.p0;
       light("strain_not_small", "Layer hardly compressed", given / L.COMPRESSED,
-        `It gives way by about ${percent(given)}, limit ${percent(L.COMPRESSED)}: linear elasticity errs by about as much.`);
+        `It is compressed by about ${percent(given)}, limit ${percent(L.COMPRESSED)}: linear elasticity errs by about as much.`);
       light("strain_not_small", "Layer hardly stretched", pulled / L.STRETCHED,
         `As a membrane it bears about ${percent(pulled)} of the pressure, limit ${percent(L.STRETCHED)}; the model leaves that out.`);
     }

@@ -81,7 +81,7 @@ def read(path: Path, _: tuple) -> Text:
         MemoryError,
     ) as error:  # some come from null bytes or deep brackets
         line = f"line {error.lineno}: " if isinstance(error, SyntaxError) and error.lineno else ""
-        raise StudyError([f"{path.as_posix()}: is no Python: {line}{getattr(error, 'msg', error)}"]) from None
+        raise StudyError([f"{path.as_posix()}: is not valid Python: {line}{getattr(error, 'msg', error)}"]) from None
     except OSError as error:
         raise StudyError([f"{path.as_posix()}: cannot be read: {error.strerror}"]) from None
     imports = [node for node in nodes if isinstance(node, ast.ImportFrom)]

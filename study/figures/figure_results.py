@@ -63,7 +63,7 @@ def _reason(name: str, variable: xr.Variable) -> str:
 
 def why_none(y: str, values: xr.DataArray) -> str:
     """Words on why no case has a number to draw."""
-    return f"{y} is infinite" if np.isinf(values).any() else "status says what became of each"
+    return f"{y} is infinite" if np.isinf(values).any() else "status says how each of them ended"
 
 
 def results(name: str, folder, force: bool = False, command: str = "") -> xr.Dataset:

@@ -68,6 +68,14 @@ def plot(
     Raises
     ------
     StudyError : not a dataset, a stacked dataset, an unknown name or value, or more than 12 panels
+
+    Examples
+    --------
+    >>> import study
+    >>> contacts = study.solve(P=[1e-5, 2e-5, 4e-5], base="half_space", micro="smooth")
+    >>> figure = plot(contacts, x="P", y="a")
+    >>> figure.axes[0].get_xlabel().startswith("$P")
+    True
     """
     with style():
         return shaped(dataset, (x, y, hue), where, StyledFigure, colour=colour, scale=scale, limits=limits)[0]
@@ -121,7 +129,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     new : makes an empty figure
     """
     if not isinstance(dataset, xr.Dataset):
-        raise StudyError([f"a figure is of a dataset of contacts, not of a {type(dataset).__name__}"])
+        raise StudyError([f"plot takes a dataset of contacts, not a {type(dataset).__name__}"])
     x, y, hue = map(short, (x, y, hue))
     where = {short(name): value for name, value in where.items()}
     if "fit_status" in dataset:
@@ -148,7 +156,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
         contacts = contacts.drop_vars("validity")
     dims = [dim for dim in pair[1].dims if pair[1].sizes[dim] > 1 or dim in (x, hue)]
     if hue and hue not in dims:
-        raise StudyError([f"hue = {hue} is no axis of {y}; its axes: {', '.join(dims)}"])
+        raise StudyError([f"hue = {hue} is not an axis of {y}; its axes: {', '.join(dims)}"])
     along = running(contacts, x, [dim for dim in dims if dim != hue])
     rest = [dim for dim in dims if dim not in (along, hue)]
     count = prod(contacts.sizes[dim] for dim in rest)
@@ -182,7 +190,7 @@ def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
             try:
                 dataset = dataset.assign({name: QUANTITIES[name](dataset)})
             except (KeyError, ValueError) as error:
-                errors.append(f"{name} cannot be derived from these results: {error}")
+                errors.append(f"{name} cannot be computed from these results: {error}")
         elif name not in dataset.variables:
             errors.append(f'"{name}" is not in these results{suggest(name, [*dataset.variables, *QUANTITIES])}')
     if errors:
@@ -212,7 +220,7 @@ def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
     for name, value in where.items():
         if name not in dataset.coords or dataset[name].ndim != 1:
             axes = [str(name) for name, axis in dataset.coords.items() if axis.ndim == 1]
-            raise StudyError([f"{name} is no axis of these results{suggest(name, axes)}"])
+            raise StudyError([f"{name} is not an axis of these results{suggest(name, axes)}"])
         values = dataset[name].values
         (dim,), unit = dataset[name].dims, dataset[name].attrs.get("units", "1")
         if is_text(dataset[name]):
@@ -225,7 +233,7 @@ def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
             few = values if is_text(dataset[name]) else values[np.argsort(np.abs(values - wanted), kind="stable")]
             listed = ", ".join(f"{each:g}" if values.dtype.kind == "f" else str(each) for each in few[:20])
             more = " ..." * (len(values) > 20) + f" {unit}" * (unit != "1")
-            raise StudyError([f"{name} = {value} is not there; there are {listed}{more}"])
+            raise StudyError([f"{name} = {value} is not among these results; there are {listed}{more}"])
         index = np.flatnonzero(fits)  # several [[cases]] may have the value, and keep their numbers
         if dim not in dataset.coords:
             dataset = dataset.assign_coords({dim: np.arange(len(fits))})

@@ -102,6 +102,16 @@ def figure(
     Returns
     -------
     a decorator, which returns the function
+
+    Examples
+    --------
+    >>> import study
+    >>> @study.figure("parabola", caption="A parabola.")
+    ... def parabola(axes):
+    ...     axes.plot([0, 1, 2], [0, 1, 4])
+    ...     return {"x": [0, 1, 2], "y": [0, 1, 4]}
+    >>> FIGURES.pop("parabola").caption
+    'A parabola.'
     """
 
     def register(draw: Callable[..., Columns]) -> Callable[..., Columns]:
@@ -121,6 +131,16 @@ def drawing(name: str, caption: str = "") -> Decorator:
     Returns
     -------
     a decorator, which returns the function
+
+    Examples
+    --------
+    >>> import pathlib, study
+    >>> @study.drawing("sketch")
+    ... def sketch():
+    ...     "A sketch of the punch."
+    ...     return pathlib.Path("sketches/punch")
+    >>> FIGURES.pop("sketch").caption
+    'A sketch of the punch.'
     """
 
     def register(stem: Callable[[], Path]) -> Callable[[], Path]:
@@ -144,6 +164,16 @@ def table(name: str, *studies: str, columns: str, caption: str = "", long: bool 
     Returns
     -------
     a decorator, which returns the function
+
+    Examples
+    --------
+    >>> import study
+    >>> @study.table("squares", columns="x | d; square | d | $x^2$")
+    ... def squares():
+    ...     "The first squares."
+    ...     return [(1, 1), (2, 4)]
+    >>> [column.latex for column in TABLES.pop("squares").columns]
+    ['', '$x^2$']
     """
 
     def register(rows: Callable[..., list[tuple]]) -> Callable[..., list[tuple]]:
@@ -179,7 +209,7 @@ def add(kind: str, name: str, function: Callable, registered: NamedTuple) -> Non
     other = next((value for value in register.get(name, ()) if callable(value)), function)
     other = getattr(other, "func", other)
     if (other.__module__, other.__name__) != (function.__module__, function.__name__):
-        raise ValueError(f'"{name}" is that of {other.__module__}.{other.__name__} already: take another name')
+        raise ValueError(f'"{name}" is already the name of {other.__module__}.{other.__name__}: take another name')
     register[name] = registered
 
 
@@ -215,7 +245,7 @@ def entry(kind: str, name: str) -> Any:
     file, last = place
     register = REGISTERS[figure_files.run(file)][kind]
     if last not in register:
-        raise StudyError([f"{file.as_posix()}: registers no {kind} {last}, though the name stands there"], code=1)
+        raise StudyError([f"{file.as_posix()}: does not register the {kind} {last}, although it names it"], code=1)
     return register[last]
 
 

@@ -136,7 +136,7 @@ def examine(path, identity: Identity | None = None, most: float = inf) -> Condit
         # a file that is not ours, or a damaged one, may say that it has terabytes
         state = Condition(path, "unreadable", f"cannot be read: {memory_message(error)}")
     except BROKEN as error:
-        state = replace(state, kind="damaged", reason=f"is damaged: no results are laid out like this ({error})")
+        state = replace(state, kind="damaged", reason=f"is damaged: results do not have this layout ({error})")
     return replace(state, seen=seen)
 
 

@@ -189,7 +189,7 @@ def check_regular(path: Path) -> None:
     except OSError as error:
         raise Unusable(path, "unreadable", f"cannot be read: {error.strerror}") from error
     if not stat.S_ISREG(mode):
-        raise Unusable(path, "foreign", f"is no file but a {'folder' if stat.S_ISDIR(mode) else 'pipe or device'}")
+        raise Unusable(path, "foreign", f"is not a file but a {'folder' if stat.S_ISDIR(mode) else 'pipe or device'}")
 
 
 def _cannot_be_opened(path: Path, error: OSError) -> Exception:
@@ -205,7 +205,7 @@ def _cannot_be_opened(path: Path, error: OSError) -> Exception:
     if not free:
         return Unusable(path, "unreadable", "is open for writing in another program, which has locked it")
     if not head.startswith(HDF5):
-        return Unusable(path, "foreign", "is empty" if not size else "is no netCDF file")
+        return Unusable(path, "foreign", "is empty" if not size else "is not a netCDF file")
     if error.errno == errno.ENOMEM or (memory_is_short() and are_whole(path)):
         return MemoryError(f"{path} cannot be opened: {error.strerror or error}")
     place = END.get(head[8] if len(head) > 8 else -1, 64)

@@ -117,7 +117,7 @@ def _described(path: Path) -> PartFile:
         except (KeyError, IndexError, ValueError):  # not our results
             axes = {}
     if not axes or not name or not {*counts} <= {*axes}:
-        raise Unusable(path, "foreign", "is no part of the results in this folder; move it away")
+        raise Unusable(path, "foreign", "is not a part of the results in this folder; move it away")
     if name[2] != condition.digest[:16]:
         raise Unusable(path, "misplaced", f"holds results of another study than its name says; {AGAIN}")
     return PartFile(path, condition.digest, counts, axes, int(name[1]), None if stated is None else int(stated))

@@ -116,7 +116,7 @@ def put(before: Condition, digest: str, temporary: Path, path: Path) -> None:
         if before.seen is None or stamp(path) != before.seen:
             now = examine(path)
             if not (now.good and now.digest == digest):
-                what = "has appeared or changed while its results were computed, and stays"
+                what = "appeared or changed while its results were computed, and is left as it is"
                 raise StudyError([f"{before.path}: {what}: move it away, and the same command writes them"], code=1)
         elif before.kind == "damaged":
             os.replace(path, f"{path}.damaged")
@@ -157,6 +157,15 @@ def open_results(path: str | os.PathLike) -> xr.Dataset:
     ------
     FileNotFoundError : there is no such file
     StudyError : the file is damaged, or cannot be read; it is also an OSError
+
+    Examples
+    --------
+    >>> import tempfile, study
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     report = study.load("reference_load", results=folder).run()
+    ...     contacts = open_results(report.path)
+    >>> contacts.attrs["study_name"]
+    'reference_load'
     """
     path = Path(os.path.expanduser(path))
     if path.is_dir() and any(path.glob("*.nc")):

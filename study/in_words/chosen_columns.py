@@ -15,7 +15,7 @@ from ..data.frames import frames
 from ..inputs.definition import StudyError
 from ..inputs.lexicon import lexicon_in
 from ..inputs.vocabulary import CONTROLS, FIRST_LAYER, NUMERICS, scene_of, suggest
-from ..specimen.quantities import quantity
+from ..specimen.quantities import READABLE, quantity
 from ..terminal import shown
 from .text import OF_ASPERITIES, SHOWN
 
@@ -34,9 +34,9 @@ def selected(dataset: xr.Dataset, names: list[str] | tuple[str, ...] | None) -> 
     """
     if not names:
         return dataset
-    known = [*map(str, dataset.variables), *QUANTITIES]
-    if wrong := [f"--columns {shown(name)} is no column{suggest(name, known)}" for name in names if name not in known]:
-        raise StudyError(wrong)
+    known = known_columns(dataset)
+    if unknown := [name for name in names if name not in known]:
+        raise StudyError([f"--columns {shown(name)} is not a column{suggest(name, known)}" for name in unknown])
     derived = {name: QUANTITIES[name](dataset) for name in names if name not in dataset.variables}
     whole = dataset.assign(derived).reset_coords()
     dims = list(dataset["status"].dims)
@@ -45,19 +45,29 @@ def selected(dataset: xr.Dataset, names: list[str] | tuple[str, ...] | None) -> 
     return table.drop_vars([name for name in table.coords if name not in (*dims, "x")])
 
 
-def in_units(dataset: xr.Dataset, units: list[str] | None) -> xr.Dataset:
-    """The dataset with its quantities in these units; quantities of another kind stay as they are.
+def known_columns(dataset: xr.Dataset) -> list[str]:
+    """All names that a table can have as columns: inputs first, then results, spreads last."""
+    names = [*map(str, dataset.coords), *map(str, dataset.data_vars), *QUANTITIES]
+    return sorted(names, key=lambda name: name.endswith("_spread"))
 
-    Raises StudyError: a unit is unknown, or no quantity can be in it.
+
+def in_units(dataset: xr.Dataset, units: list[str] | None) -> xr.Dataset:
+    """The dataset with each quantity in that of the units that is of its kind; all others stay as they are. A unit of a
+    kind that no column has changes nothing, so that one list of units serves all tables.
+
+    Raises StudyError: a word that is not a unit of any quantity, or no column has a unit.
     """
     wrong = []
+    if units and not any(array.attrs.get("units", "1") != "1" for array in dataset.variables.values()):
+        raise StudyError([f"--units {','.join(units)}: no column has a unit: leave it out"])
     for unit in units or ():
         changed = {}
         for name, array in dataset.variables.items():
             if factor := _size(unit, array.attrs.get("units", "1")):
                 numbers = array.data / factor
                 changed[name] = array.dims, numbers, array.attrs | {"units": unit}
-        wrong += [f"--units {shown(unit)} is the unit of no column"] * (not changed)
+        if not changed and not any(_size(unit, si) for si in READABLE):
+            wrong.append(f"--units {shown(unit)} is not a unit of any quantity of a contact, such as um, N or MPa")
         dataset = dataset.assign(changed)
     if wrong:
         raise StudyError(wrong)
@@ -117,7 +127,7 @@ def _as_input(array: xr.DataArray) -> Any:
 
 def beside_bare(table: xr.Dataset, bare: xr.Dataset, names: list[str]) -> xr.Dataset:
     """The table with these results for the body without layers after its own, called NAME bare."""
-    results = [name for name in names if name not in bare.coords]
+    results = [name for name in names if name in bare.data_vars or name in QUANTITIES]  # an input of the layer is not
     results_of_bare = selected(bare, results)
     return table.assign({f"{name} bare": results_of_bare[name] for name in results})
 

@@ -23,32 +23,33 @@ _ALIKE = 0.995
 _AGAINST = 2.5
 _WITHOUT_NUMBERS = ("no_contact", "invalid_input", "not_run")
 _SENTENCES = {
-    "at_bound": "The best value is at a bound: widen the bounds, or the curve does not hold it.",
+    "at_bound": "The best value is at a bound: widen the bounds, or the curve does not determine it.",
     "iteration_limit": "The search has not ended: do not use these values.",
-    "several_minima": "Another value fits as well: the interval holds all of them.",
-    "not_identifiable": "The curve does not hold a bound of the interval: that end is where the search stopped.",
-    "no_contact": "A straight line describes the curve as well: there is no contact in it, or these inputs make none "
-    "like it. The depth D has to grow, and the load P to rise, as the punch goes in.",
-    "not_run": "It was not fitted: the call was interrupted before.",
-    "invalid_input": "There are fewer points than unknowns, all at one place, or no solution: nothing is fitted.",
+    "several_minima": "Another value fits as well: the interval contains all of them.",
+    "not_identifiable": "The curve does not determine one end of the interval: the search stopped there.",
+    "no_contact": "A straight line describes the curve as well: it contains no contact, or none that these inputs "
+    "describe. The depth D must grow and the load P must rise as the punch goes in.",
+    "not_run": "It was not fitted, because the call was interrupted.",
+    "invalid_input": "Nothing is fitted: there are fewer points than unknowns, all are at one place, or no contact has "
+    "a solution.",
 }
 
 
 #: For a load that rises from the shallowest point on, and that a straight line describes as well.
 _THROUGHOUT = (
-    "The load rises from the shallowest point on, nearly along a straight line: either the baseline drifts, or the "
-    "curve is in contact throughout, such as an unloading is. P(D) alone does not say where such a contact begins, and "
-    "no modulus follows. An unloading gives one by its slope dP/dD at the deepest point over the contact radius there: "
-    'x="a", y="dP_dD" (docs/afm.md). Of a loading, take points before the contact too.'
+    "From the shallowest point on the load rises nearly along a straight line: either the baseline drifts, or the "
+    "curve is in contact throughout, as an unloading curve is. P(D) alone does not say where such a contact begins, so "
+    "no modulus follows. An unloading curve gives one by its slope dP/dD at the deepest point and the contact radius "
+    'there: x="a", y="dP_dD" (docs/afm.md). A loading curve needs points before the contact too.'
 )
 _FLOWS = (
-    "This is no modulus: a body so stiff flows below a sharp tip, and its loading is no elastic contact. Take the "
-    "slope dP/dD at the beginning of the unloading over the contact radius there (Oliver and Pharr), and fit "
+    "This is not a modulus: a body this stiff flows below a sharp tip, so its loading is not an elastic contact. "
+    "Take the slope dP/dD at the beginning of the unloading and the contact radius there (Oliver and Pharr), and fit "
     'x="a", y="dP_dD" (docs/afm.md).'
 )
 _ENDED = (
-    "The deepest contact is beyond the end of the law of its asperities on the coated body: the spots merge or, of the "
-    "disc cell on a soft layer, go wrong. Take points that are less deep, or give asperities_on."
+    "The deepest contact is beyond the end of the law of its asperities on the coated body: the spots merge or, on a "
+    "soft layer, the disc cell fails. Take shallower points, or give asperities_on."
 )
 
 
@@ -59,7 +60,7 @@ def of_fit(fitted: xr.Dataset) -> str:
     inputs, shifts = [n for n in names if n not in NAMES_OF_SHIFTS], [n for n in names if n in NAMES_OF_SHIFTS]
     x, y, level = fitted.attrs["x"], fitted.attrs["y"], fitted.attrs["level"]
     count = fitted.sizes["curve"]
-    beside = f", beside {' and '.join(NAMES_OF_SHIFTS[name] for name in shifts)}" if shifts else ""
+    beside = f"; also {' and '.join(NAMES_OF_SHIFTS[name] for name in shifts)}" if shifts else ""
     kind = "A plan for" if f"{y}_fit" not in fitted else "Fitted to"
     lines = [fitted.attrs["given"], ""] if "given" in fitted.attrs else []
     lines += [
@@ -73,7 +74,7 @@ def of_fit(fitted: xr.Dataset) -> str:
         words, counts = np.unique(decode(fitted["fit_status"]).values.astype(str), return_counts=True)
         lines += [
             "",
-            f"and {count - MOST_CURVES} more. Of all: "
+            f"and {count - MOST_CURVES} more. For all of them: "
             + ", ".join(f"{n} {w}" for w, n in zip(words, counts, strict=True)),
         ]
     return "\n".join([*lines, *([""] * (count > 1) + [text] if (text := fitted.attrs.get("assumed")) else [])])
@@ -129,7 +130,7 @@ def _residual(curve: xr.Dataset) -> list[str]:
     share = rms / float(curve[name].max() - curve[name].min())
     unit = curve["residual"].attrs["units"]
     off = readable(float(f"{rms:.2g}"), unit)
-    return [f"The points are {off} from the fit (rms), {_percent(share)} of the range of {name}."]
+    return [f"The points deviate from the fit by {off} (rms), {_percent(share)} of the range of {name}."]
 
 
 def _doubts(curve: xr.Dataset, inputs: list[str]) -> list[str]:
@@ -139,27 +140,27 @@ def _doubts(curve: xr.Dataset, inputs: list[str]) -> list[str]:
     name, lines = inputs[0], []
     if "no_pull" in curve and bool(curve["no_pull"]):
         lines.append(
-            "The load is nowhere below the baseline by more than the noise: without a pull the curve says nothing of "
-            "adhesion. The fit is that of w_adhesion = 0."
+            "The load is nowhere below the baseline by more than the noise: without a pull the curve says nothing "
+            "about adhesion. The fit has w_adhesion = 0."
         )
     count, effective = int(np.isfinite(curve["residual"]).sum()), float(curve["effective_points"])
     if effective < count:
         lines.append(
-            f"The residuals hang together: {count} points say as much as {max(round(effective), 1)} independent ones, "
-            "and the intervals are as wide as that."
+            f"The residuals are correlated: {count} points say as much as {max(round(effective), 1)} independent "
+            "ones, which the intervals take into account."
         )
     if bool(curve["misfit_larger"]):
         ratio = rounded(float(curve["misfit_ratio"]))
         lines.append(
             f"In contact the points are {ratio} times as far from the fit as before it: "
-            "this is no noise, the model does not describe the contact."
+            "this is not noise, but a contact that the model does not describe."
         )
     for prior in (one for one in inputs if f"{one}_from_prior" in curve):
         off = float(curve[f"{prior}_from_prior"])
         if abs(off) > _AGAINST:
             lines.append(
-                f"{prior} is {float(f'{abs(off):.2g}'):g} standard deviations from what the call says of it: the curve "
-                "and that ± contradict each other, or the model does not describe the curve."
+                f"{prior} is {float(f'{abs(off):.2g}'):g} standard deviations from its value in the call: the curve "
+                "contradicts that ±, or the model does not describe the curve."
             )
     if bool(curve["changes"]):
         change = 100 * (np.exp(float(curve["change"])) - 1)
@@ -192,7 +193,7 @@ def _points(curve: xr.Dataset) -> list[str]:
     equal = len(x_of_points) - len(np.unique(x_of_points))
     steps = np.sign(np.diff(x_of_points))
     words = [f"{gaps} of {written} points have no numbers and are left out."] * bool(gaps)
-    words += [f"{equal} points stand at the {name} of another; each counts."] * bool(equal)
+    words += [f"{equal} points have the same {name} as another; each counts."] * bool(equal)
     words += [f"The points are not in the order of {name}, which does not matter."] * (len({*steps[steps != 0]}) > 1)
     return [" ".join(words)] if words else []
 
@@ -250,6 +251,6 @@ def _known(curve: xr.Dataset, inputs: list[str]) -> list[str]:
             at = readable(values[1], curve[second].attrs["units"])
             lines.append(
                 f"{first} and {second} cannot be told apart by this curve (correlation {correlation:.3f}). "
-                f"What is known: {first} ({second}/{at})^{power:.2f} to {_percent(least)}."
+                f"The curve determines {first} ({second}/{at})^{power:.2f} to {_percent(least)}."
             )
     return lines

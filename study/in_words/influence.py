@@ -12,9 +12,12 @@ from ..terminal import rounded
 
 #: An input with a larger share of the variance makes "nearly all" of it.
 _NEARLY = 0.99
-#: If the thickness must change by more than this share of itself, it hardly acts; a derivative does not reach so far.
+#: If the thickness must change by more than this share of itself, it to change a result by 1 % hardly acts; a
+#: derivative does not reach so far.
 _FAR = 0.5
-#: Largest relative spread that no printed digit shows. Its parts are lost in the error of the solution, which is below
+#: Largest change in % that no printed digit shows; none is written that is smaller.
+_LITTLE = 0.01
+#: A relative spread that no printed digit shows. Its parts are lost in the error of the solution, which is below
 #: 1e-9, so that the sentence says it in words.
 _UNSEEN = 1e-7
 
@@ -39,11 +42,13 @@ def influence(case: xr.Dataset, name: str) -> list[str]:
         largest = max(parts, key=lambda one: abs(parts[one]))
         share = parts[largest] ** 2 / sum(part**2 for part in parts.values())
         most = "nearly all" if share > _NEARLY else f"{100 * share:.0f} %"
-        found = [f"{largest} makes {most} of the variance of {symbol}"]
+        found = [f"{largest} contributes {most} of the variance of {symbol}"]
     by_h = by_input.get("h", 0.0)
     if abs(by_h) * _FAR > 0.01:
-        change = f"{rounded(1 / abs(by_h))} % {'larger' if by_h > 0 else 'smaller'}"
-        found.append(f"{symbol} is 1 % larger where h is {change}")
+        thickness = f"a {rounded(1 / abs(by_h))} % {'larger' if by_h > 0 else 'smaller'} h"
+        found.append(f"{thickness} makes {symbol} 1 % larger")
     elif by_h:
-        found.append(f"h hardly changes {symbol}")
+        change = 10 * abs(by_h)  # in %
+        size = f"{rounded(change)} %" if change > _LITTLE else f"less than {_LITTLE:g} %"
+        found.append(f"10 % of h changes {symbol} by {size}")
     return ["; ".join(found) + "."] if found and np.isfinite([*by_input.values()]).all() else []

@@ -43,12 +43,12 @@ _SAME, _MOST = 1e-3, 8
 _FAR = 0.01
 #: Largest a/R of contacts on which something is said.
 _WIDEST = 0.2
-_THROUGH = "The layer is thin against the pitch: single spots press on the body through it, which is left out."
-_SHAPE = "Not looked at under this shape: study.extremes computes the stresses, study.first_yield the loads."
-_FILM = "The layer is so thin (h < 0.002 a) that its stresses take long: study.extremes computes them"
+_THROUGH = "The layer is thin compared with the pitch: single spots press on the body through it, which is left out."
+_SHAPE = "Not computed here for this shape: study.extremes gives the stresses, study.first_yield the loads."
+_FILM = "The layer is so thin (h < 0.002 a) that its stresses take long to compute: study.extremes gives them"
 _OWN_LAW = (
-    "The law of the asperities does not say what is below them: as of a sphere, the stress there is pmax - p(0) over "
-    "{q:.3g}."
+    "The law of the asperities does not give the stress below them: it is taken to be that below a sphere, "
+    "(pmax - p(0))/{q:.3g}."
 )
 #: Depth at which a body first yields below a sphere, in the radius of the contact (nu = 0.3).
 _DEEP = 0.48
@@ -246,7 +246,7 @@ def which_yields(dataset: xr.Dataset) -> str:
     stress, parts = of_contacts(problem, solve(problem), names=("mises1", "mises2")), []
     for body, name in (("layer", "mises1"), ("body", "mises2")):
         count = int((stress[name][0] > known[body][some]).sum())
-        parts += [f"in {count} it is the {body}" if len(flags) > 1 else f"it is the {body}"] * bool(count)
+        parts += [f"the {body} yields in {count} of them" if len(flags) > 1 else f"the {body} yields"] * bool(count)
     return f"{_capital(', '.join(parts))}." if parts else ""
 
 
@@ -315,12 +315,13 @@ def _closest(looked: _Looked, case: xr.Dataset) -> list[str]:
     place = _place(contact, first.r, first.z, float(looked.problem.value[0])) if np.isfinite(first.z) else ""
     place = "" if limit.what.endswith("pmax") else f" {place}"
     value, strength = _with_unit(contact, first.stress), _with_unit(contact, limit.strength, spread=limit.spread)
-    where = f"closest to {limit.ing}" if share <= 1 else f"beyond {limit.ing}"
-    of = f"{_part(share)} the {limit.of}{' from hardness' * limit.hard}, {strength}"
-    said = [f"{limit.who} {'are' if limit.plural else 'is'} {where}: the {limit.what}, {value}{place}, is {of}."]
+    closest = f"{'are' if limit.plural else 'is'} closest to {limit.ing}"
+    of = f"{_part(share)} the {limit.of}{' estimated from hardness' * limit.hard}, {strength}"
+    verb = closest if share <= 1 else f"would {limit.verb}"
+    said = [f"{limit.who} {verb}: the {limit.what}, {value}{place}, is {of}."]
     if others:
         parts = [(one.limit, _part(one.share)) for one in others]
-        texts = [f"{one.who} {part} {'their' if one.plural else 'its'} {one.of}" for one, part in parts]
+        texts = [f"{one.who} at {part} {'their' if one.plural else 'its'} {one.of}" for one, part in parts]
         said.append(f"Less close: {', '.join(texts)}.")
     return [_capital(text) for text in [*said, *_at_which_load(looked, first, case)]]
 
@@ -331,7 +332,7 @@ def _at_which_load(looked: _Looked, first: _Compared, case: xr.Dataset) -> list[
     limit, share, contact = first.limit, first.share, looked.contact
     found = _load(looked, first, case)
     if found is None:
-        farther = f"No load up to a = 0.2 R makes {limit.who} {limit.verb}, as far as that was looked for."
+        farther = f"No load up to a = 0.2 R was found that makes {limit.who} {limit.verb}."
         return [farther] * (share < 1)
     P, slope, solution = found
     spread = P * slope * limit.spread / limit.strength
@@ -379,10 +380,10 @@ def _load(looked: _Looked, first: _Compared, case: xr.Dataset) -> tuple[float, f
 def _needed(contact: Contacts, lacking: list[_Compared]) -> list[str]:
     """A sentence on the strengths that are not known, and how large they must be for the contact to hold."""
     parts = [
-        f"of {limit.who}, which need{'' if limit.plural else 's'} above {_with_unit(contact, stress)} ({limit.needs})"
+        f"the strength of {limit.who}, which must be above {_with_unit(contact, stress)} ({limit.needs})"
         for limit, stress, *_ in lacking
     ]
-    return [f"Not known {'; '.join(parts)}."]
+    return [f"Not known: {'; '.join(parts)}."]
 
 
 def _place(contact: Contacts, r: float, z: float, a: float) -> str:
@@ -390,7 +391,7 @@ def _place(contact: Contacts, r: float, z: float, a: float) -> str:
     if z == 0:
         return f"on the surface {where}" if abs(r) >= 1e-3 else "in the middle of the surface"
     deep = readable(float(f"{z * a * contact.units[1].item():.2g}"), "m") if contact.scene else f"{z * a:.2g} R"
-    return f"{where} {deep} deep"
+    return f"{where} at a depth of {deep}"
 
 
 def _with_unit(contact: Contacts, value: float, length: int = 0, spread: float = 0.0) -> str:

@@ -24,8 +24,8 @@ _CONES = {KIND.name: None} | {kind.name: float(kind.of(size=1).cot[0]) for kind 
 _SMALL = 0.005
 #: On spheres with random heights, as from a scan: measured on six surfaces (docs/roughness.md, Which law when).
 _SPHERES = (
-    "If they come from a scan: spheres touch about two thirds of the area that the scan itself touches, and their pmax "
-    "is up to 1.4 times too small, up to 9 times where single points stand out. rc.roughness.law(scan), or "
+    "If the asperities come from a scan, these spheres touch about two thirds of the area of the scan, and their pmax "
+    "is up to 1.4 times too small, and up to 9 times where single points stand out. rc.roughness.law(scan), or "
     "`roughcoat scan FILE --law OUT.csv`, is the law of the scan itself (docs/roughness.md)."
 )
 
@@ -48,11 +48,11 @@ def of_shape(case: xr.Dataset) -> list[str]:
     kind = lexicon_in(case).known.shapes.get(shape)
     said = [f"Shape: {kind.words if kind else shape}{_angle_of(shape)}."]
     if np.isposinf(case["p0"]):
-        said.append("The tip is sharp: p(0) is infinite, and so any material gives way in the centre.")
+        said.append("The tip is sharp: p(0) is infinite, so every material yields in the centre.")
     elif np.isnan(case["p0"]) and np.isfinite(case["a"]) and case["status"] == 0:
-        said.append("The tip is sharp: p(0), pmax and λ(0) are not known, a, P and D are.")
+        said.append("The tip is sharp: a, P and D are known; p(0), pmax and λ(0) are not.")
     if shape == "flat" and case["status"] == 0:
-        said.append("The pressure is infinite at the edge of a flat punch: a rounded one has shape = rounded_flat.")
+        said.append("The pressure is infinite at the edge of a flat punch: shape = rounded_flat has a rounded edge.")
     return said + _inwards(case, shape)
 
 
@@ -73,8 +73,8 @@ def _inwards(case: xr.Dataset, shape: str) -> list[str]:
         return []
     where = "" if is_bare(case["base"]) else " on a half-space of the layer's material"
     return [
-        f"Note: a rigid cone pulls the surface inwards, which is left out here. At one depth the load is then about "
-        f"{gamma:.3g} times as large{where} (Hay, Bolshakov and Pharr 1999; docs/shapes.md)."
+        f"Note: a rigid cone pulls the surface inwards, which is left out here. At the same depth the load is then "
+        f"about {gamma:.3g} times as large{where} (Hay, Bolshakov and Pharr 1999; docs/shapes.md)."
     ]
 
 
@@ -89,19 +89,20 @@ def of_adhesion(case: xr.Dataset) -> list[str]:
     if not sticks(case):
         return []
     if not case["w_adhesion"] > 0:
-        return ["Adhesion: w_adhesion is 0, so that nothing sticks."]
+        return ["Adhesion: w_adhesion is 0, so the surfaces do not adhere."]
     if not np.isfinite(case["P_off"]):
         return ["Adhesion: pull-off is not known."]
     off = f"P = {_text(case, 'P_off')}, D = {_text(case, 'D_off')}, a = {_text(case, 'a_off')}"
     control = _control_of_machine(case)
-    said = [f"Adhesion: {control} it comes off at {off}."]
+    said = [f"Adhesion: {control} the punch comes off at {off}."]
     if case["status"] == 0:
-        state = "This contact is stable" if case["stable"] else "This contact is not stable: left alone it comes off"
+        state = "This contact is stable" if case["stable"] else "This contact is unstable: left alone it comes off"
         said.insert(0, f"{state}.")
     if np.isfinite(case["a_in"]) and case["a_in"] > 0:
-        said.append(f"Where the surfaces meet it jumps to a = {_text(case, 'a_in')} at P = {_text(case, 'P_in')}.")
+        state = f"a = {_text(case, 'a_in')} at P = {_text(case, 'P_in')}"
+        said.append(f"When the surfaces first touch, the contact jumps to {state}.")
     if case["adhesion"] == "jkr" and not ({"z0", "sigma0"} & {*case.variables}):
-        said.append("Whether the attraction reaches too far for JKR is not known without its range z0.")
+        said.append("Without its range z0 it is not known whether the attraction reaches too far for JKR.")
     return said
 
 
@@ -109,9 +110,9 @@ def _control_of_machine(case: xr.Dataset) -> str:
     """The control of the punch, as the beginning of a sentence."""
     k = case["k_machine"] if "k_machine" in case.variables else None
     if k is not None and np.isfinite(k) and k > 0:
-        return f"on a machine of {in_its_unit(case, 'k_machine', float(k))}"
+        return f"on a machine of stiffness {in_its_unit(case, 'k_machine', float(k))}"
     stiff = bool(np.isinf(k)) if k is not None and not np.isnan(k) else "D" in case.coords
-    return "if its depth is controlled" if stiff else "if its load is controlled"
+    return "under depth control" if stiff else "under load control"
 
 
 def _text(case: xr.Dataset, name: str) -> str:
@@ -125,7 +126,7 @@ def unit_of_length(case: xr.Dataset) -> list[str]:
     if scale in ("R", "1") or not in_R or "R" not in case.variables:
         return []
     length = readable(float(case["R"]), "m")
-    return [f"R, the unit of length of the profile, is not given: {scale} is taken, {length}."]
+    return [f"R, the unit of length of the profile, is not given: it is taken to be {scale}, {length}."]
 
 
 def presses_on(case: xr.Dataset) -> str:

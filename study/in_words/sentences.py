@@ -42,7 +42,7 @@ FAR = 10.0
 #: layers. This is a choice, since the time falls steadily as n rises.
 SOFT = 0.1
 MOST = 100  # number of contacts of a grid that are judged, evenly spread: few enough to take no noticeable time
-SAID = f"far outside what the model describes: an estimate exceeds limits {FAR:g} times and more. It may take long."
+SAID = f"far outside what the model describes: estimates exceed limits {FAR:g} times or more. Solving may take long."
 _BASES = {
     "half_space": "a half-space",
     "layer_alone": "a half-space of the layer's material",
@@ -54,21 +54,21 @@ _BASES = {
 MODELS = {base: f"{words} under the asperities" for base, words in _BASES.items()}
 MODELS |= {f"smooth_{base}": f"{words}, without asperities" for base, words in _BASES.items()}
 EXCEEDED = "None of the assumptions that `validity` checks is violated, except that a strength is exceeded, as follows."
-NOT_VIOLATED = "None of the assumptions that are checked is violated (docs/model.md, Four answers)."
+NOT_VIOLATED = "None of the checked assumptions is violated (docs/model.md, Four answers)."
 #: Follows a model with asperities.
-WHOSE = " The asperities are the punch's; a rough surface under a polished punch is the same contact, and of two rough \
-surfaces the sum counts (docs/model.md, Elastic punch)."
-SLIDES = 'The layer slides on the body without friction, since bonding is not given. One that is deposited or glued on \
-does not slide, and if it is soft it is then much stiffer: bonding = "bonded".'
+WHOSE = " The asperities belong to the punch. A rough surface under a polished punch is the same contact; if both \
+surfaces are rough, their heights add up (docs/model.md, Elastic punch)."
+SLIDES = 'The layer slides on the body without friction because bonding is not given. A deposited or glued layer does \
+not slide, and a soft one is then much stiffer: give bonding = "bonded".'
 
 #: A law that ends below this share of the largest contact fraction ends because the disc cell goes wrong.
 _EARLY = 0.999
-_WIDE_PITCH = f"The pitch of the asperities is above {MOST_PITCH:g} h: what the layer does to them is not known there"
+_WIDE_PITCH = f"The pitch of the asperities is above {MOST_PITCH:g} h, where the effect of the layer on them is not known"
 _MERGED = (
-    f"The spots cover more than {REACH:g} of the area in the centre, or in a ring, and are no circles any more: the \
+    f"The spots cover more than {REACH:g} of the area in the centre, or in a ring, and are no longer circles: the \
 law of asperities on the coated body ends there"
 )
-_HALF_SPACE = 'asperities_on = "half_space" has numbers, of a half-space of the layer\'s material.'
+_HALF_SPACE = 'asperities_on = "half_space" gives numbers, for a half-space of the layer\'s material.'
 #: The load is reduced to this share. Pressures that grow by less than _SAME of the largest count as unchanged.
 _LESS, _SAME = 0.9, 1e-6
 #: Radii in a at which the pressure is examined.
@@ -140,8 +140,8 @@ def ended(contacts: xr.Dataset) -> list[str]:
     early = outside & ~far & (last < _EARLY * REACH)
     said = []
     if early.any():
-        text = f"On a layer this soft the disc cell goes wrong where spots cover more than {rounded(last[early].min())}"
-        said.append(f'{of_cases(early)}{text} of the area: micro = "hex_lattice" goes on to {REACH:g}.')
+        text = f"On a layer this soft the disc cell fails where spots cover more than {rounded(last[early].min())}"
+        said.append(f'{of_cases(early)}{text} of the area; micro = "hex_lattice" holds up to {REACH:g}.')
     for where, text in ((far, _WIDE_PITCH), (outside & ~far & ~early, _MERGED)):
         said += [f"{of_cases(where)}{text}; {_HALF_SPACE}"] * bool(where.any())
     return said
@@ -175,15 +175,15 @@ def falling(contacts: xr.Dataset) -> list[str]:
             yielded[some] = np.ravel(law.law.yielded(*law.own))
         falls = p > now.p + _SAME * now.p.max(axis=1, keepdims=True)
         where[index] = (falls & (lam > yielded[:, None])).any(axis=1)
-    text = "The pressure falls somewhere while the load rises: spots that have yielded there unload, and stay flatter \
-than this law has them."
+    text = "The pressure falls somewhere while the load rises: spots that have yielded unload there and stay flatter \
+than this law assumes."
     return [of_cases(where) + text] * bool(where.any())
 
 
 def _near_0(case: xr.Dataset) -> str:
     """Words for the size to which an error is relative with adhesion, where a load or a depth may be 0."""
     names = [name for name in "PD" if abs(case[name]) < abs(case.get(f"{name}_off", 0.0))]
-    return f" ({' and '.join(names)}: of the size at pull-off)" * bool(names)
+    return f" ({' and '.join(names)} relative to the size at pull-off)" * bool(names)
 
 
 def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
@@ -194,8 +194,8 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
     word, used = (flag_words(case[name]).item() for name in ("status", "model_used"))
     if word == "converged":
         *first, last = (VOCABULARY[name].symbol for name in judged if np.isfinite(case[name]))
-        within = f"{', '.join(first)} and {last} are within a relative {float(case['error']):.1g}"
-        found = [f"Solved: {within} of the model's solution{_near_0(case)}."]
+        of = f"{', '.join(first)} and {last}{_near_0(case)}"
+        found = [f"Solved: the estimated relative error of {of} is {float(case['error']):.1g}."]
         found += [f"Spreads: {text}" for text in influence(case, "p_max" if "p_max" in judged else "p0")]
     else:
         known = {one.name.lower(): one.meaning for one in Status}
@@ -227,5 +227,5 @@ def assumed(case: xr.Dataset) -> list[str]:
     found = unit_of_length(case) + [SLIDES] * bool("bonding" in defaults and not is_bare(v["base"].item()))
     for modulus, ratio, _ in bodies_of(v).values():
         if ratio in defaults and modulus in v and v[modulus].attrs.get("units") == "Pa" and v[modulus] < RUBBER:
-            found.append(f"{ratio} = {v[ratio].item():g}. Of rubbers and gels, as soft as this, it is nearly 0.5.")
+            found.append(f"{ratio} = {v[ratio].item():g}. Rubbers and gels, as soft as this, have nearly 0.5.")
     return found

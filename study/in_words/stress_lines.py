@@ -50,10 +50,9 @@ def of_stresses(dataset: xr.Dataset) -> str | None:
 def _first_yield(case: xr.Dataset) -> list[str]:
     first = flag_words(case["first_yield"]).item().replace("_", " ")
     ends = [end for end in _BODIES if f"found_{end}" in case and not ("P_Y_layer" in case and end == "Y1")]
-    if first == "layer" and "first_layer" in case:
-        lines = [f"First to yield, of what is known: layer {int(case['first_layer'])}."]
-    else:
-        lines = [f"First to yield, of what is known: the {first}."] if first != "not known" else ["No load is found."]
+    place = f"layer {int(case['first_layer'])}" if first == "layer" and "first_layer" in case else f"the {first}"
+    known = f"First to yield, as far as strengths are known: {place}."
+    lines = [known if first != "not known" else "No load is found."]
     for number in case["layer"].values.tolist() if "P_Y_layer" in case else ():
         lines += _of_body(case.sel(layer=number), "Y_layer", f"layer {number}")
     for end in ends:
@@ -73,8 +72,8 @@ def _of_body(case: xr.Dataset, end: str, layer: str = "") -> list[str]:
         return [f"The strength of {body} is not known."]
     if found != "first_crossing":
         farthest = found.replace("none_up_to_", "").replace("0.2_R", "a = 0.2 R").replace("_", " ")
-        missing = "" if end == "Ya" else ", or is rigid or not there"
-        return [f"No load is found at which {body} {verb}: not up to {farthest}{missing}."]
+        missing = "" if end == "Ya" else "; it may be rigid or absent"
+        return [f"No load up to {farthest} was found at which {body} {verb}{missing}."]
     if float(case[f"P_{end}"]) == 0:
         why = _ANY_LOAD if np.isnan(float(case[f"r_{end}"])) and end != "Ya" else f"{verb} before there is a load"
         return [f"{body[0].upper()}{body[1:]} {why}."]
@@ -100,7 +99,7 @@ def _protection(case: xr.Dataset) -> list[str]:
         return ["The body does not yield, whatever the thickness of the layer."]
     lines = [f"The body does not yield below a layer thicker than {_number(case, 'h_protect')}."]
     if np.isfinite(least):
-        lines.append(f"A bare body would not yield: from a thickness of {_number(case, 'h_yields')} on it does.")
+        lines.append(f"A bare body would not yield; below a layer of {_number(case, 'h_yields')} or more it does.")
     return lines
 
 
@@ -142,11 +141,11 @@ def _fields(case: xr.Dataset) -> list[str]:
         if not np.isnan(values).all():
             place = np.unravel_index((np.nanargmin if name == "s3" else np.nanargmax)(values), values.shape)
             where = _place(float(case["r"][place[1]]), float(case["z"][place[0]]))
-            which = "least" if name == "s3" else "at most"
+            which = "minimum" if name == "s3" else "maximum"
             lines.append(
                 f"{case[name].attrs['long_name']}, {which}: {_stress(case, name, float(values[place]))}, {where}."
             )
-    return [*lines, f"Any stress is within {float(case['stress_error']):.1g} of the largest."]
+    return [*lines, f"The error of any stress is at most {float(case['stress_error']):.1g} of the largest stress."]
 
 
 def _stress(case: xr.Dataset, name: str, value: float) -> str:
@@ -169,7 +168,7 @@ def _place(r: float, z: float) -> str:
 #: Extreme of the interfaces, or of the lower sides of layers -> words for the largest value and its place.
 _LARGEST = {
     "tau_interface": "largest shear stress of an interface is {} (interface {})",
-    "sz_interface_max": "largest tension across one is {} (interface {})",
+    "sz_interface_max": "largest tension across an interface is {} (interface {})",
     "sr_interface": "largest tension at the lower side of a layer is {} (layer {})",
 }
 
@@ -240,7 +239,8 @@ def which_of_stacks(contacts: Contacts, some: np.ndarray, layers: list, body: np
     names, parts = [f"layer {j}" for j in range(1, len(layers) + 1)] + ["the body"], []
     for name, (stress, _, _), limit in zip(names, stresses.values(), strength, strict=True):
         count = int((stress > limit).sum())
-        parts += [f"in {count} it is {name}" if contacts.problem.shape.size > 1 else f"it is {name}"] * bool(count)
+        where = f" in {count} of them" * (contacts.problem.shape.size > 1)
+        parts += [f"{name} yields{where}"] * bool(count)
     text = ", ".join(parts)
     return f"{text[0].upper()}{text[1:]}." if parts else ""
 

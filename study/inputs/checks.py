@@ -16,8 +16,8 @@ from .lexicon import Lexicon
 from .request import OBJECTS, Request
 from .vocabulary import BODIES, CONTROLS, SCENE
 
-LOADING = 'micro = "elastic_plastic" is for loading. Spots that have yielded stay flat when the load falls, so that \
-these contacts are no unloading (docs/model.md, Microscale).'
+LOADING = 'micro = "elastic_plastic" is for loading. Spots that have yielded stay flat when the load falls, so \
+these contacts do not describe unloading (docs/model.md, Microscale).'
 """The end of the sentence about loads that fall though asperities yield."""
 OWNER = {"shape": "shape", "adhesion": "w_adhesion"}
 """Role of parameters -> the one without which a grid has none of this role."""
@@ -145,7 +145,7 @@ def _taken(request: Request, name: str) -> list[str]:
         parameter = dim in request.lexicon.parameters or in_scene
         in_units = request.physical and dim in rows and rows[dim].unit != "1"
         if parameter and dim not in request.sections:
-            messages.append(f"the dimension {dim} is called like a parameter that is not given: rename it")
+            messages.append(f"the dimension {dim} has the name of a parameter that is not given: rename it")
         elif owner and owner.dims != (dim,):
             messages.append(f"{dim} is a dimension and a parameter over other dimensions")
         elif owner and in_units and owner.array is None:
@@ -182,7 +182,7 @@ def mixed_units(grid: Grid) -> list[str]:
     if not (n == 0).any() or not (n[layered] > 0).any():
         return []
     return [
-        "n = 0, a rigid base, is among others: its numbers are in E1*, theirs in E2*. Make two studies, or give "
+        "n = 0, a rigid base, is among other values: its numbers are in E1*, theirs in E2*. Make two studies, or give "
         'physical values (R, E1, E2 = "rigid", ... with units)'
     ]
 

@@ -49,6 +49,15 @@ class StudyError(ValueError):
     """Input that cannot be used; `messages` has every reason, one line each.
 
     code : exit code of a command; 2 for a wrong input, 1 if something goes wrong with a valid input
+
+    Examples
+    --------
+    >>> import study
+    >>> try:
+    ...     study.solve(P=1e-5, base="half_space", micro="smoth")
+    ... except study.StudyError as error:
+    ...     print(error.messages[0].partition(" one of ")[0])
+    solve: micro = "smoth": must be
     """
 
     def __init__(self, messages, code: int = 2):

@@ -124,7 +124,8 @@ def _not_found(text: str, place: Path) -> Exception:
     files = (*sorted(place.parent.glob("*.toml")), *files_in(STUDIES))
     paths = list(dict.fromkeys(path.as_posix() for path in files))
     same = [path for path in paths if Path(path).name == place.name]
-    # "mine" means the file mine.toml in the working folder, not a study with a similar name
-    meant = same or paths if by_path else [beside.as_posix()] if beside.is_file() else known_studies()
+    meant = same or paths if by_path else known_studies()
     looked = "" if by_path else f" (looked for {place.as_posix()} and {(STUDIES / f'{text}.toml').as_posix()})"
+    if not by_path and beside.is_file():  # not a study with a similar name
+        return StudyError([f'{text}: not found{looked}; did you mean "{beside.as_posix()}"?'])
     return StudyError([f"{text}: not found{looked}{suggest(text, meant) if meant else ''}"])

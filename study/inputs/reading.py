@@ -70,7 +70,7 @@ def parsed(path) -> tuple[dict, str, str, str]:
     except RecursionError:
         raise StudyError([f"{where}: is not valid TOML: brackets are nested too deep"]) from None
     except UnicodeDecodeError as error:
-        wrong = f"is not UTF-8 (byte {error.start}): save it with the encoding UTF-8, which TOML has"
+        wrong = f"is not UTF-8 (byte {error.start}): save it with the encoding UTF-8, which TOML requires"
         raise StudyError([f"{where}: {wrong}"]) from None
     except ValueError as error:  # wrong TOML
         reason = TOO_MANY_DIGITS if "integer string conversion" in str(error) else on_one_line(str(error), 200)
@@ -104,14 +104,14 @@ def text_in(path: Path) -> str:
         with opened(path, math.inf) as file:
             raw = file.read(LARGEST_FILE + 1)
     except NoFile:
-        raise OSError(errno.EINVAL, "is no regular file") from None
+        raise OSError(errno.EINVAL, "is not a regular file") from None
     if len(raw) > LARGEST_FILE:
         raise OSError(errno.EFBIG, f"is larger than {LARGEST_FILE // 1_000_000} MB; ranges and [sample] keep it small")
     text = raw.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     tables = sum(1 for _ in TABLE.finditer(text))
     if tables > MOST_TABLES:  # before tomllib reads them
         wrong = f"has {tables} tables, [[cases]] and those in braces: at most {MOST_TABLES}"
-        raise OSError(errno.EFBIG, f"{wrong}; [axes] and [sample] say as many cases in a few lines")
+        raise OSError(errno.EFBIG, f"{wrong}; [axes] and [sample] describe as many cases in a few lines")
     _check_keys(text)
     return text
 

@@ -106,7 +106,7 @@ OF_A_LAYER = {
     "bonding": "interface below layer {}",
     "cn": "normal compliance of the interface below layer {}",
     "ct": "tangential compliance of the interface below layer {}",
-    "profile": "how the modulus of layer {} goes from its top to its bottom",
+    "profile": "profile of the modulus of layer {} from its top to its bottom",
     "n_bottom": "ratio of the reduced moduli of the bottom of layer {} and half-space",
     "nu_bottom": "Poisson ratio of the bottom of layer {}",
     "E1": "Young's modulus of layer {}",

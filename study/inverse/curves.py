@@ -81,11 +81,11 @@ def measured(source: Any, least: int = 2, reading: Reading = _AS_IT_IS, area: An
         return _of_columns(of_instrument(Path(source), reading), least=least)
     options = reading._replace(curve=None)._asdict()
     if strange := [name for name, value in options.items() if value != getattr(_AS_IT_IS, name)]:
-        kind = "of files of instruments, and the columns of all else are taken as they are"
+        kind = "for files of instruments; columns of other files are taken as they are"
         raise StudyError([f"curves: {strange[0]} is {kind}: leave it out"])
     dataset = _of_source(source, is_file, least, area)
     if is_file and least > 1 and dataset.sizes["point"] < 2:
-        raise StudyError([f"{Path(source).as_posix()}: has one row: a curve has two points or more"])
+        raise StudyError([f"{Path(source).as_posix()}: has one row: a curve needs two points or more"])
     return dataset if reading.curve is None else _chosen(dataset, reading.curve)
 
 
@@ -145,7 +145,7 @@ def _of_columns(
     columns: dict[str, tuple[Any, str]], curve: list[str] | None = None, where: str = "curves", least: int = 2
 ) -> xr.Dataset:
     errors = [
-        f"{where}: {shown(name)} is no column of curves: call it {_CALLED}, or leave it out"
+        f"{where}: {shown(name)} is not a column of curves: call it {_CALLED}, or leave it out"
         for name in columns
         if name not in COLUMNS
     ]

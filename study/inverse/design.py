@@ -23,7 +23,7 @@ from .design_question import read_wanted
 from .design_search import STATUSES, Outcome, answered, searched, solutions, solved
 
 #: Follows a target within the range that is reached.
-_JUMPS = 'contacts have no solution, or it jumps, as where base = "auto" changes its model'
+_JUMPS = 'contacts have no solution, or the result jumps, for example where base = "auto" changes its model'
 _FLAT = 1e-9  # a result whose relative change is smaller does not depend on the input
 _MOST = 0.99  # an input with a larger share of the variance makes "nearly all" of it
 
@@ -88,10 +88,9 @@ def design(
     outcome = answered(want, pieces, t, change, stream)
     designed = contacts.assign(_variables(want, outcome, contacts))
     designed, left_out = with_coordinates(designed, parameters)
-    doubts_on_contacts = doubts(designed) if want.definition.scene else beside_rules(designed)
-    left_out += ["\n".join(["a contact found is beyond what the model describes:", *doubts_on_contacts])] * bool(
-        doubts_on_contacts
-    )
+    sentences = doubts(designed) if want.definition.scene else beside_rules(designed)
+    if sentences:
+        left_out.append("\n".join(["a contact of the answer is beyond what the model describes:", *sentences]))
     for text in left_out:
         warnings.warn(text, stacklevel=2)
     return designed
@@ -108,8 +107,14 @@ def _variables(want: Wanted, outcome: Outcome, contacts: xr.Dataset) -> dict[str
         relative = np.where(change.spread == 0, 0.0, change.spread / want.level / change.by_input)
     numbers = {
         f"{name}_spread": (np.abs(x) * relative, f"standard deviation of {name}, from the spreads of other inputs"),
-        f"{name}_low": (want.x_of(outcome.low), f"{name} below, where {want.target} is one standard deviation off"),
-        f"{name}_high": (want.x_of(outcome.high), f"{name} above, where {want.target} is one standard deviation off"),
+        f"{name}_low": (
+            want.x_of(outcome.low),
+            f"{name} on its lower side at which {want.target} is one standard deviation off",
+        ),
+        f"{name}_high": (
+            want.x_of(outcome.high),
+            f"{name} on its upper side at which {want.target} is one standard deviation off",
+        ),
     }
     shape = contacts["status"].shape
     variables = {
@@ -117,13 +122,13 @@ def _variables(want: Wanted, outcome: Outcome, contacts: xr.Dataset) -> dict[str
         for key, (values, words) in numbers.items()
     }
     flags = {
-        "long_name": f"whether {want.target} is as wanted for some {name} within its bounds",
+        "long_name": f"whether {want.target} has its wanted value for some {name} within the bounds",
         "flag_values": np.array([*range(len(STATUSES)), NOT_RUN], dtype=np.int8),
         "flag_meanings": " ".join((*STATUSES, "not_run")),
     }
     texts = np.array(_messages(want, outcome, contacts.assign(variables)), dtype=object).reshape(shape[:-1])
     variables["design_status"] = xr.Variable(dims[:-1], outcome.status.reshape(shape[:-1]), flags)
-    variables["message"] = xr.Variable(dims[:-1], texts.astype(str), {"long_name": "what was found"})
+    variables["message"] = xr.Variable(dims[:-1], texts.astype(str), {"long_name": "answer of the search"})
     return variables
 
 
@@ -138,7 +143,7 @@ def _messages(want: Wanted, outcome: Outcome, contacts: xr.Dataset) -> list[str]
     texts = []
     for row, status in enumerate(outcome.status.tolist()):
         if status == NOT_RUN:
-            texts.append("not searched: interrupted before")
+            texts.append("not searched, because the call was interrupted")
         elif not np.isfinite(outcome.t[row]).any():
             texts.append(_none(want, outcome, row) + helps.get(row, ""))
         else:
@@ -178,11 +183,11 @@ def _solution(want: Wanted, outcome: Outcome, row: int, number: int, ends: list[
     if not (np.isfinite(low) and np.isfinite(high)):
         never = [f"below {_text(want, want.target, least)}"] * bool(least > want.level - off)
         never += [f"above {_text(want, want.target, largest)}"] * bool(largest < want.level + off)
-        text += f", for {want.target} is never {' or '.join(never)} within the bounds" * bool(never)
+        text += f", since {want.target} is never {' or '.join(never)} within the bounds" * bool(never)
     if outcome.change.shares:
         most = max(outcome.change.shares, key=lambda name: outcome.change.shares[name][row, number])
         share = outcome.change.shares[most][row, number]
-        text += f"; {most} makes {'nearly all' if share > _MOST else f'{100 * share:.0f} %'} of its variance"
+        text += f"; {most} contributes {'nearly all' if share > _MOST else f'{100 * share:.0f} %'} of its variance"
     return text
 
 

@@ -138,7 +138,7 @@ def _limit(name: str, limit: str, values: xr.DataArray) -> tuple:
     if not sign or values.dtype.kind not in "iuf":
         example = "< 250 MPa" if unit != "1" else "< 0.02"
         words = f'must be a text that begins with <, <=, > or >=, such as "{example}"'
-        words = words if values.dtype.kind in "iuf" else f"{name} is no number"
+        words = words if values.dtype.kind in "iuf" else f"{name} is not a number"
         raise StudyError([f"feasible: {name} = {shown(limit)}: {words}"])
     rows = lexicon_in(values.coords).all_rows
     si_unit = rows[name].unit if name in rows and unit != "1" else unit

@@ -29,9 +29,9 @@ def read_wanted(
     name = short(written)  # as in results: "h" for "layers.1.h"
     rest = {key: entry for key, entry in parameters.items() if entry is not None}
     twice = any({name, written} & {*table} for table in (rest, *rows))
-    wrong = [f"{written} is given, and looked for (by): leave one of them out"] * twice
+    wrong = [f"{written} is both given and searched for (by): leave one of them out"] * twice
     wrong += [f"{target} is the target, and {target} is given: leave it out"] * any(target in t for t in (rest, *rows))
-    wrong += [f"{target} is the target, and looked for (by)"] * (name == target)
+    wrong += [f"{target} is both the target and searched for (by)"] * (name == target)
     if wrong:
         raise StudyError(f"design: {text}" for text in wrong)
     ends = [_definition(rest | {written: bound}, rows, same_piece, correlations) for bound in bounds]
@@ -52,7 +52,7 @@ def _target(targets: Any) -> tuple[str, Any]:
         raise StudyError([f"design: {many}: give exactly one wanted result with its value, {_EXAMPLE}"])
     ((target, value),) = targets.items()
     if target not in TARGETS:
-        raise StudyError([f"design: {shown(target)} is no result that can be wanted{suggest(str(target), TARGETS)}"])
+        raise StudyError([f"design: {shown(target)} is not a result that can be wanted{suggest(str(target), TARGETS)}"])
     return target, plain(value)
 
 
@@ -66,7 +66,7 @@ def _looked_for(by: Any, tables: tuple) -> tuple[str, tuple]:
         raise StudyError([f"design: by: {no_parameter(name, [*lexicon.parameters, *SCENE])}"])
     parameter = lexicon.parameter(shortened) if shortened in lexicon.rows else None
     if name in NUMERICS or (parameter and (not parameter.interval or parameter.whole)):
-        raise StudyError([f"design: by: {name} is no number of the contact that can be looked for"])
+        raise StudyError([f"design: by: {name} is not a number of the contact that can be searched for"])
     bounds = tuple(map(plain, bounds)) if isinstance(bounds, (tuple, list)) else bounds
     if not isinstance(bounds, tuple) or len(bounds) != 2 or any(isinstance(end, (tuple, list)) for end in bounds):
         raise StudyError([f"design: by: {name} = {shown(bounds)}: must be two bounds, {_BOUNDS}"])
@@ -109,7 +109,7 @@ def _level(target: str, value: Any, definition: Definition) -> float:
         if not level < 0:
             raise StudyError([f"{wanted}: must be < 0, a pull"])
         if "w_adhesion" not in {*definition.grid.values, *(definition.scene.values if definition.scene else ())}:
-            raise StudyError([f"{wanted}: nothing sticks: give w_adhesion, or look for it"])
+            raise StudyError([f"{wanted}: without w_adhesion the surfaces do not adhere: give it, or look for it"])
         return level
     limits = "must be in (0, 1]" if target == "Ar_An" else "must be > 0"
     if not 0 < level <= (1 if target == "Ar_An" else math.inf):

@@ -146,7 +146,9 @@ def _loaded(afmformats: Any, path: Path, reading: Reading) -> list[ForceCurve]:
     for data in loaded:
         about = data.metadata
         if "sensitivity" in factors and "sensitivity" not in about:
-            raise StudyError([f"{path.as_posix()}: the file does not say with which sensitivity its force was made"])
+            raise StudyError(
+                [f"{path.as_posix()}: the file does not state the sensitivity that its force was computed with"]
+            )
         factor = float(np.prod([overrides[key] / about[key] for key in factors if key in about]))
         curves.append(ForceCurve(data, factor, overrides.get("spring constant", about.get("spring constant"))))
     return curves

@@ -36,7 +36,7 @@ This is the largest share of p(0) that the tension may bear. With a free edge at
 STEEP_SPOT = 0.5
 """Largest b(0)/Ra: the strain under an asperity, 0.2 b/Ra, is then 10 %, the sphere is 6 % deeper than the paraboloid,
 and p_max = 0.32 E1* is above the hardness of any metal."""
-OTHERWISE = 'asperities_on = "auto", on an exact base, has the coated body itself'
+OTHERWISE = 'asperities_on = "auto", on an exact base, takes the coated body itself'
 """The way out for asperities that press on a half-space."""
 #: Pitch over h -> largest error in % of A and of p_max in the resolved cells of docs/validate.md, for n from 0.2 to
 #: HARDEST. By the first-order sums there, a harder layer errs more.
@@ -60,7 +60,7 @@ def by_pitch(v, where: np.ndarray) -> str:
     pitch = (0.0 * v["validity"] + 1 / (np.sqrt(v["Nbar"]) * v["h"])).values[where].max()
     worst = f" {'The largest' if where.sum() > 1 else 'Here the'} pitch 1/sqrt(Nbar) is {rounded(pitch)} h"
     if not pitch > min(SEEN):
-        return f"{worst}: up to h nothing of it was seen in the test cases of docs/validate.md."
+        return f"{worst}: up to a pitch of h the test cases of docs/validate.md show no such error."
     of_A, of_p_max = zip(*SEEN.values(), strict=True)
     errors = (np.exp(np.interp(np.log(pitch), np.log([*SEEN]), np.log(column))) for column in (of_A, of_p_max))
     about = "A[p] by about {} % and pmax by {} %".format(*map(rounded, errors))
@@ -100,13 +100,13 @@ def n_not_below_one(v, times):
 @rule(16, rf"spots merge, $\lambda(0) > {MERGING:g}$", "0.83")
 def spots_merging(v, times):
     """The contact spots merge (λ(0) > {MERGING:g}): the micro law, which spreads the pressure around a spot evenly,
-    overestimates what the asperities yield by 10 % or more."""
+    overestimates the displacement of the asperities by 10 % or more."""
     return v["rough"] & have("smears", v["micro"], v["known"]) & (v["lam0"] > times * MERGING)
 
 
 @rule(32, rf"$a > {STEEP:g}\,R$ or layer strained", "0.9")
 def strain_not_small(v, times):
-    """The strain is not small (a > {STEEP:g} R, or the layer gives way by more than {COMPRESSED:.0%}, or is stretched
+    """The strain is not small (a > {STEEP:g} R, or the layer is compressed by more than {COMPRESSED:.0%}, or stretched
     like a membrane): linear elasticity is roughly right at best."""
     compressed = (v["D"] > times * COMPRESSED * v["h"]) & (v["pressure"] > times * COMPRESSED * v["E1*"])
     tension = v["E1*"] * np.minimum(v["h"], v["a"]) * (v["a"] ** 2 if "shape" not in v else v["slope"] ** 3 / v["a"])
@@ -128,13 +128,13 @@ def asperity_strain_not_small(v, times):
 
 @rule(128, rf"asperities far apart, pitch $> {PITCH_OVER_LAYER:g}\,h$", "0.71", size=by_pitch)
 def pitch_not_small_against_h(v, times):
-    """The asperities are far apart against the layer (1/sqrt(Nbar) > {PITCH_OVER_LAYER:g} h): it bends between them,
+    """The asperities are far apart compared with h (1/sqrt(Nbar) > {PITCH_OVER_LAYER:g} h): it bends between them,
     which a half-space of its material leaves out ({OTHERWISE})."""
     return v["layered"] & v["rough"] & v["on_half_space"] & (v["Nbar"] * (times * PITCH_OVER_LAYER * v["h"]) ** 2 < 1)
 
 
 @rule(256, rf"wide in a cup, $a > {STEEP:g}\,\min(|R_1|, |R_2|)$", "0.68")
 def wide_in_cup(v, times):
-    """The contact is wide against the smaller body (a > {STEEP:g} of its radius), as in a cup that fits closely: the
-    bodies are no half-spaces there."""
+    """The contact is wide compared with the smaller body (a > {STEEP:g} of its radius), as in a cup that fits closely:
+    the bodies are not half-spaces there."""
     return v["a"] > times * STEEP * np.minimum(np.abs(v["R1"]), np.abs(v["R2"]))

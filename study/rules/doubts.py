@@ -47,7 +47,7 @@ def table_of_several_radii(v):
     tables = tables and LAW_UNIT not in v  # tables with lengths have it
     if tables and np.ptp(v["R"].values) > 0 and not (v["R"].dims and {*v["R"].dims} <= {*v["micro"].dims}):
         yield (
-            "A table has A, or the heights z, in R: with several R its asperities grow with the punch. Give each R a "
+            "A table gives A, or the heights z, in R: with several R its asperities grow with the punch. Give each R a "
             "table of its own, in cases."
         )
 
@@ -75,8 +75,8 @@ def metals_yield(v):
     shares = {body: (pressures[body] / moduli.get(body, xr.Variable((), np.nan))).fillna(0) for body in _PRESSED}
     body = max(shares, key=lambda body: shares[body].max())
     exceeds = sum(share > YIELD for share in shares.values()) > 0
-    share = f"The pressure on the {body} comes to {rounded(float(shares[body].max()))} of its Young's modulus"
-    said = f"{of_cases(exceeds.values)}{share}: metals yield before that, which the model leaves out."
+    share = f"The pressure on the {body} reaches {rounded(float(shares[body].max()))} of its Young's modulus"
+    said = f"{of_cases(exceeds.values)}{share}: a metal would have yielded before, which the model leaves out."
     return [said] * bool(exceeds.any())
 
 
@@ -105,4 +105,4 @@ def spread_too_wide(v):
             value, spread, limit = (np.ravel(zero + array) for array in (value, spread, limit))
         wide = np.flatnonzero((spread > 0) & (spread >= limit))[:1]
         for text in [readable(float(value[i]), ROWS[name].unit, float(spread[i])) for i in wide]:
-            yield f"{name} = {text}: too wide a spread for the ± of results, which is to first order"
+            yield f"{name} = {text}: this spread is too wide for the ± of the results, which is of first order."

@@ -88,7 +88,9 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     Raises ValueError for results with units, which already have `validity`: the masks assume R = 1 and E2* = 1.
     """
     if has_units(dataset):
-        raise ValueError("validity follows from results without units; those with units hold it: dataset.validity")
+        raise ValueError(
+            "validity is computed from results without units; results with units contain it: dataset.validity"
+        )
     return xr.DataArray(validity_of(dataset.variables).to_xarray(), dataset["status"].coords, name="validity")
 
 
@@ -199,7 +201,7 @@ def whole(flags: np.ndarray, attributes: dict) -> np.ndarray:
     if flags.dtype.kind in "iu":
         return flags
     if flags.dtype.kind != "f" or (np.isfinite(flags) & (flags % 1 != 0)).any():
-        raise ValueError("these flags are of no case: they have been compared, averaged or interpolated")
+        raise ValueError("these flags belong to no case: they have been compared, averaged or interpolated")
     words = attributes["flag_meanings"].split()
     absent = np.atleast_1d(attributes["flag_values"])[words.index("not_run")] if "not_run" in words else 0
     return np.where(np.isfinite(flags), flags, absent).astype(int)

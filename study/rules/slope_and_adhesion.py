@@ -37,7 +37,7 @@ def stress_of_adhesion(v):
 @rule(4096, r"not JKR", "0.82")
 def not_jkr(v, times):
     """The attraction reaches too far for the model of Johnson, Kendall and Roberts: the ring in which it acts is wider
-    than {ZONE:g} of the contact radius or of the layer. adhesion = "maugis" has it in the equations."""
+    than {ZONE:g} of the contact radius or of the layer. adhesion = "maugis" includes it."""
     if "w_adhesion" not in v:
         return np.False_
     E = np.where(is_bare(v["base"]), 1.0, v["E1*"]) / (1 + v["m"])

@@ -29,8 +29,8 @@ _SOURCES = ("call", "material", "hardness")
 
 @rule(512, "a body would yield", "0.63")
 def body_yields(v, times):
-    """A body would yield: von Mises' stress in it exceeds its yield strength. The results are those of bodies that stay
-    elastic."""
+    """A body would yield: the von Mises stress in it exceeds its yield strength. The results are those of bodies that
+    stay elastic."""
     limits = {name: _limit(v, times * of_body(v, name)[0]) for name in _BODIES if {*v} & {name, f"{name}{OF_MATERIAL}"}}
     limits = {_BODIES[name]: limit for name, limit in limits.items() if np.isfinite(limit).any()}
     bounds = yield_bounds.of_bodies(v) if {*limits} - {*v} else {}

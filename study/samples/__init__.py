@@ -25,6 +25,11 @@ def scan() -> Path:
     Returns
     -------
     pathlib.Path : scan.sdf in the package
+
+    Examples
+    --------
+    >>> scan().name
+    'scan.sdf'
     """
     return _FOLDER / "scan.sdf"
 
@@ -38,5 +43,11 @@ def curve() -> Path:
     Returns
     -------
     pathlib.Path : curve.csv in the package, 100 rows with the columns D [nm] and P [nN]
+
+    Examples
+    --------
+    >>> from study import curves
+    >>> print(*curves(curve()).data_vars)
+    D P
     """
     return _FOLDER / "curve.csv"

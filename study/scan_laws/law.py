@@ -55,6 +55,14 @@ class ScanLaw:
     name : of the scan
     notes : sentences, also those of the reading
     m : E1*/E_punch* of the body
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rows = np.array([[0.01, 0.02], [1e-9, 2e-9], [0.1, 0.2], [0.2, 0.21]])
+    >>> measured = ScanLaw(*rows, error=0.01, errors={}, body=None, name="wafer")
+    >>> print(measured.text.splitlines()[2])
+    p,A [m],lam,p_max
     """
 
     p: np.ndarray
@@ -109,6 +117,17 @@ class ScanLaw:
         Raises
         ------
         OSError : the file cannot be written
+
+        Examples
+        --------
+        >>> import pathlib, tempfile
+        >>> import numpy as np
+        >>> rows = np.array([[0.01, 0.02], [1e-9, 2e-9], [0.1, 0.2], [0.2, 0.21]])
+        >>> measured = ScanLaw(*rows, error=0.01, errors={}, body=None, name="wafer")
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     measured.to_csv(pathlib.Path(folder, "wafer.csv"))
+        ...     print(pathlib.Path(folder, "wafer.csv").read_text().splitlines()[-1])
+        0.02,2e-09,0.2,0.21
         """
         Path(path).write_text(self.text, encoding="utf-8")
 
@@ -248,10 +267,10 @@ def _provenance(scan: Any, patch: Patch) -> str:
 
 def _about(errors: Mapping[str, float]) -> list[str]:
     if not errors:
-        return ["the scan is too small to be compared with its quarters: the law has no error of its own"]
+        return ["the scan is too small to be compared with its quarters: the error of the law is not known"]
     pixel, patch = (rounded(100 * errors[name]) for name in ("pixel", "patch"))
     return [
-        f"points of half the distance change A, λ or p_max by up to {pixel} %",
+        f"halving the distance of the points changes A, λ or p_max by up to {pixel} %",
         f"another patch of this size may differ by {patch} % in λ or p_max, half of the scatter of its four quarters",
     ]
 
@@ -264,7 +283,7 @@ def _coarse(lam: np.ndarray, spots: np.ndarray) -> list[str]:
     last = lam[np.flatnonzero(coarse)[-1]]
     return [
         f"up to λ = {last:.2g} spots span fewer than {_COARSE:g} points, {spots.min():.1f} at the least: the law has "
-        "not converged there; filter the scan with a cutoff, or take refine"
+        "not converged there; filter the scan with a cutoff, or give refine"
     ]
 
 

@@ -80,7 +80,7 @@ class Pressing:
         start = np.ones_like(self.depths) if self.pressures is None else self.pressures
         field, A, ended = pressed(self.depths, self.response, p, start * (p / start.mean()), self.mirrored)
         if not ended:
-            raise ValueError(f"{name}: the contact at p = {p:.3g} E1* has not come to rest: take a smaller patch")
+            raise ValueError(f"{name}: the contact at p = {p:.3g} E1* has not converged: take a smaller patch")
         self.pressures = field
         return float(A), np.count_nonzero(field) / field.size, float(field.max())
 
@@ -94,7 +94,7 @@ class Pressing:
 def patch_of(scan: Any, form: Any, cutoff: float | None, periodic: str, refine: int, caller: str) -> Patch:
     """The period of a scan. Raises ValueError for a scan that is not a map without gaps, or a wrong argument."""
     if not isinstance(scan, Scan) or scan.z.ndim != 2:
-        raise ValueError(f"{caller}: a map of heights is needed, of roughness.read or roughness.height_map")
+        raise ValueError(f"{caller}: needs a map of heights, from roughness.read or roughness.height_map")
     if np.isnan(scan.z).any():
         gaps = int(np.isnan(scan.z).sum())
         raise ValueError(f'{scan.name}: {gaps} points are missing: read it with missing="fill", or crop it')

@@ -196,5 +196,5 @@ def _unit_of(variable: Any, name: str) -> str | None:
     if word in ("", "1"):
         return None
     if spelt(word) is None:
-        raise ValueError(f"{name}: {variable.name} is in {word!r}, which is no unit of length")
+        raise ValueError(f"{name}: {variable.name} is in {word!r}, which is not a unit of length")
     return word

@@ -149,7 +149,7 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
         raise ValueError(f"{entry}: write one number, with a decimal point and without gaps: {wanted}")
     if thousands := _THOUSANDS.match(text):
         digits = thousands[1]
-        raise ValueError(f"{entry}: the point may be one of thousands: write {digits} or {digits}e3: {wanted}")
+        raise ValueError(f"{entry}: the point may separate thousands: write {digits} or {digits}e3: {wanted}")
     if not spread:
         return Quantity(_si(name, text, unit, wanted))
     number = _NUMBER.match(spread[0])
@@ -157,7 +157,7 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     if common.lstrip().startswith("%"):  # "200 GPa ± 5 %", or "200 ± 5 % GPa", in which pint would read GPa/100
         common = common.replace("%", "", 1).rstrip()
         if common and (has_unit(head) or "%" in common):
-            raise ValueError(f"{entry}: behind % may only stand the unit of the number")
+            raise ValueError(f"{entry}: only the unit of the number may follow %")
         if "%" in head:  # "30 % ± 2 %" could be ± 0.02 and ± 0.006
             raise ValueError(f'{entry}: write the spread as a number, as in "0.3 ± 0.02"')
         value = _si(name, head + common, unit, wanted)
@@ -172,8 +172,8 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
 def _spread_error(text: str) -> str:
     """The error in the text after ±; "" if it begins with a number that may be a standard deviation."""
     if text.startswith(("-", "−")):
-        return "behind ± must be a number not below 0: leave out its minus sign"
-    return "" if _NUMBER.match(text) else "behind ± must be a number, finite and not below 0"
+        return "± must be followed by a number not below 0: leave out its minus sign"
+    return "" if _NUMBER.match(text) else "± must be followed by a number, finite and not below 0"
 
 
 @lru_cache(maxsize=4096)  # reading a text takes half a millisecond
@@ -191,11 +191,11 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
     except MemoryError:
         raise
     except Exception as error:  # pint raises many kinds of errors
-        raise ValueError(f'{name} = "{entry}": no unit is called like this{_near(text, unit)}; {wanted}') from error
+        raise ValueError(f'{name} = "{entry}": no unit has this name{_near(text, unit)}; {wanted}') from error
     if unit != "1" and parsed.unitless:
         raise ValueError(f'{name} = "{entry}" has no unit: {wanted}')
     if unit != "1" and "%" in text:  # pint reads "9 um %" as 0.09 um
-        raise ValueError(f'{name} = "{entry}": % may only stand behind ±: {wanted}')
+        raise ValueError(f'{name} = "{entry}": % may only follow ±: {wanted}')
     if not parsed.is_compatible_with(unit):
         raise ValueError(f'{name} = "{entry}" is {_understood(parsed)}{_near(text, unit)}: {wanted}')
     value = float(parsed.to(unit).magnitude)

@@ -59,6 +59,13 @@ class Scan:
     name : of the file, or as the caller says
     notes : sentences about how the scan was read, which `measure` passes on
     huge : whether the limits of size are off, in `measure` too
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> scan = Scan(np.zeros((101, 201)), (1e-6, 1e-6), "flat")
+    >>> print(f"{scan.sizes[0]:.0e} {scan.sizes[1]:.0e}")
+    1e-04 2e-04
     """
 
     z: np.ndarray
@@ -128,6 +135,13 @@ def profile(
     Raises
     ------
     ValueError : neither or both of x and dx, positions that are not uniform, or heights that `height_map` refuses
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> scan = profile(np.sin(np.arange(64.0)), dx=0.5, unit="um", height_unit="nm")
+    >>> print(scan.z.shape, f"{scan.sizes[0]:.3g}", f"{scan.z.max():.0e}")
+    (64,) 3.15e-05 1e-09
     """
     if (x is None) == (dx is None):
         raise ValueError(f"{name}: give either the positions of the points, x, or their distance, dx")
@@ -174,6 +188,14 @@ def height_map(
     ValueError : fewer than 16 points in a direction, heights that are not numbers or all equal, a distance that is not
         positive, an unknown unit, more missing points than allowed, lengths whose unit must be wrong, or a despike
         that is not a positive number
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rows, columns = np.arange(32.0)[:, None], np.arange(64.0)
+    >>> scan = height_map(np.sin(rows) + np.cos(columns), dx=0.5, unit="um", height_unit="nm")
+    >>> print(scan.z.shape, f"{scan.sizes[0]:.3g} {scan.sizes[1]:.3g}")
+    (32, 64) 1.55e-05 3.15e-05
     """
     dx = number(f"{name}: dx", dx, unit)
     axes = [z.coords[axis].values for axis in ("x", "y") if axis in getattr(z, "coords", ())]  # of xarray

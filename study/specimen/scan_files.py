@@ -69,8 +69,7 @@ def read(
         dx and dy of the call override them, and the notes say what the file states
     columns : the columns to read, counted from 0: (x, z), (x, y, z), or (z,) with dx
     channel : name of the channel to read; None: the first channel of heights. The notes of the scan name it
-    crop : (x0, x1) or (x0, x1, y0, y1), the part to keep, in unit (m where it is None) or texts with units. x and y are
-        those of the file, or begin with 0 at the first point
+    crop : the part to keep, (x0, x1) or (x0, x1, y0, y1) of x and y of the file, else from 0; in unit, m, or texts
     missing, steep, huge, despike : as in `height_map`
 
     Returns
@@ -81,6 +80,12 @@ def read(
     ------
     ValueError : the file cannot be read as a scan; the message says what was read, and what is allowed
     ImportError : the file has the format of an instrument, and SurfaceTopography is not installed
+
+    Examples
+    --------
+    >>> from study import samples
+    >>> read(samples.scan()).z.shape
+    (96, 96)
     """
     path = Path(path)
     try:
@@ -278,7 +283,7 @@ def _of_data_sets(path: Path, arguments: dict, channel: str | None, crop, how: d
     chosen = channel or next(iter(maps))
     z, note = maps[chosen].T, f"channel {chosen!r}" + f" of {listed}" * (len(maps) > 1)
     if _are_labels(chosen, z):
-        raise ValueError(f"{name}: {note} has labels, which are no heights")
+        raise ValueError(f"{name}: {note} has labels, which are not heights")
     unit = arguments["unit"]
     steps = [number(f"{name}: {key}", arguments.get(key, arguments["dx"]), unit) for key in ("dy", "dx")]
     positions = [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
@@ -324,7 +329,7 @@ def _of_instrument(topography, name: str, arguments: dict, crop, notes: tuple, h
         topography = topography if stated is None or overrules else topography.to_unit("m")
         z = np.ma.filled(np.ma.asarray(topography.heights()).astype(float), np.nan).T
         if _are_labels(str(notes[:1]).partition(" of ")[0], z):
-            raise ValueError(f"{notes[0]} has labels, which are no heights")
+            raise ValueError(f"{notes[0]} has labels, which are not heights")
         z = np.where(np.isinf(z), np.copysign(1e300, z), z)  # a mark of missing points times a scale, for `scan_of`
         steps = [float(step) for step in np.atleast_1d(topography.pixel_size)][::-1] if topography.is_uniform else None
         positions = None if steps else [np.asarray(topography.positions(), dtype=float)]

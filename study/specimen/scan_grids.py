@@ -135,8 +135,8 @@ def on_grid(columns: np.ndarray, z: np.ndarray, steps: tuple | None, name: str) 
         why = [f"{size[0]} × {size[1]} points of a grid have {len(z)} heights"]
     if why:
         raise ValueError(
-            f"{rows}; they are no x, y, z of a grid: {' and '.join(why)}. Choose others with columns=(0, 2) for x and "
-            "z, or interpolate to a grid"
+            f"{rows}; they are not the x, y, z of a grid: {' and '.join(why)}. Choose others with columns=(0, 2) for x "
+            "and z, or interpolate to a grid"
         )
     (x, column), (y, row) = axes
     places = row * len(x) + column

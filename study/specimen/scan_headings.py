@@ -296,7 +296,7 @@ def _heights(fields: list[str], shape: tuple, name: str) -> np.ndarray:
     try:
         z = np.array([float("nan" if field.lower() == "bad" else field) for field in fields])
     except ValueError as error:
-        raise ValueError(f"{name}: the heights have something else than numbers and Bad: {error}") from error
+        raise ValueError(f"{name}: the heights have something other than numbers and Bad: {error}") from error
     if z.size != np.prod(shape):
         raise ValueError(f"{name}: {z.size} heights, but the heading says {' × '.join(map(str, shape))}")
     return z.reshape(shape)

@@ -146,9 +146,9 @@ def _rows(contents: "Lines", dialect: tuple, name: str) -> tuple[np.ndarray, np.
             values = _values(fields, ",")
         if None in values:
             raise ValueError(
-                f"{name}, line {number}: {content.strip()[:60]!r} has something else than numbers: "
+                f"{name}, line {number}: {content.strip()[:60]!r} has something other than numbers: "
                 f"{fields[values.index(None)][:30]!r}. Missing points may be empty fields, nan, Bad, ***, -- or -; "
-                "take out what is no row of the table"
+                "remove every line that is not a row of the table"
             )
         table.add(values, number)
         numbers.append(number)
@@ -343,8 +343,8 @@ class _Table:
             row = np.concatenate(self.blocks)[i]
             last = int(np.max(np.flatnonzero(~np.isnan(row)), initial=-1)) + 1
         raise ValueError(
-            f"{self.name}, line {self.numbers[i]}: {last} number(s) after lines of {allowed}; take out what is "
-            "no row of the table"
+            f"{self.name}, line {self.numbers[i]}: {last} number(s) after lines of {allowed}; remove every "
+            "line that is not a row of the table"
         )
 
     def even(self) -> np.ndarray:
@@ -371,6 +371,6 @@ def _refuse_rows_in_heading(contents: Lines, dialect: tuple, table: np.ndarray, 
             mostly = abs(values[0] + step - table[0, 0]) < 0.1 * abs(step)
         if words and mostly:
             raise ValueError(
-                f"{name}, line {number}: {content.strip()[:60]!r} is a row of the table but for {words[0][:30]!r}. "
-                "Missing points may be empty fields, nan, Bad, ***, -- or -; take the line out if it is heading"
+                f"{name}, line {number}: {content.strip()[:60]!r} is a row of the table except for {words[0][:30]!r}. "
+                "Missing points may be empty fields, nan, Bad, ***, -- or -; remove the line if it is a heading"
             )

@@ -60,7 +60,7 @@ def read_block(path: Path) -> Block:
     check_regular(path)
     remedy = "the same command computes its cases again"
     if not is_whole(path):
-        raise Damaged(f"{path}: is no whole block; {remedy}")
+        raise Damaged(f"{path}: is not a complete block; {remedy}")
     try:
         with open(path, "rb") as file:
             head = json.loads(str(np.load(file, allow_pickle=False)))
@@ -73,4 +73,4 @@ def read_block(path: Path) -> Block:
         if short_of_memory(error) or getattr(error, "errno", None):
             raise
         # the checksum fits, but the content does not: another program wrote the file
-        raise Damaged(f"{path}: is no whole block; {remedy}") from error
+        raise Damaged(f"{path}: is not a complete block; {remedy}") from error

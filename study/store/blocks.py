@@ -52,7 +52,7 @@ class Source:
         """Columns of the cases at `rows` (n,): name -> (n, ...). Raises Damaged if the file now has other cases."""
         block = read_block(self.path)
         if not np.array_equal(block.keys, self.keys) or block.facts != self.facts or {*self.columns} - {*block.arrays}:
-            raise Damaged(f"{self.path}: has become a block of other cases; the same command finds out of which")
+            raise Damaged(f"{self.path}: now holds other cases; the same command reads it again")
         rows_of = {name: array[rows] for name, array in block.arrays.items()}
         return {name: a[:, self.inputs] if name.endswith(BY_INPUT) else a for name, a in rows_of.items()}
 

@@ -25,7 +25,7 @@ from .blocks import count_statuses, gather, inventory
 from .edits import owner_of
 from .windows import Store, Window, divisions, identities, is_large, whole_window, windows_of, within
 
-NO_PART = "is no part of the study as it is; move it away"
+NO_PART = "is not a part of this study; move it away"
 
 
 @dataclass(frozen=True, eq=False)

@@ -54,7 +54,7 @@ class Order:
     fail_fast : stop at the first block that raises or has a failed case; a case without a solution has not failed
     force : replace the results file even if cases in it are lost
     renew : also replace it if the same study file made it with another version of the numerics
-    yes : go on however large the study is
+    yes : compute the study, however large it is
     command : of the user, for the history of the results
     stream : for the progress
     progress : whether progress is written without a `stream`, see `progress.screen_of`

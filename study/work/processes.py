@@ -22,7 +22,7 @@ from .cases import Failure
 #: Number of tries of a block. A process may be killed because others use up the memory, so one try is too few. A block
 #: may itself be too large, so it must not be tried for ever.
 ATTEMPTS = 3
-KILLED = f"the process that computed it was killed, {ATTEMPTS} times, perhaps for want of memory"
+KILLED = f"the process that computed it was killed {ATTEMPTS} times, perhaps because memory ran out"
 #: Seconds after which a process without a task ends, and frees its memory. It is started again for the next task.
 IDLE = 60
 SERVE = "from study.work.processes import serve; serve()"

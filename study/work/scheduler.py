@@ -69,7 +69,7 @@ def _something_listens(address: str, listens: float, answers: float) -> bool:
         try:
             first = stream.read(8)
         except TimeoutError:
-            raise OSError(f"it says nothing in {answers:g} s") from None
+            raise OSError(f"it does not answer within {answers:g} s") from None
         if len(first) < 8 or struct.unpack("<Q", first)[0] > GREETING:
             raise OSError("something else listens there")
     return True

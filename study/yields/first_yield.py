@@ -226,8 +226,9 @@ def _message(body: str, found: np.ndarray, unsolved: np.ndarray, round_: bool) -
     reasons = {
         f"the strength of the {body} is not known: give {need}": found == 2,
         "the punch is smooth and has no asperities": found == 3,
-        "contacts on the way have no solution, or it yields at the least that is looked at": (found == 1) & unsolved,
-        f"the {body} does not yield up to {farthest}, or is rigid or not there": (found == 1) & ~unsolved,
+        "contacts on the way have no solution, or it yields already at the smallest load examined": (found == 1)
+        & unsolved,
+        f"the {body} does not yield up to {farthest}, or is rigid or absent": (found == 1) & ~unsolved,
     }
     parts = [f"{where.sum()} of {where.size} cases: {reason}" for reason, where in reasons.items() if where.any()]
     return "; ".join(parts)

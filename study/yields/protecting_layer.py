@@ -95,7 +95,7 @@ def h_protect(
         about = about_of(contacts, long_name, (0, 1))
         if np.isnan(values).any():
             count = int(np.isnan(values).sum())
-            reason = "contacts on the way have no solution" if unsolved.any() else "there is no such thickness"
+            reason = "contacts on the way have no solution" if unsolved.any() else "no such thickness exists"
             about["message"] = f"{name} of {count} of {values.size} cases: {reason}"
         variables[name] = labelled(contacts, values * size, about)
     return without_control(carried(contacts.dataset, variables), by)

@@ -64,7 +64,7 @@ def test_the_roughness_may_take_all():
 @pytest.mark.parametrize(
     "scan, parameters, message",
     [
-        (study.roughness.profile(WAVE.z[0], dx=1e-7), RUBBER, "a map of heights is needed"),
+        (study.roughness.profile(WAVE.z[0], dx=1e-7), RUBBER, "needs a map of heights"),
         (WAVE, RUBBER | {"w_adhesion": None}, "give w_adhesion"),
         (WAVE, RUBBER | {"w_adhesion": ["1 mJ/m^2", "2 mJ/m^2"]}, "has several values"),
         (WAVE, RUBBER | {"periodic": 1}, "must be True or False"),

@@ -165,7 +165,7 @@ def test_list_and_status(capsys, studies):
     assert main(["list", "studies/empty"]) == 0
     assert "no study files in studies/empty" in capsys.readouterr().out
     assert main(["list", "nowhere"]) == 2
-    assert capsys.readouterr().err == "nowhere: is no folder\n"
+    assert capsys.readouterr().err == "nowhere: is not a folder\n"
 
 
 def test_results_of_another_definition(studies, capsys):

@@ -143,7 +143,7 @@ def test_results_that_are_missing_have_a_way_out_each(monkeypatch, tmp_path):
 def test_a_file_that_holds_no_results_is_bad_input(capsys):
     Path("junk.nc").write_text("junk", encoding="utf-8")
     assert main(["plot", "junk.nc", "--x", "P", "--y", "a"]) == 2
-    assert capsys.readouterr().err == "junk.nc: is no netCDF file\n"
+    assert capsys.readouterr().err == "junk.nc: is not a netCDF file\n"
     assert main(["plot", "junk.nc"]) == 2
     assert capsys.readouterr().err.startswith("junk.nc is a file, not a figure: give --x and --y to draw curves of it")
 

@@ -193,7 +193,7 @@ def test_what_a_lost_run_says(monkeypatch, capsys):
     monkeypatch.setattr(api.Study, "run", run)
     for command in (["run", "good"], ["retry", "good", "--status", "diverged"]):
         assert main(command) == 1
-        said = "good: the scheduler is gone; finished blocks are kept, the same command goes on from there\n"
+        said = "good: the scheduler is gone; finished blocks are kept, and the same command continues from there\n"
         assert capsys.readouterr() == ("", said)
 
 
@@ -202,7 +202,7 @@ def test_failed_blocks_are_told_in_their_order():
     assert failure_lines(report, "s") == [
         "s: block 3 failed: early",
         "s: block 12 failed: late",
-        "s: 2 blocks failed; the others are kept, the same command tries again",
+        "s: 2 blocks failed; the others are kept, and the same command tries again",
     ]
 
 

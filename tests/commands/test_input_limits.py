@@ -82,7 +82,7 @@ def test_a_file_that_is_too_large_is_not_read(studies, monkeypatch, capsys):  # 
     os.mkfifo(studies / "pipe.toml")
     assert main(["check", "endless", "pipe"]) == 2
     said = capsys.readouterr().err.splitlines()
-    assert said == [f"studies/{name}.toml: cannot be read: is no regular file" for name in ("endless", "pipe")]
+    assert said == [f"studies/{name}.toml: cannot be read: is not a regular file" for name in ("endless", "pipe")]
 
 
 @pytest.mark.parametrize("cases", ["[[cases]]\nP = 1e-5\n" * 600_000, f"cases = [{'{P = 1e-5}, ' * 600_000}]"])

@@ -197,7 +197,10 @@ def test_another_solver_that_the_program_has_imported_is_named(python, beside, n
     folder = beside({name: "mine = 1\n"})
     done = run(folder, python, "-c", "import solver, study")
     assert done.returncode == 1
-    assert f"ImportError: {folder / name}: has been imported as solver, which is a package of roughcoat" in done.stderr
+    assert (
+        f"ImportError: {folder / name}: has been imported as solver, which is also a package of roughcoat"
+        in done.stderr
+    )
 
 
 def test_our_solver_stays_what_it_is(python, beside):

@@ -93,7 +93,7 @@ def test_a_profile_of_too_few_points_gives_no_number():
             assert np.isnan(coarse) or abs(coarse - right) < derived.LOAD_MISSED * fine.D, points
         assert np.isfinite(coarse)
     assert np.isnan(derived.depth_of_the_body(study.solve(**ROUGH, h=0.02, n=0.5, m=3.0, x=5)))
-    with pytest.raises(ValueError, match="D_body needs the profile p at 5 points or more, x = 33 say"):
+    with pytest.raises(ValueError, match="D_body needs the profile p at 5 points or more, such as x = 33"):
         derived.depth_of_the_body(study.solve(**SMOOTH, base="half_space", m=1.0, x=2))
     with pytest.raises(ValueError, match="D_body needs the profile p, which profiles = false leaves out"):
         derived.depth_of_the_body(study.solve(**SMOOTH, base="half_space", m=1.0, profiles=False))

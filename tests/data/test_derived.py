@@ -241,7 +241,7 @@ def test_multiples_of_units_are_not_taken_for_si():
     for formula in derived.QUANTITIES.values():
         with pytest.raises(ValueError, match="follows from results in SI units, or without units"):
             formula(study.readable(found))
-    with pytest.raises(ValueError, match="validity follows from results without units"):
+    with pytest.raises(ValueError, match="validity is computed from results without units"):
         derived.validity(found)
 
 

@@ -38,9 +38,11 @@ def test_flags_of_no_case_have_no_names():
     found = study.solve(P=[1e-6, 1e-5, 1e-4], h=0.01, n=0.5, Nbar=250000, Ra=0.004, x=2)
     assert found.validity.values.tolist() == [0, 0, 16]
     for flags in (found.validity.mean("P", keep_attrs=True), found.validity.interp(P=5e-5), found.validity > 0):
-        with pytest.raises(ValueError, match="flags are of no case: they have been compared, averaged or interpolated"):
+        with pytest.raises(
+            ValueError, match="flags belong to no case: they have been compared, averaged or interpolated"
+        ):
             study.decode(flags.rename("validity"))
-    with pytest.raises(ValueError, match="flags are of no case"):
+    with pytest.raises(ValueError, match="flags belong to no case"):
         study.summary(found.interp(P=5e-5))
 
 

@@ -137,8 +137,8 @@ def test_what_has_failed_or_was_not_run_is_nan():
         (lambda contact: contact.a, "takes a dataset of study.solve"),
         (lambda contact: contact.isel(P=0, drop=True), "must have one of P, a and D"),
         (lambda contact: contact.drop_vars("micro"), "has no coordinate micro"),
-        (study.readable, "needs all in SI units"),
-        (lambda contact: contact.drop_vars("R"), "needs all in SI units"),
+        (study.readable, "needs all inputs in SI units"),
+        (lambda contact: contact.drop_vars("R"), "needs all inputs in SI units"),
         (lambda contact: contact.assign_coords(micro="of_another"), 'micro = "of_another": no law of this name'),
     ],
 )

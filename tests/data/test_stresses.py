@@ -66,7 +66,7 @@ def test_what_is_not_solved_is_nan():
         ({"mu": np.nan}, "mu = nan: must be"),
         ({"sigma_res": "1 GPa"}, 'sigma_res = "1 GPa": the contact has no units'),
         ({"sigma_res": np.inf}, "sigma_res = inf: must be finite"),
-        ({"r": [0.0, -1.0]}, "r = -1: must be one-dimensional, of finite numbers in units of a, and at least 0"),
+        ({"r": [0.0, -1.0]}, "r = -1: must be one-dimensional, with finite numbers in units of a, and at least 0"),
         ({"r": np.nan, "mu": 0.1}, "r = nan: must be"),
         ({"z": [-0.1], "mu": 0.1}, "z = -0.1: must be"),
         ({"z": [[1.0]]}, r"z of shape \(1, 1\): must be one-dimensional"),

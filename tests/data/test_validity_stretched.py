@@ -31,7 +31,7 @@ def test_where_the_tension_bears_a_tenth(h, a):
 
 
 def test_both_occur():
-    with pytest.warns(UserWarning, match="is stretched like a membrane"):
+    with pytest.warns(UserWarning, match="or stretched like a membrane"):
         found = study.solve(**METAL_ON_RUBBER, h="100 nm", a=["0.5 um", "8 um"])
     assert (found.validity & 32 > 0).values.tolist() == [False, True]
 

@@ -78,7 +78,7 @@ def test_an_address_that_the_page_cannot_solve_is_told(explorer):
     shown = explorer.evaluate(
         SHOWN, "R=5%20mm&punch=rigid&body=%3Cimg%20src%3Dx%20onerror%3Dalert(1)%3E&P=1%20N&h=1%20um"
     )
-    assert "is no material of the table" in explorer.inner_text("#wrong-body")
+    assert "is not a material of the table" in explorer.inner_text("#wrong-body")
 
 
 def test_asperities_that_feel_the_body_are_left_to_the_command(explorer):

@@ -79,7 +79,7 @@ def test_single_cases_are_points():
     figure = study.plot(cases, "P", "a")
     styles = [(line.get_linestyle(), line.get_marker(), line.get_fillstyle()) for line in figure.axes[0].lines]
     assert styles == [("None", "o", "none"), ("None", "o", "full")]
-    with pytest.raises(study.StudyError, match='^r is no axis of these results; did you mean "R"'):
+    with pytest.raises(study.StudyError, match='^r is not an axis of these results; did you mean "R"'):
         study.plot(cases, "P", "a", r="3 mm")  # over the cases, as R is, but no dimension
     (bars,) = figure.axes[0].collections
     np.testing.assert_allclose(np.ptp(bars.get_segments(), axis=1)[:, 1], 2e6 * cases.a_spread, rtol=1e-9)

@@ -136,7 +136,7 @@ def test_labels_of_cases_and_gaps_of_failed_ones():
     ("wanted", "message"),
     [
         (("P", "pmax", ""), '"pmax" is not in these results; did you mean "p_max"?'),
-        (("P", "a", "h"), "hue = h is no axis of a; its axes: P, n, bonding"),
+        (("P", "a", "h"), "hue = h is not an axis of a; its axes: P, n, bonding"),
         (("h", "a", "n"), "x = h has one value only; axes: P, bonding"),
         (("P", "n", ""), "y = n is an axis of these results: it may be x or the hue"),
         (("P", "a", "P"), "x and hue are both P"),
@@ -155,7 +155,7 @@ def test_what_is_not_there(found, wanted, message):
     [
         ({"n": 0.3}, "n = 0.3 is not there; there are 0.2, 0.5"),
         ({"bonding": "glued"}, "bonding = glued is not there; there are frictionless, bonded"),
-        ({"hh": 1}, "hh is no axis of these results; known: "),
+        ({"hh": 1}, "hh is not an axis of these results; known: "),
         ({"n": "thick"}, 'n = "thick": must be a number'),
     ],
 )

@@ -58,8 +58,8 @@ def folder(path: Path) -> None:
 STRANGE = {
     foreign: "is a netCDF file of another program",
     renamed: "another program has changed it: its dimensions are ['Q'], not ['P']",
-    pipe: "is no file but a pipe or device",
-    folder: "is no file but a folder",
+    pipe: "is not a file but a pipe or device",
+    folder: "is not a file but a folder",
 }
 
 

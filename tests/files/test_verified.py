@@ -152,7 +152,7 @@ def test_a_file_of_an_earlier_version_is_used_but_cannot_be_verified(one, opened
 
 def test_exit_codes_of_verify(opened, tmp_path, capsys):
     assert main(["verify", str(opened.results / "one.nc")]) == 0
-    assert capsys.readouterr().out.endswith("one.nc: verified, every number is the one that was written\n")
+    assert capsys.readouterr().out.endswith("one.nc: verified: every number is as it was written\n")
     assert main(["verify", str(tmp_path / "none.nc")]) == 2
     assert main(["verify", str(opened.results / "one.nc"), str(tmp_path / "one.toml"), "--results", "none"]) == 2
 

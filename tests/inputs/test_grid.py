@@ -122,7 +122,10 @@ def array(values, *dims, **coords):
             "Ra has other values of s, or in another order, than P",
         ),
         ({"P": 1, "Ra": array([1, 2], "P")}, "P is a dimension and a parameter over other dimensions"),
-        ({"P": 1, "Ra": array([1, 2], "h")}, "the dimension h is called like a parameter that is not given: rename it"),
+        (
+            {"P": 1, "Ra": array([1, 2], "h")},
+            "the dimension h has the name of a parameter that is not given: rename it",
+        ),
         ({"P": 1, "Ra": array([1, 2], "lam")}, 'a dimension cannot be called "lam", which is the name of a result'),
         ({"P": 1, "Ra": array([1, 2], "x")}, 'a dimension cannot be called "x", which is the name of a result'),
         ({"P": array([], "s")}, "P is empty: must have at least one value"),
@@ -229,5 +232,5 @@ def chunked_definition():
 @pytest.mark.parametrize(("start", "stop"), [(1e-6, 1e-5), ("1 N", "2 N")])
 def test_a_range_of_a_study_file_is_answered_with_what_python_takes(start, stop):
     """It "must be a finite number", or "must be a force"."""
-    with pytest.raises(study.StudyError, match="P: a range stands in study files; here give its values, as of numpy"):
+    with pytest.raises(study.StudyError, match="P: ranges are for study files; here give the values, as numpy"):
         study.solve(P={"start": start, "stop": stop, "num": 3}, h=0.02, n=0.5, micro="smooth")

@@ -105,8 +105,8 @@ WORDS = words("""
     sigma   : σ        : R       :          : standard deviation of the heights of the asperities
     cut     : c        :         :          : largest height of an asperity above the mean, over σ
     k       : k        :         : (8)      : iteration parameter of the successive approximations
-    rtol    :          :         :          : wanted relative error
-    accuracy :         :         :          : allowed relative model error of the base auto
+    rtol    :          :         :          : required relative error
+    accuracy :         :         :          : largest relative model error that base = auto allows
     p0      : p(0)     : E2*     : (3)      : nominal pressure in the centre
     p_max   : pmax     : E2*     : (13)     : real pressure in the middle of the central spot
     Ar_An   : Ar/An    :         : (12)     : real over nominal contact area

@@ -46,15 +46,15 @@ for name in {names}:
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
     said = subprocess.run(command, **pipes, timeout=PATIENCE, text=True).stdout.splitlines()
     for line, name in zip(said, names, strict=True):
-        assert f"{name}: is no file but a pipe or device: a table is a text file of numbers" in line
-    assert refused("folder.csv") == "is no file but a folder: a table is a text file of numbers"
+        assert f"{name}: is not a file but a pipe or device: a table is a text file of numbers" in line
+    assert refused("folder.csv") == "is not a file but a folder: a table is a text file of numbers"
     Path("to_mine.csv").symlink_to("mine.csv")
     assert study.solve(P=1e-5, **CASE, micro="table:to_mine.csv").status == 0
 
 
 def test_a_study_file_cannot_name_a_device_either(table):  # noqa: F811
     Path("s.toml").write_text('[model]\nbase = "half_space"\nP = 1e-5\nmicro = "table:/dev/zero"\n', encoding="utf-8")
-    with pytest.raises(study.StudyError, match=r"^s.toml: micro: /dev/zero: is no file but a pipe or device"):
+    with pytest.raises(study.StudyError, match=r"^s.toml: micro: /dev/zero: is not a file but a pipe or device"):
         study.load("s.toml")
 
 
@@ -80,7 +80,7 @@ def test_a_file_that_becomes_a_pipe_is_not_waited_for(table, monkeypatch):  # no
     table()
     os.mkfifo("pipe")
     monkeypatch.setattr(Path, "stat", lambda self, **_: os.stat("mine.csv"))
-    assert refused("pipe").startswith("is no file but a pipe or device")
+    assert refused("pipe").startswith("is not a file but a pipe or device")
 
 
 def test_a_home_that_is_not_there_and_a_cell_without_an_end(table):  # noqa: F811

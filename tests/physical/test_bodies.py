@@ -86,13 +86,16 @@ def test_study_files_take_the_values_and_if_wanted_the_spreads(tmp_path):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"layer": "unobtainium"}, '^solve: layer: "unobtainium" is no material; did you mean[^\n]*$'),
-        ({"punch": "cone"}, '^solve: punch: "cone" is no material, such as "steel 52100"; the punch is a ball[^?]*$'),
+        ({"layer": "unobtainium"}, '^solve: layer: "unobtainium" is not a material; did you mean[^\n]*$'),
+        (
+            {"punch": "cone"},
+            '^solve: punch: "cone" is not a material, such as "steel 52100"; the punch is a ball[^?]*$',
+        ),
         (
             {"punch": "Sphere"},
-            '^solve: punch: "Sphere" is no material, such as "steel 52100"; the punch is a ball[^?]*$',
+            '^solve: punch: "Sphere" is not a material, such as "steel 52100"; the punch is a ball[^?]*$',
         ),
-        ({"layer": "rigid"}, 'layer: "rigid" is no material'),
+        ({"layer": "rigid"}, 'layer: "rigid" is not a material'),
         ({"body": 5.0}, "body: 5.0 is no name of a material"),
         (
             {"punch": ["steel", 1 << 20_000]},

@@ -23,8 +23,8 @@ import study
             {"micro": "disc_cell", "Nbar": "1 1/um^2", "Ra": "40 nm"},
             "Ra = 40 nm is small for Nbar = 1 1/µm²: the asperities",
         ),
-        ({"h": ["2 um", "1 ± 2 um"]}, "h = 1.0 ± 2.0 µm: too wide a spread for the ± of results"),
-        ({"R": None, "R1": "10 ± 1 mm", "R2": ["-30 mm", "-11 mm"]}, "R1 = 10.0 ± 1.0 mm: too wide a spread"),
+        ({"h": ["2 um", "1 ± 2 um"]}, "h = 1.0 ± 2.0 µm: this spread is too wide for the ± of the results"),
+        ({"R": None, "R1": "10 ± 1 mm", "R2": ["-30 mm", "-11 mm"]}, "R1 = 10.0 ± 1.0 mm: this spread is too wide"),
     ],
 )
 def test_slips_of_a_prefix_are_noticed(change, sentence):
@@ -49,16 +49,16 @@ def test_a_spread_of_nu_that_reaches_one_half_is_too_wide():
     film = {"R": "3 mm", "E1": "5 MPa", "E2": "rigid", "h": "100 um", "bonding": "bonded", "micro": "smooth"}
     for nu1, wide in (("0.49 ± 0.02", True), ("0.49 ± 0.005", False), ("0.0 ± 0.05", False), ("-0.2 ± 0.3", False)):
         text = study.summary(quiet(**film, nu1=nu1, P="1 mN", x=2))
-        assert ("Beware: nu1 = 0.490 ± 0.020: too wide a spread" in text) == wide == ("too wide" in text)
+        assert ("Beware: nu1 = 0.490 ± 0.020: this spread is too wide" in text) == wide == ("too wide" in text)
 
 
 def test_spreads_wider_than_their_inputs_are_doubted():
     """They are no reason to refuse: ± is to first order, and the sentence says that this is not enough."""
     ball = {"E2": "210 GPa", "base": "half_space", "micro": "smooth", "x": 2}
     text = study.summary(quiet(**ball, R="5 mm", P="1 ± 10 N"))
-    assert "Beware: P = 1 ± 10 N: too wide a spread for the ± of results" in text
+    assert "Beware: P = 1 ± 10 N: this spread is too wide for the ± of the results" in text
     cup = quiet(**ball, R1="5 ± 1 mm", R2="-5.05 mm", P="1 N")
-    assert "Beware: R1 = 5.0 ± 1.0 mm: too wide a spread for the ± of results" in study.summary(cup)
+    assert "Beware: R1 = 5.0 ± 1.0 mm: this spread is too wide for the ± of the results" in study.summary(cup)
     # a ~ R^(1/3), and R is a hundred times R1
     np.testing.assert_allclose(cup.a_spread / cup.a, 101 * 0.2 / 3, rtol=1e-6)
 

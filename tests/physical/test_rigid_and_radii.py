@@ -52,7 +52,7 @@ def test_rigid_bases_among_others_and_rigid_punches():
 
 def test_dimensionless_numbers_of_two_units_do_not_mix():
     given = {"P": 1e-5, "h": 0.01, "micro": "smooth"}
-    with pytest.raises(study.StudyError, match="n = 0, a rigid base, is among others: its numbers are in E1"):
+    with pytest.raises(study.StudyError, match="n = 0, a rigid base, is among other values: its numbers are in E1"):
         study.solve(**given, n=[0, 0.5])
     both = study.solve(**given, n=0, base=["layered", "half_space"], x=2)
     np.testing.assert_allclose(both.a.sel(base="half_space"), np.cbrt(0.75e-5), rtol=1e-12)
@@ -145,7 +145,10 @@ def test_the_mask_of_a_cup_over_axes_and_cases_and_in_a_file(tmp_path):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"E2": "rigid", "base": "half_space"}, 'E2 is rigid and base = "half_space": no layer is there to yield'),
+        (
+            {"E2": "rigid", "base": "half_space"},
+            'E2 is rigid and base = "half_space": there is no layer that could deform',
+        ),
         ({"E2": "rigid", "E1": None, "n": 0.5}, "E2 is rigid and n is given: give E1"),
         ({"E1": None, "n": 0}, 'n = 0 is a rigid base: give E2 = "rigid" and E1, the modulus of the layer'),
         ({"E1": None, "n": [0.5, 0]}, 'n = 0 is a rigid base: give E2 = "rigid"'),

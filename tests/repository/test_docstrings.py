@@ -1,8 +1,10 @@
 """What `help` and editors show of every public name: its parameters, what it returns, what it raises, their types."""
 
+import doctest
 import inspect
 import re
 from collections.abc import Iterator
+from functools import cache
 from types import ModuleType
 
 import pytest
@@ -52,6 +54,12 @@ def sections(value: object) -> dict[str, str]:
     return dict(zip(pieces[1::2], pieces[2::2], strict=True))
 
 
+@cache
+def run_of(module: ModuleType) -> set[str]:
+    """The docstrings of a module whose examples `--doctest-modules` runs."""
+    return {found.docstring for found in doctest.DocTestFinder().find(module) if found.examples}
+
+
 def names_in(section: str) -> list[str]:
     """The names before the colon of each entry."""
     heads = re.findall(r"^([*\w, ]+) : ", section, flags=re.MULTILINE)
@@ -91,3 +99,10 @@ def test_a_class_explains_its_fields(name):
     fields = getattr(value, "__dataclass_fields__", getattr(value, "_fields", ()))
     known = names_in(re.sub(r" = [^:\n]* :", " :", sections(value).get("Attributes", "")))
     assert set(fields) <= {*known, *["parameters"] * (value is solver.Problem)} and inspect.getdoc(value)
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_a_name_has_an_example_that_is_run(name):
+    value = PUBLIC[name]
+    assert ">>> " in sections(value).get("Examples", ""), "an example under the heading Examples"
+    assert value.__doc__ in run_of(inspect.getmodule(inspect.unwrap(value)))

@@ -97,7 +97,7 @@ def test_the_door(tmp_path, monkeypatch):
     (tmp_path / "link").symlink_to(pipe)
     for path in (pipe, tmp_path / "link", "/dev/zero"):
         for read in (content, begins, checked):
-            with pytest.raises(NoFile, match="^is no file but a pipe or device$"):
+            with pytest.raises(NoFile, match="^is not a file but a pipe or device$"):
                 read(path)
     with pytest.raises(IsADirectoryError):
         content(tmp_path)
@@ -148,5 +148,5 @@ def test_each_reader_comes_through_it(tmp_path, name):
     os.mkfifo(tmp_path / "pipe.toml")
     (tmp_path / "zero.toml").symlink_to("/dev/zero")
     for path in (str(tmp_path / "pipe.toml"), str(tmp_path / "zero.toml")):
-        with pytest.raises(ValueError, match="is no file but a pipe or device|is no regular file"):
+        with pytest.raises(ValueError, match="is not a file but a pipe or device|is not a regular file"):
             READERS[name](path)

@@ -108,5 +108,5 @@ def test_what_is_outside_of_the_law_has_its_reason():
         warnings.simplefilter("always")
         soft = study.solve(**PHYSICAL | {"E1": "0.5 GPa", "nu1": 0.46, "P": "5 N"}, x=2)
     (text,) = (str(one.message) for one in caught if "hex_lattice" in str(one.message))
-    assert soft.status == 10 and "On a layer this soft the disc cell goes wrong where spots cover more than 0." in text
+    assert soft.status == 10 and "On a layer this soft the disc cell fails where spots cover more than 0." in text
     assert text.splitlines()[-1] in study.summary(soft)

@@ -38,15 +38,15 @@ def test_words_say_whether_it_is_stable_and_when_it_comes_off():
     text = study.summary(study.solve(**STICKY, D="-50 nm"))
     assert "w_adhesion = 1 mJ/m², adhesion JKR" in text and "This contact is stable." in text
     assert (
-        "if its depth is controlled it comes off at P = " in text and "Not checked" in text and "adhesion." not in text
+        "under depth control the punch comes off at P = " in text and "Not checked" in text and "adhesion." not in text
     )
     soft = study.summary(study.solve(**STICKY, P="0 nN", k_machine="0.02 N/m"))
     assert "on a machine of 20 mN/m it comes off" in soft
     off = study.summary(study.solve(**STICKY, P="-50 nN"))
     assert "NOT SOLVED (pulled_off)" in off and "comes off at P = -23.562 nN" in off
     open_ = study.summary(study.solve(**STICKY, a="0.5 um"))
-    assert "This contact is not stable" in open_
-    assert "so that nothing sticks" in study.summary(study.solve(**GEL, P="1 nN", w_adhesion="0 J/m^2"))
+    assert "This contact is unstable" in open_
+    assert "so the surfaces do not adhere" in study.summary(study.solve(**GEL, P="1 nN", w_adhesion="0 J/m^2"))
 
 
 def test_branches_and_machines():
@@ -85,7 +85,7 @@ def test_tension_inside():
         ({"w_adhesion": 1e-6, "adhesion": "dmt", "shape": "sphere"}, "is for shape = .paraboloid."),
         (
             {"w_adhesion": 1e-6, "adhesion": "maugis", "z0": 1e-4, "shape": "flat", "flat_radius": 0.1},
-            'does not go with shape = "flat", whose edge is held: take "jkr"',
+            'is not for shape = "flat", whose edge is fixed: take "jkr"',
         ),
         ({"w_adhesion": 0.0, "P": -1e-5}, "P must be > 0 where w_adhesion is 0"),
         ({"w_adhesion": 1e-6, "scheme": "picard"}, "picard"),
@@ -122,9 +122,9 @@ def test_stresses_of_what_sticks():
     sz = study.stresses(contact, r=[0.0, 1.0], z=[0.0]).sz.squeeze("z")
     assert_allclose(sz.sel(r=0.0), -contact.p0, rtol=1e-9)
     assert np.all(sz.sel(r=1.0) == np.inf)
-    with pytest.raises(study.StudyError, match="extremes: there are no largest stresses .* where the surfaces stick"):
+    with pytest.raises(study.StudyError, match="extremes: there are no largest stresses .* where the surfaces adhere"):
         study.extremes(contact)
-    with pytest.raises(study.StudyError, match='no stresses of contacts that stick yet, but by adhesion = "jkr"'):
+    with pytest.raises(study.StudyError, match='no stresses of contacts that adhere yet, except with adhesion = "jkr"'):
         study.stresses(study.solve(P=1e-5, w_adhesion=1e-7, adhesion="dmt", **ALONE))
 
 

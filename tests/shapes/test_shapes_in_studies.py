@@ -181,7 +181,7 @@ def test_what_is_infinite_is_said():
     cone = study.solve(P=1e-5, shape="Vickers", **ALONE)
     text = study.summary(cone)
     assert np.isposinf(cone.p0) and "p(0)   = infinite" in text and "The tip is sharp" in text
-    assert "a Vickers pyramid, taken for the cone of the same area (half angle 70.3°)" in text
+    assert "a Vickers pyramid, replaced by the cone of the same area (half angle 70.3°)" in text
     assert "1.07 times as large" in text  # 1.067 of Hay, Bolshakov and Pharr at nu = 0.3
     flat = study.solve(P=1e-5, shape="flat", flat_radius=0.1, x=3, **ALONE)
     assert flat.a == 0.1 and np.isposinf(flat.p.values[-1]) and np.isfinite(flat.p0)

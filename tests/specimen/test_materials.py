@@ -103,7 +103,7 @@ def test_incompressible_is_allowed(mine):
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("stel 52100", '"stel 52100" is no material; did you mean "steel 52100"'),
+        ("stel 52100", '"stel 52100" is not a material; did you mean "steel 52100"'),
         ("DLC", 'did you mean "DLC ta-C" or "DLC a-C:H"?'),
         ("teflonn", 'did you mean "PTFE"?'),
         ("xyzzy", "known: steel 52100, "),
@@ -167,9 +167,9 @@ def test_a_bad_value_is_named_with_what_is_allowed(mine, old, new, message):
     ("text", "message"),
     [
         ("E = 210e9", 'mine.toml: ["E"] = 2.1e+11: must be a section with the keys E, nu, E_spread, nu_spread'),
-        ("[steel\n", "mine.toml is no TOML file: "),
+        ("[steel\n", "mine.toml is not a TOML file: "),
         (b"\xff\xfe", "mine.toml is not UTF-8 (byte 0): "),
-        ("x = " + "[" * 5000, "mine.toml is no TOML file: "),
+        ("x = " + "[" * 5000, "mine.toml is not a TOML file: "),
         (
             STEEL + STEEL.replace("my steel", "other") + 'also = ["My-Steel"]',
             'mine.toml: ["other"] is called "My-Steel", and so is ["my steel"]',

@@ -28,7 +28,7 @@ def test_the_answer_in_sentences():
     with pytest.raises(dataclasses.FrozenInstanceError):
         answer.Ra = 1.0
     times = answer.sigma_summits * 3 * math.pi * answer.Nbar * answer.Ra
-    assert f"the spread is {times:.2g} times that" in said
+    assert f"the spread of the heights is {times:.2g} times that" in said
     assert_allclose(times, 0.375 * math.sqrt(math.pi / 12 * (3 - 0.8968)), rtol=0.1)  # of N̄, Ra, σ_s by moments
     text, unit = answer.parameters()["Nbar"].split()
     assert float(text) == answer.Nbar and unit == "1/m^2" and answer.units == "m"

@@ -233,7 +233,7 @@ def test_formats_that_state_their_lengths(tmp_path):
         (SDF.format(40, 41, "2e-6", 7) + BODY, "1600 heights, but the heading says 41 × 40"),
         (SDF.format(40, 40, "2e-6", 7).replace("Xscale", "Xstep") + BODY, "the SDF heading has no number for 'xscale'"),
         (SDF.format(40, 40, "2e-6", 7).replace("1e-9", "0") + BODY, "Zscale = 0 must be positive"),
-        (SDF.format(40, 40, "2e-6", 7) + BODY.replace("0.1257", "word"), "something else than numbers and Bad"),
+        (SDF.format(40, 40, "2e-6", 7) + BODY.replace("0.1257", "word"), "something other than numbers and Bad"),
         (SMD.replace("I\0 200", "A\0 200").replace("2.5e-4", ""), "needs lines CX with a step and CZ"),
         (SMD.replace("200 nm", "200 V"), "needs lines CX with a step and CZ"),
         (SMD.replace("200 nm", "201 nm"), "200 heights, but the heading says 201"),

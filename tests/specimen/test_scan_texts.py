@@ -73,7 +73,7 @@ def test_rows_of_missing_points_alone(tmp_path):
 @pytest.mark.parametrize("word", ["overflow", "inf", "-Infinity", "-1.#IND", "1_000", "0x1F", "1.024,5", "n/a", "----"])
 def test_a_word_in_a_row_is_refused(tmp_path, word):
     """Wherever it stands; "-1.#IND" was read as -1, and 1_000 as 1000."""
-    for row, message in ((0, "is a row of the table but for"), (25, "has something else than numbers:")):
+    for row, message in ((0, "is a row of the table except for"), (25, "has something other than numbers:")):
         for separator in (" ", ";", "\t"):
             rows = table(Z)
             rows[row][7] = word
@@ -81,11 +81,11 @@ def test_a_word_in_a_row_is_refused(tmp_path, word):
                 read(tmp_path, "a heading\n" + text(rows, separator), **MAP)
     rows = triples(X40, Y40)
     rows[0][2] = word
-    with pytest.raises(ValueError, match=f"^a.txt, line 2: .* is a row of the table but for '{word}'"):
+    with pytest.raises(ValueError, match=f"^a.txt, line 2: .* is a row of the table except for '{word}'"):
         read(tmp_path, "map 12 a\n" + text(rows), **IN)
     rows = table(np.c_[X, P])
     rows[0][1] = word
-    with pytest.raises(ValueError, match=f"^a.txt, line 1: .* is a row of the table but for '{word}'"):
+    with pytest.raises(ValueError, match=f"^a.txt, line 1: .* is a row of the table except for '{word}'"):
         read(tmp_path, text(rows, ";"), **IN)
 
 
@@ -207,9 +207,18 @@ def test_missing_points_of_a_grid(tmp_path, no_data):
 @pytest.mark.parametrize(
     ("rows", "message"),
     [
-        (triples(RANDOM.uniform(size=1600), Y40), "they are no x, y, z of a grid: x has no equal steps. Choose others"),
-        (triples(X40 * 0.5 + Y40 * 0.1, Y40 * 0.5 - X40 * 0.1), "they are no x, y, z of a grid: .* have 1600 heights"),
-        (triples(X40, 0 * Y40)[:40], r"they are no x, y, z of a grid: all y are equal. .*columns=\(0, 2\) for x and z"),
+        (
+            triples(RANDOM.uniform(size=1600), Y40),
+            "they are not the x, y, z of a grid: x has no equal steps. Choose others",
+        ),
+        (
+            triples(X40 * 0.5 + Y40 * 0.1, Y40 * 0.5 - X40 * 0.1),
+            "they are not the x, y, z of a grid: .* have 1600 heights",
+        ),
+        (
+            triples(X40, 0 * Y40)[:40],
+            r"they are not the x, y, z of a grid: all y are equal. .*columns=\(0, 2\) for x and z",
+        ),
         (triples(X40, Y40) + triples(X40, Y40)[:1], "x = 0, y = 0 stands there twice"),
         ([["Bad", "0", "1"], *triples(X40, Y40)[1:]], "1 positions are not numbers"),
     ],

@@ -93,7 +93,7 @@ def test_first_yield_of_each_layer():
     at = on(CUT, P=two.P_Y_layer.sel(layer=layer).item())
     assert_allclose(study.extremes(at).mises_layer.sel(layer=layer), 0.05, rtol=1e-5)
     text = str(study.summary(two))
-    assert "Layer 1 first yields at P" in text and "to yield, of what is known: layer" in text
+    assert "Layer 1 first yields at P" in text and "to yield, as far as strengths are known: layer" in text
 
 
 def test_a_layer_without_a_strength():

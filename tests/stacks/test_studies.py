@@ -233,7 +233,7 @@ def test_stored_stresses_are_refused(tmp_path):
     (tmp_path / "stack.toml").write_text(
         'title = "t"\n[model]\nmicro = "smooth"\nP = 1e-5\n[[layers]]\nh = 0.01\nn = 2.0\n[output]\nstresses = true\n'
     )
-    with pytest.raises(study.StudyError, match="stacks of layers are not stored: study.extremes has them"):
+    with pytest.raises(study.StudyError, match="stacks of layers are not stored: study.extremes computes them"):
         study.load(tmp_path / "stack.toml")
 
 
@@ -245,7 +245,7 @@ BAD = {
     "a wrong spring": ({"layers": [PURE[0] | {"bonding": {"kn": 1}}]}, "springs have cn and ct"),
     "no thickness": ({"layers": [PURE[0], {"n": 1.0}]}, "layers.2.h is missing"),
     "several values": ({"layers": [PURE[0] | {"h": [0.1, 0.2]}]}, "an axis stands beside layers"),
-    "no list": ({"layers": "two"}, "must be a list of layers"),
+    "no list": ({"layers": "two"}, "at the surface first; in a terminal write layers.1.h=..., layers.2.h=... instead"),
     "a rigid base": ({"layers": PURE, "rigid_base": True}, "of the first layer 1"),
     "a rigid word": ({"layers": PURE, "rigid_base": "yes"}, "must be true or false"),
     "layered": ({"layers": PURE, "base": "layered"}, 'base = "layered" has one layer'),

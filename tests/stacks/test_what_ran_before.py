@@ -54,7 +54,7 @@ def test_first_and_last():
     """`fit` and `design`, the first calls of a process, were refused, and the cases of a stack were."""
     forward, backward = answers("lambda calls: [*calls]"), answers("lambda calls: [*calls][::-1]")
     assert forward == backward
-    assert "no input that can be fitted" not in forward["fit"] and min(forward["cases"]) > 0
+    assert "not an input that can be fitted" not in forward["fit"] and min(forward["cases"]) > 0
     assert 0.02 < forward["design"][0] < 0.1 and abs(forward["cases"][2] / forward["stack"][0] - 1) < 1e-12
 
 

@@ -53,7 +53,7 @@ def test_a_flipped_bit_anywhere_is_noticed(path):
     data = path.read_bytes()
     for place in range(len(data)):
         path.write_bytes(data[:place] + bytes([data[place] ^ 1 << place % 8]) + data[place + 1 :])
-        with pytest.raises(Damaged, match="is no whole block; the same command computes its cases again"):
+        with pytest.raises(Damaged, match="is not a complete block; the same command computes its cases again"):
             read_block(path)
 
 
@@ -95,7 +95,7 @@ def test_what_is_no_block_is_refused_in_spite_of_its_checksum(path, arrays):
     sealed(path, HEAD, KEYS, np.zeros(3))
     assert read_block(path).arrays["a"].tolist() == [0, 0, 0]
     sealed(path, *arrays)
-    with pytest.raises(Damaged, match="is no whole block"):
+    with pytest.raises(Damaged, match="is not a complete block"):
         read_block(path)
 
 
@@ -286,6 +286,6 @@ def test_a_block_without_a_part_of_the_form_is_computed_again(former, caplog):
     other = path.with_name("other.block")
     write_as_before(other, head | {"facts": head["facts"] | {"numerics_version": "1"}}, keys, *columns.values())
     assert opened.run(workers=1).computed == 23
-    assert f"{path}: is no whole block; the same command computes its cases again" in caplog.text
+    assert f"{path}: is not a complete block; the same command computes its cases again" in caplog.text
     assert path.exists() and other.exists()
     assert (opened.open().status == 0).all()

@@ -108,7 +108,7 @@ def test_a_block_that_becomes_another_is_noticed_when_it_is_read(file):
     known = inventory(store)
     second.replace(first)
     assert len(read_block(first).keys) == 5
-    with pytest.raises(Damaged, match="has become a block of other cases"):
+    with pytest.raises(Damaged, match="now holds other cases"):
         gather(store, known, 0, 5)
 
 

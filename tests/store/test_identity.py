@@ -257,7 +257,7 @@ def test_a_block_that_becomes_another_meanwhile_is_not_read(line):
     for changed in ({"facts": block.facts | {"x": [0.0]}}, {"keys": block.keys[::-1]}, {"arrays": {}}):
         stock.sources[0].__dict__.update(facts=block.facts, keys=block.keys, columns=[*block.arrays])
         write_block(path, replace(block, **changed))
-        with pytest.raises(OSError, match="has become a block of other cases"):
+        with pytest.raises(OSError, match="now holds other cases"):
             gather(store, stock, 0, 60)
 
 

@@ -212,7 +212,7 @@ def test_a_damaged_block_of_a_window_is_computed_again(tmp_path, monkeypatch, ca
     path = on_disk(tmp_path)[0]
     path.write_bytes(path.read_bytes()[:-1])
     monkeypatch.setattr(cases, "compute", real)
-    assert large.run(workers=1).computed == 53 and f"{path}: is no whole block" in caplog.text
+    assert large.run(workers=1).computed == 53 and f"{path}: is not a complete block" in caplog.text
     assert large.verify().kind == "sound" and not on_disk(tmp_path)
 
 
@@ -226,7 +226,9 @@ def test_what_appears_in_the_place_of_a_part_stays(tmp_path, monkeypatch):
         return real(task)
 
     monkeypatch.setattr(cases, "compute", compute)
-    with pytest.raises(study.StudyError, match="has appeared or changed while its results were computed, and stays"):
+    with pytest.raises(
+        study.StudyError, match="appeared or changed while its results were computed, and is left as it is"
+    ):
         written(tmp_path).run(workers=1)
     assert path.read_text(encoding="utf-8") == "precious" and len(files(tmp_path)) == 4
     path.unlink()

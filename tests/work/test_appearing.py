@@ -13,7 +13,8 @@ from study.files.seal import seal
 from study.studies.evidence import tradeoff
 from study.work import cases
 
-STAYS = "has appeared or changed while its results were computed, and stays: move it away, and the same command writes"
+STAYS = "appeared or changed while its results were computed, and is left as it is: move it away, and the same "
+STAYS += "command writes"
 
 
 def during(monkeypatch, action) -> None:

@@ -85,7 +85,7 @@ def test_a_damaged_block_is_computed_again(coarse, undisturbed, caplog, how):
     paths = [store_block(coarse, start, start + LARGE) for start in range(0, CASES - LARGE, LARGE)]
     spoil(paths[3], how)
     assert_ends_well(coarse, undisturbed, CASES - (len(paths) - 1) * LARGE)
-    assert f"{paths[3]}: is no whole block; the same command computes its cases again" in caplog.text
+    assert f"{paths[3]}: is not a complete block; the same command computes its cases again" in caplog.text
 
 
 def test_a_block_damaged_after_the_inventory_stops_the_results(opened, undisturbed, monkeypatch):
@@ -96,7 +96,7 @@ def test_a_block_damaged_after_the_inventory_stops_the_results(opened, undisturb
         return real(store, known, start, stop)
 
     monkeypatch.setattr(writer, "gather", gather)
-    with pytest.raises(block_file.Damaged, match="is no whole block; the same command computes its cases again"):
+    with pytest.raises(block_file.Damaged, match="is not a complete block; the same command computes its cases again"):
         opened.run()
     monkeypatch.undo()
     assert_ends_well(opened, undisturbed, BLOCK)

@@ -18,12 +18,12 @@ def line(counts: dict[int, int], cases: int = 24_320) -> str:
     ("counts", "remark"),
     [
         ({0: 24_320}, ""),
-        ({0: 23_424, 4: 896}, ", 896 thin_layer_not_applicable: no solution exists, which is no failure"),
-        ({8: 5, 4: 3}, ", 3 thin_layer_not_applicable, 5 lift_off: no solution exists, which is no failure"),
+        ({0: 23_424, 4: 896}, ", 896 thin_layer_not_applicable: no solution exists, which is not a failure"),
+        ({8: 5, 4: 3}, ", 3 thin_layer_not_applicable, 5 lift_off: no solution exists, which is not a failure"),
         ({0: 1, 1: 2}, ", 2 of them not converged (2 iteration_limit): see `status` in the file"),
         (
             {3: 1, 2: 40, 4: 6},
-            ", 6 thin_layer_not_applicable: no solution exists, which is no failure"
+            ", 6 thin_layer_not_applicable: no solution exists, which is not a failure"
             ", 41 of them not converged (40 limit_cycle, 1 diverged): see `status` in the file",
         ),
     ],
@@ -56,18 +56,18 @@ def test_failed_blocks_stand_in_their_order():
     assert failure_lines(report, "a") == [
         "a: block 2 failed: MemoryError",
         "a: block 10 failed: full disk",
-        "a: 2 blocks failed; the others are kept, the same command tries again",
+        "a: 2 blocks failed; the others are kept, and the same command tries again",
     ]
 
 
 def test_the_state_of_a_study_counts_what_is_done():
     definition = SimpleNamespace(name="fig04", title="Loads", times=1)
     state = {"cases": 2000, "counts": {0: 480, 1: 20, 127: 1500}, "state": "partial", "path": "r.nc", "reason": ""}
-    assert state_line(definition, state) == "fig04                2000 cases  partial (500 of 2000 cases)  Loads"
-    assert state_line(definition, state | {"state": "done"}) == "fig04                2000 cases  done  Loads"
+    assert state_line(definition, state) == "fig04                  2000 cases  partial (500 of 2000 cases)  Loads"
+    assert state_line(definition, state | {"state": "done"}) == "fig04                  2000 cases  done  Loads"
     damaged = state | {"state": "damaged", "path": "results/fig04.nc", "reason": "is damaged: a", "counts": {}}
     assert state_line(definition, damaged).split("\n") == [
-        "fig04                2000 cases  damaged  Loads",
+        "fig04                  2000 cases  damaged  Loads",
         "    results/fig04.nc: is damaged: a",
     ]
 

@@ -44,7 +44,7 @@ def test_results_that_are_removed_while_one_asks_for_them(file, monkeypatch):
     assert load(file).status()["state"] == "partial"
 
 
-@pytest.mark.parametrize(("content", "what"), [(b"", "is empty"), (b"no netCDF", "is no netCDF file")])
+@pytest.mark.parametrize(("content", "what"), [(b"", "is empty"), (b"no netCDF", "is not a netCDF file")])
 def test_a_file_that_is_no_result_is_kept(file, content, what):
     opened = load(file)
     opened.results.mkdir()

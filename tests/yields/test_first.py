@@ -194,7 +194,7 @@ PROTECTED = {0.0077: False, 0.0095: True, 0.0105: True}
 def protected():
     """Thicknesses that protect bodies of these strengths, all in one call, and below some of which they yield."""
     protected = study.h_protect(P=1e-5, Y2=[*PROTECTED], **HARD)
-    assert protected.h_yields.attrs["message"] == "h_yields of 1 of 3 cases: there is no such thickness"
+    assert protected.h_yields.attrs["message"] == "h_yields of 1 of 3 cases: no such thickness exists"
     return protected
 
 
@@ -212,7 +212,7 @@ def test_what_protects_the_body(protected, Y2, yields):
 def test_nothing_need_protect_a_strong_body():
     found = study.h_protect(P=1e-5, Y2=0.0108, **HARD)
     assert found.h_protect.item() == 0.0 and np.isnan(found.h_yields.item())
-    assert found.h_yields.attrs["message"] == "h_yields of 1 of 1 cases: there is no such thickness"
+    assert found.h_yields.attrs["message"] == "h_yields of 1 of 1 cases: no such thickness exists"
 
 
 def test_a_thickness_has_the_unit_of_the_call():

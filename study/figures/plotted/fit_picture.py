@@ -25,7 +25,7 @@ def fits(fitted: xr.Dataset, where: dict, new: Callable[..., Figure]) -> tuple[F
     if f"{y}_fit" not in fitted:
         raise StudyError(["a plan has no curves to draw"])
     if unknown := [name for name in where if name != "curve"]:
-        raise StudyError([f"{unknown[0]} is no axis of fits: choose with curve=NUMBER"])
+        raise StudyError([f"{unknown[0]} is not an axis of fits: choose with curve=NUMBER"])
     numbers = [int(where["curve"])] if "curve" in where else range(fitted.sizes["curve"])
     if len(numbers) > MOST or not all(0 <= i < fitted.sizes["curve"] for i in numbers):
         raise StudyError(

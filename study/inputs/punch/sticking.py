@@ -28,7 +28,9 @@ def mistakes(grid: Grid, sections: Any) -> list[str]:
     """Messages about inputs of adhesion that do not go together."""
     if "w_adhesion" not in sections:
         given = [name for name in OF_ADHESION if name in sections]
-        return [f"{name} is given without w_adhesion, the work of adhesion: nothing sticks" for name in given]
+        return [
+            f"{name} is given without w_adhesion, the work of adhesion: the surfaces do not adhere" for name in given
+        ]
     values, sticks = partial(along, grid), adhesive(grid)
     messages = []
     for name in ("P", "D"):
@@ -41,13 +43,13 @@ def mistakes(grid: Grid, sections: Any) -> list[str]:
         number = "not both" if both else "one of them is missing"
         messages.append(f'adhesion = "maugis" needs exactly one of sigma0 and z0 (sigma0 = w/(0.97 z0)): {number}')
     extra = [name for name, there in given.items() if (dmt & there).any()]
-    messages += [f'{name} is given with adhesion = "dmt", which has no use for it' for name in extra]
+    messages += [f'{name} is given with adhesion = "dmt", which does not use it' for name in extra]
     if (dmt & (values("shape") != "paraboloid")).any():
         messages.append(f'adhesion = "dmt" is for shape = "paraboloid", not {_first(values("shape"), "paraboloid")}')
     if (sticks & on_springs(values("base"))).any():
-        messages.append('base = "thin_layer" does not stick: w_adhesion > 0 needs base = "layered", or "auto"')
+        messages.append('base = "thin_layer" has no adhesion: w_adhesion > 0 needs base = "layered", or "auto"')
     if (maugis & (values("shape") == "flat")).any():
-        messages.append('adhesion = "maugis" does not go with shape = "flat", whose edge is held: take "jkr"')
+        messages.append('adhesion = "maugis" is not for shape = "flat", whose edge is fixed: take "jkr"')
     return messages
 
 
@@ -64,8 +66,8 @@ def rough_and_sticking(grid: Grid, unit: Any) -> list[str]:
     if not (adhesive(grid) & rough).any():
         return []
     message = (
-        'w_adhesion > 0 needs micro = "smooth" written out: how asperities stick is not in the model. Give the '
-        "effective work of adhesion of the smooth shape, what is left of it by the roughness"
+        'w_adhesion > 0 needs micro = "smooth" among the inputs: the model has no adhesion of asperities. Give '
+        "the effective work of adhesion of the smooth shape, which roughness lowers"
     )
     pull = 1.5 * np.pi * along(grid, "w_adhesion") * along(grid, "Ra") * along(grid, "Nbar")
     pull = np.broadcast_to(pull, grid.shape)[np.broadcast_to(rough, grid.shape)]

@@ -17,15 +17,18 @@ def without_stresses(rough, shape=PARABOLOID, w_adhesion=0.0, adhesion="jkr", *,
     shape, sticks = np.asarray(shape), np.asarray(w_adhesion) > 0
     flat = shape == "flat"
     reasons = (
-        (sticks & (np.asarray(adhesion) != "jkr"), 'no stresses of contacts that stick yet, but by adhesion = "jkr"'),
+        (
+            sticks & (np.asarray(adhesion) != "jkr"),
+            'no stresses of contacts that adhere yet, except with adhesion = "jkr"',
+        ),
         (
             rough & (shape != PARABOLOID),
-            "no stresses under rough punches of this shape yet, but under smooth ones",
+            "no stresses under rough punches of this shape yet, only under smooth ones",
         ),
         (
             largest & (flat | sticks),
-            "no largest stresses under a flat punch, or where the surfaces stick: they are infinite at the edge; "
-            "study.stresses computes those inside, and a rounded_flat has finite ones",
+            "no largest stresses under a flat punch, or where the surfaces adhere: they are infinite at the edge; "
+            "study.stresses computes the stresses inside, and shape = rounded_flat has finite ones",
         ),
     )
     return next((f"there are {text}" for where, text in reasons if np.any(where)), "")
@@ -34,6 +37,6 @@ def without_stresses(rough, shape=PARABOLOID, w_adhesion=0.0, adhesion="jkr", *,
 def none_in(grid: Grid, *, largest: bool = True) -> str:
     """The same for the cases of a grid."""
     if np.any(is_stack(np.asarray(along(grid, "base")))):
-        return "the largest stresses in stacks of layers are not stored: study.extremes has them, of any results"
+        return "the largest stresses in stacks of layers are not stored: study.extremes computes them for any results"
     rough = ~np.isin(along(grid, "micro"), grid.lexicon.smooth_laws())
     return without_stresses(rough, *(along(grid, name) for name in DECIDE), largest=largest)

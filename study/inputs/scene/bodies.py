@@ -98,7 +98,7 @@ def _checked(name: Any) -> str | materials.Material:
     if isinstance(name, tuple):
         raise LookupError(f"{shown(name)} is a tuple: a list is an axis, and `layers`, a list of layers, a stack")
     if not isinstance(name, (str, materials.Material)):
-        raise LookupError(f'{shown(name)} is no name of a material, such as "steel 52100"')
+        raise LookupError(f'{shown(name)} is not the name of a material, such as "steel 52100"')
     return name
 
 
@@ -109,7 +109,7 @@ def _material(body: str, name: str | materials.Material) -> tuple[str, Quantity,
     if body == "punch" and str(name).lower() in _SHAPES:
         lines = str(name).lower() in _LINES
         shape = absent(str(name)) if lines else 'the punch is a ball of radius R, or has a shape = "cone" or so on'
-        raise LookupError(f'{shown(name)} is no material, such as "steel 52100"; {shape}')
+        raise LookupError(f'{shown(name)} is not a material, such as "steel 52100"; {shape}')
     material = materials.get(name) if isinstance(name, str) else name  # one of the user's own
     if not all(map(finite, (material.E, material.nu, material.E_spread, material.nu_spread))):
         raise LookupError(f"{shown(material.name)}: E, nu and their spreads must be finite numbers, E in Pa")
@@ -165,7 +165,7 @@ def correlate(scene: Scene, pairs: Any, errors: list[str]) -> None:
             correlations[pair] = float(value)
     dims = tuple({dim for value in correlations.values() for dim in getattr(value, "dims", ())})
     if pairs and not errors and np.linalg.eigvalsh(matrix(scene, dims)).min() < -_ROUNDING:
-        errors.append("correlations: no inputs have all of these: their matrix has a negative eigenvalue")
+        errors.append("correlations: these cannot all hold: their matrix has a negative eigenvalue")
 
 
 def matrix(scene: Scene, dims: tuple[str, ...]) -> np.ndarray:

@@ -260,7 +260,7 @@ def impossible(scene: Scene) -> list[str]:
         return messages + [wrong] * bool(np.any(scene.parameters.get("n", values.get("n", 1.0)) == 0))
     if np.any(rigid & (is_bare(scene.parameters.get("base", "layered")))):
         swap = "a rigid body and an elastic ball are the same contact as a rigid ball on a body of the ball's modulus"
-        messages.append(f'E2 is rigid and base = "half_space": no layer is there to yield; {swap}')
+        messages.append(f'E2 is rigid and base = "half_space": there is no layer that could deform; {swap}')
     if "n" in scene.parameters:
         messages.append("E2 is rigid and n is given: give E1, the modulus of the layer")
     return messages

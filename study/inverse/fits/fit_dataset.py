@@ -127,11 +127,11 @@ def _of_points(question: Question, fits: dict, count: np.ndarray) -> dict[str, t
     """
     model, C, name = question.model, len(count), question.model.unknowns[0]
     words = {
-        "effective_points": "number of independent points that say as much",
+        "effective_points": "number of independent points that carry as much information",
         "misfit_ratio": "rms of the residuals in contact over that before it",
-        "misfit_larger": "whether the misfit in contact is surely larger than the noise before it",
+        "misfit_larger": "whether the misfit in contact is significantly larger than the noise before it",
         "change": f"change of ln {name} from the beginning of the contact to the deepest point",
-        "changes": f"whether {name} surely changes with the depth",
+        "changes": f"whether {name} changes significantly with the depth",
     }
     keys = {"misfit_ratio": "ratio", "misfit_larger": "larger", "change": "change", "changes": "changes"}
     values = {key: np.full(C, np.nan) for key in words}
@@ -144,7 +144,7 @@ def _of_points(question: Question, fits: dict, count: np.ndarray) -> dict[str, t
         parts[curve] = model.of_coordinate(name, block["parts"][i])
     about = {
         "units": model.scene.lexicon.all_rows[name].unit,
-        "long_name": f"{name} by parts of the depth, the other unknowns as fitted to all",
+        "long_name": f"{name} in parts of the depth, with the other unknowns as fitted to all of it",
     }
     variables: dict[str, tuple] = {key: ("curve", array, {"long_name": words[key]}) for key, array in values.items()}
     return variables | {f"{name}_over_depth": (("curve", "part"), parts, about)}
@@ -154,7 +154,7 @@ def _from_priors(question: Question, names: tuple, value: np.ndarray) -> dict[st
     """The distance of each input from its prior, in standard deviations."""
     variables = {}
     for name, (center, sd) in question.priors.items():
-        about = {"long_name": f"{name} less its prior, in standard deviations of that"}
+        about = {"long_name": f"{name} less its prior, in standard deviations of the prior"}
         off = (question.model.coordinate(name, value[:, names.index(name)]) - center) / sd
         variables[f"{name}_from_prior"] = ("curve", off, about)
     return variables
@@ -215,11 +215,11 @@ def _validity(
     flags, valid = np.where(plastic, flags | RULES["body_yields"].mask, flags), np.where(plastic, -np.inf, valid)
     variables = {
         "validity": ("curve", flags, about),
-        "flows": ("curve", plastic, {"long_name": "whether a sharp tip makes the body flow: E is no modulus"}),
+        "flows": ("curve", plastic, {"long_name": "whether a sharp tip makes the body flow: E is not a modulus"}),
         f"{model.x}_valid": ("curve", valid, {"units": ROWS[model.x].unit}),
     }
     if outside.any():
-        about = {"long_name": "whether the deepest contact is outside of the law of its asperities"}
+        about = {"long_name": "whether the deepest contact is outside the law of its asperities"}
         variables["outside_law"] = "curve", outside, about
     return xr.Dataset(variables)
 

@@ -120,8 +120,8 @@ def _unknowns(free: Any, parameters: dict, x: str, y: str, options: dict) -> _Un
     for name in names:
         if name not in numbers:
             near = suggest(name, numbers, ["such as E1, h or Ra"]).replace("; known: ", ", ")
-            errors.append(f"free: {shown(called[name])} is no input that can be fitted{near}")
-    errors += [f"free: {name} stands twice" for name in dict.fromkeys(names) if names.count(name) > 1]
+            errors.append(f"free: {shown(called[name])} is not an input that can be fitted{near}")
+    errors += [f"free: {name} is named twice" for name in dict.fromkeys(names) if names.count(name) > 1]
     errors += [f"fit: leave out {name}: curves have it" for name in CONTROLS if parameters.get(name) is not None]
     values = _in_layers(parameters) | {short(name): value for name, value in parameters.items()}
     written = {*map(short, parameters), *names} & {*values}  # ± of layers that are not free is taken over
@@ -144,9 +144,7 @@ def _too_many(unknowns: _Unknowns, wrong: bool) -> list[str]:
     """
     every, errors = unknowns.every, []
     if "k_machine" in every:
-        errors.append(
-            "free: k_machine: where a punch comes off is read from the points, so they do not say what held it"
-        )
+        errors.append("free: k_machine: the points show where the punch comes off, not the stiffness of the machine")
     errors += [f"free: {a} and {b}: {_ALIKE_WORDS}" for a, b in _ALIKE if a in every and b in every]
     if not (unknowns.free or wrong or errors):
         errors.append('free: name at least one input, such as free=["E1"]')
@@ -183,7 +181,7 @@ def _model(definition: Definition, unknowns: _Unknowns, x: str, y: str) -> Curve
     moved = tuple(name for name in scene.spreads if name not in every and name not in CONTROLS)
     model = CurveModel.of(definition, x, y, every, moved)
     if model.sticks and (x, y) != ("D", "P"):
-        way = 'of what sticks the load over the depth is fitted: x = "D", y = "P"'
+        way = 'for contacts that adhere the load is fitted against the depth: x = "D", y = "P"'
         raise StudyError([f"x = {shown(x)}, y = {shown(y)}: {way}"])
     if model.sticks and scene.parameters.get("shape") == "flat":
         way = "its load is a straight line down to pull-off: w_adhesion follows from P_off by `design`"
@@ -192,7 +190,7 @@ def _model(definition: Definition, unknowns: _Unknowns, x: str, y: str) -> Curve
     if model.sticks and scene.parameters.get("adhesion") != "maugis":
         absent += [name for name in every if name in ("sigma0", "z0")]
     if absent:
-        raise StudyError([f"free: {name} does not act in this contact" for name in absent])
+        raise StudyError([f"free: {name} has no effect on this contact" for name in absent])
     return model
 
 

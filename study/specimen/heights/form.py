@@ -31,20 +31,20 @@ def without_form(z: np.ndarray, steps: tuple, form, name: str) -> tuple[np.ndarr
     """
     sizes = tuple((n - 1) * step for n, step in zip(z.shape, steps, strict=True))
     if isinstance(form, str) and form in DEGREES:
-        return _residual(z, steps, DEGREES[form]), f"{form} taken off"
+        return _residual(z, steps, DEGREES[form]), f"{form} removed"
     if isinstance(form, str) and form == "sphere":
         z, curvature = _without_sphere(z, steps, None)
         if not abs(curvature) * math.hypot(*sizes) < 1:
             raise ValueError(
-                f'{name}: form = "sphere": that which fits has a radius of {_text(1 / curvature)}, but must be larger '
-                f"than the scan, {' × '.join(map(_text, reversed(sizes)))}; crop the scan, or give another form"
+                f'{name}: form = "sphere": the one that fits has a radius of {_text(1 / curvature)}, but must be '
+                f"larger than the scan, {' × '.join(map(_text, reversed(sizes)))}; crop the scan, or give another form"
             )
-        return z, f"a sphere of the fitted radius {_text(1 / curvature)} and the plane taken off"
+        return z, f"a sphere of the fitted radius {_text(1 / curvature)} and the plane removed"
     radius = _radius(form, name)
     if not abs(radius) > math.hypot(*sizes):
         raise ValueError(f"{name}: form = {radius} m: a sphere must be larger than the scan, {sizes} m")
     z, _ = _without_sphere(z, steps, 1 / radius)
-    return z, f"a sphere of radius {_text(radius)} and the plane taken off"
+    return z, f"a sphere of radius {_text(radius)} and the plane removed"
 
 
 def share_of_polynomial(z: np.ndarray, steps: tuple, degree: int) -> float:

@@ -52,7 +52,10 @@ def measure(
 
     Examples
     --------
-    docs/roughness.md
+    >>> from study import roughness, samples
+    >>> answer = measure(roughness.read(samples.scan()))
+    >>> print(f"{answer.Nbar / 1e12:.4f} 1/um^2, {answer.Ra * 1e6:.1f} um, {answer.sigma * 1e9:.1f} nm")
+    0.0732 1/um^2, 9.7 um, 41.9 nm
     """
     if not isinstance(scan, Scan):
         raise ValueError("give a scan: that of study.roughness.read, or of height_map or profile, which take arrays")
@@ -93,7 +96,7 @@ def _flat(scan: Scan, form, rows) -> tuple[np.ndarray, str, tuple[str, ...]]:
     z = aligned(scan.z) if rows else scan.z
     notes = () if rows else tuple(jump_doubts(scan.z))
     z, treatment = without_form(z, scan.steps, form, scan.name)
-    treatment = f"the median of the differences of neighbouring rows taken off; {treatment}" if rows else treatment
+    treatment = f"the median of the differences of neighbouring rows removed; {treatment}" if rows else treatment
     _refuse_rounding_errors(scan, z, treatment)
     rms = float(np.nanstd(z))
     if rms < FLATTEST and not scan.huge:
@@ -116,7 +119,7 @@ def _refuse_rounding_errors(scan: Scan, z: np.ndarray, treatment: str) -> None:
 def _filtered(scan: Scan, z: np.ndarray, treatment: str, cutoff: float | None) -> tuple[np.ndarray, str]:
     """The heights without short waves, and the whole treatment in words."""
     if cutoff is None:
-        treatment += "; no low-pass, so the shortest waves are those of the instrument and the step"
+        treatment += "; no low-pass, so instrument and step set the shortest waves"
     else:
         z = scan_peaks.low_pass(z, scan.steps, cutoff)
         treatment += f"; Gaussian low-pass (ISO 16610) with a cutoff of {length(cutoff)}, {_BORDERS}"

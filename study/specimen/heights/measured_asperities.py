@@ -33,6 +33,13 @@ class Roughness:
     method, filter, resolution, notes : sentences; notes holds the doubts about this scan
     units : the unit of all lengths
     cutoff : None; or the cutoffs of a list, m, shape (C): all numbers are then arrays of this shape
+
+    Examples
+    --------
+    >>> from study import roughness, samples
+    >>> answer = roughness.measure(roughness.read(samples.scan()))
+    >>> print(f"{answer.Nbar / 1e12:.4f} 1/um^2, {answer.Ra * 1e6:.1f} um, {answer.sigma * 1e9:.1f} nm")
+    0.0732 1/um^2, 9.7 um, 41.9 nm
     """
 
     Nbar: Any
@@ -67,11 +74,20 @@ class Roughness:
         Returns
         -------
         str : a sentence
+
+        Examples
+        --------
+        >>> from study import roughness, samples
+        >>> answer = roughness.measure(roughness.read(samples.scan()))
+        >>> print(answer.about_cut().partition(";")[0])
+        cut = 3, since the law takes 3 to 5
         """
         free, low, high = -ndtri(1 / max(self.summits, 1.0)), *ends(CUT.interval)[:2]
-        bound = "" if low <= free <= high else f", which would be {max(free, 0):.3g}; the law takes {low:g} to {high:g}"
         number = f"{self.summits:.0f}" if self.summits < 1e6 else f"{self.summits:.3g}"
-        return f"cut = {self.cut:.3g}: 1 - Φ(cut) = 1/N, with N = {number} summits in the scan{bound}"
+        source = f"1 - Φ(cut) = 1/N with the N = {number} summits of the scan"
+        if low <= free <= high:
+            return f"cut = {self.cut:.3g}, from {source}"
+        return f"cut = {self.cut:.3g}, since the law takes {low:g} to {high:g}; {source} would give {max(free, 0):.3g}"
 
     def parameters(self, heights: str = "normal") -> dict[str, Any]:
         """The inputs of `study.solve`: Nbar, Ra and the micro law.
@@ -90,6 +106,13 @@ class Roughness:
         Raises
         ------
         ValueError : unknown heights
+
+        Examples
+        --------
+        >>> from study import roughness, samples
+        >>> answer = roughness.measure(roughness.read(samples.scan()))
+        >>> print(*answer.parameters(), answer.parameters()["micro"])
+        Nbar Ra sigma cut micro normal_heights
         """
         if heights not in LAWS:
             raise ValueError(f'heights = {heights!r}; allowed are "normal" and "equal"')
@@ -126,24 +149,24 @@ class Roughness:
             f"N̄ = {density(self.Nbar)} (Nbar = {counted_density(self.Nbar)}): one asperity in a square of "
             f"{length(self.Nbar**-0.5)}.",
             f"Ra = {length(self.Ra)}, the radius of an asperity. The ISO roughness Ra (mean height) is "
-            f"{length(self.iso_Ra)}: another quantity.",
+            f"{length(self.iso_Ra)}: a different quantity.",
             f"sigma = {length(self.sigma_summits)}, the standard deviation of the summits' heights, and cut = "
-            f'{self.cut:.3g}: with micro = "{LAWS["normal"]}" these are parameters().',
+            f'{self.cut:.3g}: parameters() gives these, for micro = "{LAWS["normal"]}".',
             f'Equal heights, parameters(heights="equal") with micro = "{LAWS["equal"]}", are for designed surfaces. '
-            f"{_neglected(self)} They can be pressed by {length(relief)} at most, 1/(3π N̄ Ra): "
-            f"the spread is {rounded(self.sigma_summits / relief)} times that.",
+            f"{_neglected(self)} They can be pressed down by {length(relief)} at most, 1/(3π N̄ Ra): "
+            f"the spread of the heights is {rounded(self.sigma_summits / relief)} times that.",
         ]
 
     def _table(self) -> list[str]:
         rows = zip(self.cutoff, self.Nbar, self.Ra, self.sigma_summits, self.cut, strict=True)
         return [
-            f"{len(self.cutoff)} cutoffs: what changes with them is what the scan leaves open.",
+            f"{len(self.cutoff)} cutoffs: the scan does not determine the numbers that change with them.",
             *(
                 f"cutoff {length(c)}: N̄ = {density(Nbar)}, Ra = {length(Ra)}, sigma = {length(sigma)}, cut = {cut:.3g}."
                 for c, Nbar, Ra, sigma, cut in rows
             ),
-            f'With micro = "{LAWS["normal"]}" these are parameters(). Equal heights, parameters(heights="equal") with '
-            f'micro = "{LAWS["equal"]}", are for designed surfaces. {_neglected(self)}',
+            f'parameters() gives these, for micro = "{LAWS["normal"]}". Equal heights, parameters(heights="equal") '
+            f'with micro = "{LAWS["equal"]}", are for designed surfaces. {_neglected(self)}',
         ]
 
 

@@ -41,8 +41,8 @@ def jump_doubts(z: np.ndarray) -> Iterator[str]:
     if z.ndim == 1:
         return
     for lines, map_, way_out in (
-        ("rows", z, 'rows="median" takes them off'),
-        ("columns", z.T, 'turn the map, z.T with dx and dy exchanged, and take them off with rows="median"'),
+        ("rows", z, 'rows="median" removes them'),
+        ("columns", z.T, 'turn the map, z.T with dx and dy exchanged, and remove them with rows="median"'),
     ):
         size = jumps(map_)
         if size is not None:
@@ -58,7 +58,7 @@ def form_doubts(z: np.ndarray, steps: tuple, form) -> Iterator[str]:
     if share > FORMED:
         yield (
             f"a quadratic has {100 * share:.0f} % of the variance of the heights: the form of a ball or a bow, or "
-            'waves as long as the scan, count as roughness; form="quadratic" or "sphere" takes them off'
+            'waves as long as the scan, count as roughness; form="quadratic" or "sphere" removes them'
         )
 
 
@@ -96,8 +96,8 @@ def doubts(
     skewness, alpha = third / float(np.nanstd(z)) ** 3, scan_peaks.bandwidth(scan_peaks.mean_moments(along))
     if asperities.counted is None and (abs(skewness) > SKEWED or alpha < 1.5):
         yield (
-            f"skewness {skewness:.2g}, α = {alpha:.3g}: a Gaussian surface has 0, and at least 1.5; "
-            'prefer method="summits"'
+            f"skewness {skewness:.2g}, α = {alpha:.3g}: a Gaussian surface has skewness 0 and α of "
+            'at least 1.5; prefer method="summits"'
         )
 
 
@@ -105,8 +105,8 @@ def _step_doubts(asperities: scan_peaks.Asperities, steps: tuple) -> Iterator[st
     spacing = asperities.density**-0.5 / max(steps)
     if spacing < RESOLVED:
         yield (
-            f"asperities are {rounded(spacing)} points apart, {RESOLVED} are needed to see them: N̄ and Ra are "
-            "those of the step or of noise; give a cutoff, or measure with a smaller step"
+            f"asperities are {rounded(spacing)} points apart, {RESOLVED} are needed to see them: N̄ and Ra "
+            "come from the step or from noise; give a cutoff, or measure with a smaller step"
         )
     if asperities.curvature * max(steps) > 1:
         yield (

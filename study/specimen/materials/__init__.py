@@ -54,7 +54,7 @@ def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
     near = [word for word in spelled if plain and plain in word] or difflib.get_close_matches(plain, spelled, n=3)
     meant = [f'"{name}"' for name in materials if name in {spelled[word].name for word in near}]
     hint = f"did you mean {' or '.join(meant[:6])}?" if meant else f"known: {', '.join(materials)}"
-    raise LookupError(f"{written(name)} is no material; {hint}")
+    raise LookupError(f"{written(name)} is not a material; {hint}")
 
 
 class Strength(NamedTuple):
@@ -90,6 +90,11 @@ def names() -> tuple[str, ...]:
     Returns
     -------
     tuple of str
+
+    Examples
+    --------
+    >>> names()[:2]
+    ('steel 52100', 'steel M50')
     """
     return tuple(_built_in())
 
@@ -100,6 +105,11 @@ def table() -> str:
     Returns
     -------
     str
+
+    Examples
+    --------
+    >>> print(table().splitlines()[1])
+    steel 52100         207 ± 3 GPa      0.29 ± 0.01      226.0 ± 3.6 GPa
     """
     rows = [("material", "E", "nu", "E/(1 - nu²)"), *(_numbers(entry) for entry in _built_in().values())]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

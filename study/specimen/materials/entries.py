@@ -56,6 +56,12 @@ class Material:
     source : of the values
     also : other names
     checked : whether both numbers were read in the source; if not, the source says which were not
+
+    Examples
+    --------
+    >>> steel = Material("my steel", E=210e9, nu=0.3, E_spread=5e9, nu_spread=0.01)
+    >>> print(f"{steel.reduced_modulus / 1e9:.1f} ± {steel.reduced_modulus_spread / 1e9:.1f} GPa")
+    230.8 ± 5.7 GPa
     """
 
     name: str
@@ -110,6 +116,17 @@ def read(path: str | os.PathLike) -> dict[str, Material]:
     ------
     OSError : the file cannot be read
     ValueError : it is no TOML, or a value is missing or not allowed: a line for each, with file, section, key, value
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> lines = ['["my steel"]', "E = 210e9", "nu = 0.3", "E_spread = 5e9", "nu_spread = 0.01"]
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder, "mine.toml")
+    ...     _ = file.write_text("\\n".join(lines))
+    ...     materials = read(file)
+    >>> materials["my steel"].nu
+    0.3
     """
     path = Path(path)
     try:
@@ -119,7 +136,7 @@ def read(path: str | os.PathLike) -> dict[str, Material]:
     except (NoFile, TooLarge) as error:
         raise ValueError(f"{path.name} {error}") from None
     except (ValueError, RecursionError) as error:
-        raise ValueError(f"{path.name} is no TOML file: {error}") from None
+        raise ValueError(f"{path.name} is not a TOML file: {error}") from None
     return of_sections(sections, path.name)
 
 
@@ -147,7 +164,7 @@ def _errors(section) -> list[str]:
     if not isinstance(section, dict):
         return [f"= {written(section)}: must be a section with the keys {', '.join(NUMBERS)}"]
     allowed = NUMBERS | OTHERS
-    errors = [f"{written(key)} is no key; known: {', '.join(allowed)}" for key in section if key not in allowed]
+    errors = [f"{written(key)} is not a key; known: {', '.join(allowed)}" for key in section if key not in allowed]
     errors += [f"{key} is missing: must be {words}" for key, words in NUMBERS.items() if key not in section]
     modulus = section.get("E")
     for key in allowed:

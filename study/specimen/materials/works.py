@@ -21,6 +21,11 @@ class Pair:
     condition : for which state the value holds
     source : of the value
     checked : whether the value was read in the source; if not, it is quoted from memory
+
+    Examples
+    --------
+    >>> pairs()[0].bodies, pairs()[0].text
+    (('PDMS', 'PDMS'), '44 ± 2 mJ/m^2')
     """
 
     bodies: tuple[str, str]
@@ -43,6 +48,11 @@ def pairs() -> tuple[Pair, ...]:
     Returns
     -------
     tuple of Pair
+
+    Examples
+    --------
+    >>> ("PDMS", "PDMS") in [pair.bodies for pair in pairs()]
+    True
     """
     rows = tomllib.loads(resources.files(__package__).joinpath("works.toml").read_text("utf-8"))["pair"]
     return tuple(Pair(**row | {"bodies": tuple(row["bodies"])}) for row in rows)

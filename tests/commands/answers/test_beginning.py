@@ -49,7 +49,7 @@ def test_no_file_is_written_over(capsys):
     assert Path("mine.toml").read_text(encoding="utf-8") == "x = 1\n"
     assert main(["new", "nowhere/mine"]) == 2 and main(["new", "mine2", "--from", "dlc_on_stel"]) == 2
     messages = capsys.readouterr().err.splitlines()
-    assert messages[0] == "mine.toml: exists, and is left as it is: choose another name"
+    assert messages[0] == "mine.toml: exists and is not overwritten: choose another name"
     assert messages[1] == "nowhere/mine.toml: there is no folder nowhere"
     assert messages[2].startswith("dlc_on_stel: not found") and "dlc_on_steel" in messages[2]
     assert list(Path().iterdir()) == [Path("mine.toml")]

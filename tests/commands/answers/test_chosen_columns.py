@@ -54,6 +54,11 @@ def test_one_contact_without_units(capsys):
     assert float(row[2]) == pytest.approx(bare, rel=6e-4) and row[3].strip() == "converged"
 
 
+def test_an_input_of_the_layer_has_no_column_of_the_bare_body(capsys):
+    heading, _ = table(capsys, *WORDS, "h=2 um", "P=1 N", "--columns", "h,P,a", "--units", "um,N", "--beside", "bare")
+    assert [cell.strip() for cell in heading] == ["h (um)", "P (N)", "a (um)", "a bare (um)"]
+
+
 def test_layers_of_a_stack_are_left_out(capsys):
     stack = ["layers.1.h=0.01", "layers.1.n=3", "layers.2.h=0.02", "layers.2.n=0.5", "P=1e-5", "micro=smooth"]
     assert float(table(capsys, *stack, "--beside", "bare", "--columns", "a")[1][1]) == pytest.approx(
@@ -64,10 +69,10 @@ def test_layers_of_a_stack_are_left_out(capsys):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ("--columns a,q", '--columns "q" is no column'),
+        ("--columns a,q", '--columns "q" is not a column'),
         ("--columns p_mx", 'did you mean "p_max"?'),
         ("--columns p", "--columns p is a profile along x"),
-        ("--units um", '--units "um" is the unit of no column'),
+        ("--units um", "--units um: no column has a unit: leave it out"),
         ("--units um --json", "--units makes a table of numbers: leave out --json"),
         ("--beside bare --stresses a.png", "leave out --stresses"),
         ("base=half_space --beside bare", "--beside bare: there is no layer to leave out"),
@@ -76,6 +81,16 @@ def test_layers_of_a_stack_are_left_out(capsys):
 def test_what_is_refused(words, message, capsys):
     assert main(["point", *SOFT, *words.split()]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_a_unit_that_no_column_has_changes_nothing(capsys):
+    """So that one list of units serves all tables; a word that is not a unit is refused."""
+    contact = [*WORDS, "h=2 um", "P=1 N", "--columns", "a"]
+    assert table(capsys, *contact, "--units", "um,MPa") == table(capsys, *contact, "--units", "um")
+    assert main(["point", *contact, "--units", "um,MPaa"]) == 2
+    assert capsys.readouterr().err == (
+        '--units "MPaa" is not a unit of any quantity of a contact, such as um, N or MPa\n'
+    )
 
 
 def test_words_of_a_list_differ(capsys):

@@ -35,7 +35,7 @@ def test_a_law_on_a_coated_body_says_which(scan, capsys):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["method=summits"], "is nothing that `scan` takes"),
+        (["method=summits"], "`scan` does not take"),
         (["refine=x"], "whole number"),
         (["h=2 um"], "law: on: E1 is missing"),
     ],

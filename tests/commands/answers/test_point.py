@@ -87,13 +87,16 @@ def test_materials_by_name_bring_their_spreads(capsys):
         (["P"], ['"P": must be NAME=VALUE, such as R="5 mm"']),
         (["P=", "=3"], ['"P=": must be NAME=VALUE, such as R="5 mm"', '"=3": must be NAME=VALUE, such as R="5 mm"']),
         (["P=1e-5", "P=2e-5"], ["P is given twice"]),
-        (["P=1e-5", "x=5"], ["x says nothing of one contact: leave it out"]),
+        (["P=1e-5", "x=5"], ["x does not apply to one contact: leave it out"]),
         *(
-            (["P=1e-5", f"{name}=3"], [f"{name} says nothing of one contact: leave it out"])
+            (["P=1e-5", f"{name}=3"], [f"{name} does not apply to one contact: leave it out"])
             for name in ("profiles", "cases", "title", "workers")
         ),
         (["body=steel 52100", "E2=210 GPa"], ["body and E2 are both given: E2 follows from body"]),
-        (["layer=DLC"], ['layer: "DLC" is no material; did you mean "DLC ta-C" or "DLC a-C:H"? (or give E1 and nu1)']),
+        (
+            ["layer=DLC"],
+            ['layer: "DLC" is not a material; did you mean "DLC ta-C" or "DLC a-C:H"? (or give E1 and nu1)'],
+        ),
         (
             ["P=1e-5", "h=0.02", "n=0.5", "accuracy=5%", "micro=smooth", "R=2 mm", "E2=5 GPa"],
             ['P = 1e-05 has no unit: must be a force, such as "2 N" (accuracy = "5%" makes this a study with units)'],
@@ -161,7 +164,7 @@ def test_a_picture_that_cannot_be_drawn_is_told_before_anything_is_solved(capsys
     assert main(["point", "--stresses", "ball.doc", *words(**BALL, P="10 N")]) == 2
     assert "--stresses ball.doc: must end with one of .png, .pdf, .svg" in capsys.readouterr().err
     assert main(["point", "--stresses", "ball.png", *words(**BALL, P="10 N, 20 N")]) == 2
-    assert "--stresses ball.png: the picture is of one contact, and there is a list" in capsys.readouterr().err
+    assert "--stresses ball.png: the picture shows one contact, and the call has a list" in capsys.readouterr().err
     stamp = ["shape=flat", "flat_radius=0.1", "P=1e-5", "base=half_space", "micro=smooth"]
     assert main(["point", "--stresses", "stamp.png", *stamp]) == 2
     said = capsys.readouterr()

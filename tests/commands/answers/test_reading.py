@@ -47,9 +47,9 @@ def test_a_page_is_shown_by_whatever_name_a_message_has(name, capsys):
 
 
 def test_pages_that_are_none(capsys):
-    assert said(capsys, "docs", "modle", code=2) == 'docs "modle" is no page; did you mean model?\n'
+    assert said(capsys, "docs", "modle", code=2) == 'docs "modle" is not a page; did you mean model?\n'
     message = said(capsys, "docs", "../README.md", code=2)
-    assert message.startswith('docs "../README.md" is no page; there are accuracy, adhesion, afm, cite, cluster, ')
+    assert message.startswith('docs "../README.md" is not a page; there are accuracy, adhesion, afm, cite, cluster, ')
 
 
 def test_each_page_that_a_text_of_ours_names_can_be_opened_and_has_the_heading():

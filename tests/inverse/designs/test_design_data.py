@@ -38,7 +38,7 @@ def test_a_design_is_a_dataset_of_contacts(tmp_path):
 
 
 def test_solutions_outside_the_model_are_told():
-    with pytest.warns(UserWarning, match="a contact found is beyond what the model describes"):
+    with pytest.warns(UserWarning, match="a contact of the answer is beyond what the model describes"):
         designed = study.design({"Ar_An": 0.1}, by={"Nbar": ("1e3 1/mm^2", "1e8 1/mm^2")}, P="1 N", h="100 um",
                                 **{key: value for key, value in LINING.items() if key != "Nbar"})  # fmt: skip
     words = study.decode(designed.validity).item()
@@ -61,7 +61,7 @@ def test_an_interrupt_keeps_what_was_searched(monkeypatch):
     words = study.decode(designed.design_status).values.tolist()
     assert words == ["found", "found", "not_run", "not_run", "not_run"]
     assert_allclose(designed.p0.values[:2], 0.008, rtol=1e-6)
-    assert designed.message.values[3] == "not searched: interrupted before"
+    assert designed.message.values[3] == "not searched, because the call was interrupted"
 
 
 def test_an_interrupt_before_anything_is_found_ends_it(monkeypatch):

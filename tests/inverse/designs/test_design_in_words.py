@@ -98,7 +98,7 @@ def test_which_word_is_the_target(words, target, by, rest):
     [
         (
             ["p_max=180 MPa", "h=1 um"],
-            'the input that is looked for has two bounds, such as h="1 um .. 1 mm"; here: none',
+            'exactly one input must have two bounds, such as h="1 um .. 1 mm"; here: none',
         ),
         (["p_max=180 MPa", "h=1 um .. 1 mm", "P=1 N .. 2 N"], "here: h, P"),
         (["p_max=180 MPa", "h=1 mm .. 1 um", "P=1 N"], "the first bound must be below the second"),

@@ -52,7 +52,7 @@ def test_a_thickness_and_what_is_not_reached():
     "value, inputs, message",
     [
         ("15 nN", GEL, "must be < 0, a pull"),
-        ("-15 nN", {**GEL, "w_adhesion": None}, "nothing sticks: give w_adhesion"),
+        ("-15 nN", {**GEL, "w_adhesion": None}, "without w_adhesion the surfaces do not adhere: give it"),
     ],
 )
 def test_what_no_punch_does(value, inputs, message):

@@ -65,7 +65,7 @@ def test_several_curves_and_one_without_contact(folder, capsys):
     code, text, _ = run(capsys, "two.csv", *CALL, "free=E1", "--json")
     assert code == 1 and [curve["curve"] for curve in json.loads(text)] == ["left", "right"]
     code, words, _ = run(capsys, "noise.csv", *CALL, "free=E1")
-    assert code == 1 and "there is no contact in it" in words
+    assert code == 1 and "it contains no contact" in words
     code, text, _ = run(capsys, "noise.csv", *CALL, "free=E1", "--json")
     assert code == 1 and json.loads(text)["E1"]["value"] is None
 
@@ -79,7 +79,7 @@ def test_several_curves_and_one_without_contact(folder, capsys):
         (["curve.csv", *CALL, "free=E1", "plan=true"], "plan is an option of study.fit in Python alone"),
         (["curve.csv", *CALL, "free=E1", "progress=true"], "progress is an option of study.fit in Python alone"),
         ([*CALL, "free=E1"], "the file of the curve comes first"),
-        (["curve.csv", *CALL], "name what is fitted, such as free=E1"),
+        (["curve.csv", *CALL], "name the inputs to fit, such as free=E1"),
         (["curve.csv", *CALL, "free=E1", "free=h"], "free is given twice"),
         (["curve.csv", *CALL, "E1=1 MPa .. 1 kPa"], "E1 = (1 MPa, 1 kPa)"),
         (["curve.csv", *CALL, "free=E1,nu1"], "E1 and nu1: a curve cannot tell them apart"),

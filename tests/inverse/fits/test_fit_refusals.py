@@ -15,10 +15,10 @@ WRONG = [
     ({"free": None}, ["free = None", "must be names of inputs"]),
     ({"free": 5}, ["free = 5", "must be names of inputs"]),
     ({"free": ["E1", "E1"]}, ["E1 stands twice"]),
-    ({"free": ["E3"]}, ['"E3" is no input that can be fitted']),
-    ({"free": ["D0"]}, ['"D0" is no input that can be fitted']),
-    ({"free": ["rtol"]}, ['"rtol" is no input that can be fitted']),
-    ({"free": ["P"]}, ['"P" is no input that can be fitted']),
+    ({"free": ["E3"]}, ['"E3" is not an input that can be fitted']),
+    ({"free": ["D0"]}, ['"D0" is not an input that can be fitted']),
+    ({"free": ["rtol"]}, ['"rtol" is not an input that can be fitted']),
+    ({"free": ["P"]}, ['"P" is not an input that can be fitted']),
     ({"free": ["E_punch"]}, ["E_punch has no value", 'free={"E_punch": (low, high)}']),
     ({"free": {"E1": ("1 MPa", "1 kPa")}}, ["E1 = (1 MPa, 1 kPa)", "below the high one"]),
     ({"free": {"E1": ("1 kPa", "1 kPa")}}, ["E1 = (1 kPa, 1 kPa)", "below the high one"]),
@@ -94,7 +94,7 @@ def test_a_roughness_with_a_prior_beside_a_free_one():
 
 def test_without_units():
     """Curves have units, so the contact has some too."""
-    with pytest.raises(study.StudyError, match='"n" is no input that can be fitted'):
+    with pytest.raises(study.StudyError, match='"n" is not an input that can be fitted'):
         study.fit(CURVE, free=["n"], h=0.1, nu1=0.4, bonding="bonded", micro="smooth")
     with pytest.raises(study.StudyError, match=r"h = 0\.1 has no unit(.|\n)*R is missing(.|\n)*E2 is missing"):
         study.fit(CURVE, free={"nu1": (0.1, 0.4)}, h=0.1, n=0.1, bonding="bonded", micro="smooth")

@@ -51,7 +51,7 @@ def test_each_bad_curve_has_its_status_and_nothing_is_raised_or_warned_of():
 def test_a_contact_that_keeps_to_the_assumptions_is_said_to():
     depths = np.linspace(-0.2, 1.0, 60) * 1e-7
     text = str(study.summary(fit(depths, gel(depths=depths)[0])))
-    assert "At the deepest point none of the assumptions that are checked is violated" in text
+    assert "At the deepest point none of the checked assumptions is violated" in text
     assert text.count("\n\n") == 2, "below what was given, and below the heading"
 
 

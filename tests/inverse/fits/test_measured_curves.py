@@ -51,7 +51,7 @@ def test_several_curves_in_a_file_keep_their_names(tmp_path):
 WRONG = {
     "D,P\n1,2\n": ("D has no unit", "P has no unit"),
     "D [N],P [nN]\n1,2\n": ("D", "is a force: must be a length"),
-    "depth [nm],P [nN]\n1,2\n": ('"depth" is no column of curves', "call it D (depth), P (load)", "leave it out"),
+    "depth [nm],P [nN]\n1,2\n": ('"depth" is not a column of curves', "call it D (depth), P (load)", "leave it out"),
     "D [nm],D [nm],P [nN]\n1,2,3\n": ("D twice",),
     "D [nm],P [nN]\n": ("no row",),
     "D [nm]\n1\n": ("two columns are needed",),

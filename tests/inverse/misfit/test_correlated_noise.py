@@ -73,7 +73,11 @@ def test_what_does_not_agree_is_said():
     fitted = study.fit(cell(), free=["E2"], **FISH)
     text = str(study.summary(fitted))
     assert fitted.misfit_larger and fitted.misfit_ratio == pytest.approx(3.1, abs=0.2) and fitted.changes
-    for words in ("The residuals hang together: 500 points", "as far from the fit as before it", "E2 changes with the"):
+    for words in (
+        "The residuals are correlated: 500 points",
+        "as far from the fit as before it",
+        "E2 changes with the",
+    ):
         assert words in text
     assert "E2 by quarters of the depth, the shallowest first: 8" in text and fitted.E2_over_depth.shape == (1, 4)
     parts = fitted.E2_over_depth.values[0]
@@ -93,7 +97,7 @@ def test_a_film_measured_with_drift_has_no_clean_bill():
         data = {"a": (a, "m"), "dP_dD": (stiffness * noise * (1 + drift * a / a.max()), "N/m")}
         fitted = study.fit(data, **film, micro="smooth", free=["E1"], x="a", y="dP_dD", progress=False)
         texts.append(str(study.summary(fitted)))
-    assert "none of the assumptions" in texts[0] and "hang together" not in texts[0]
+    assert "none of the checked assumptions" in texts[0] and "are correlated" not in texts[0]
     assert "none of the assumptions" not in texts[1] and "E1 changes with the depth" in texts[1]
 
 
@@ -175,5 +179,5 @@ def test_a_curve_that_contradicts_a_prior_says_so():
     for prior in ("3 ± 0.1 kPa", "5 ± 0.1 kPa"):
         fitted = study.fit(data, free=["E2"], E2=prior, intervals=None, **BARE)
         texts.append(str(study.summary(fitted)))
-    assert "standard deviations from what the call says of it" in texts[0] and "what the call says" not in texts[1]
+    assert "standard deviations from its value in the call" in texts[0] and "its value in the call" not in texts[1]
     assert abs(fitted.E2_from_prior.item()) < 1

@@ -20,7 +20,11 @@ def test_the_loading_of_steel_is_no_elastic_contact(tip):
     fitted = study.fit(MEASURED / "steel_loading.csv", free=["E2"], **tip, **CALL)
     text = str(study.summary(fitted))
     assert fitted.flows and int(fitted.validity.item()) & 512 and fitted.D_valid.item() == -np.inf
-    assert "This is no modulus" in text and "beginning of the unloading" in text and "none of the assump" not in text
+    assert (
+        "This is not a modulus" in text
+        and "beginning of the unloading" in text
+        and "none of the checked assump" not in text
+    )
 
 
 def test_a_gel_below_a_sharp_tip_is_elastic():
@@ -35,4 +39,4 @@ def test_an_unloading_is_contact_throughout():
     P = 10 * ((D - 225) / 25) ** 1.35 + 0.005 * np.random.default_rng(0).standard_normal(len(D))
     fitted = study.fit({"D": (D, "nm"), "P": (P, "mN")}, free=["E2"], shape="berkovich", **CALL)
     text = str(study.summary(fitted))
-    assert "in contact throughout, such as an unloading is" in text and "there is no contact in it" not in text
+    assert "in contact throughout, as an unloading curve is" in text and "it contains no contact" not in text

@@ -20,8 +20,8 @@ def refused(path) -> str:
 def test_no_pipe_is_waited_for_and_no_device_read(tmp_path):
     for name in ("a.csv", "a.txt", "a.h5"):
         os.mkfifo(tmp_path / name)
-        assert refused(tmp_path / name).endswith(f"{name}: is no file but a pipe or device")
-    assert refused("/dev/zero") == "/dev/zero: is no file but a pipe or device"
+        assert refused(tmp_path / name).endswith(f"{name}: is not a file but a pipe or device")
+    assert refused("/dev/zero") == "/dev/zero: is not a file but a pipe or device"
 
 
 def test_a_file_that_is_too_large(tmp_path, monkeypatch):

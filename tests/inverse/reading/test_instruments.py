@@ -136,7 +136,7 @@ def test_another_cantilever_than_the_file_has(tmp_path, make):
 
 def test_a_sensitivity_that_the_file_does_not_have(tmp_path):
     path = hdf5(tmp_path / "a.h5")
-    assert refused(path, sensitivity="40 nm/V").endswith("with which sensitivity its force was made")
+    assert refused(path, sensitivity="40 nm/V").endswith("state the sensitivity that its force was computed with")
 
 
 def test_files_that_do_not_have_the_cantilever(tmp_path):

@@ -53,7 +53,7 @@ def test_a_radius_may_have_a_spread_and_a_result_is_a_contact_again(write):
 def test_what_is_refused(write):
     with pytest.raises(StudyError, match=r"A is a length: give the other inputs with units too"):
         study.solve(P=1e-5, base="half_space", micro=write("A [m]", 1.0))
-    with pytest.raises(StudyError, match=r"column A: \[GPa\] is no unit of length"):
+    with pytest.raises(StudyError, match=r"column A: \[GPa\] is not a unit of length"):
         study.solve(**CASE, R="5 mm", micro=write("A [GPa]", 1.0))
     with pytest.raises(StudyError, match="has been changed"):
         study.solve(**CASE, R="5 mm", micro=write("A [m]", 1.0, '# scan: {"error": -1, "body": null}'))

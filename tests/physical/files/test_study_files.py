@@ -182,8 +182,8 @@ def test_slips_of_a_prefix_and_wide_spreads_are_doubted(tmp_path, capsys):
     assert main(["check", str(path)]) == 0
     doubts = [
         "mine: beware: E1 = 2e+05 GPa: materials have 1 Pa to 2 TPa; is its unit right?",
-        "mine: beware: h = 2.0 ± 3.0 µm: too wide a spread for the ± of results, which is to first order",
-        "mine: beware: nu1 = 0.450 ± 0.060: too wide a spread for the ± of results, which is to first order",
+        "mine: beware: h = 2.0 ± 3.0 µm: this spread is too wide for the ± of the results, which is of first order.",
+        "mine: beware: nu1 = 0.450 ± 0.060: this spread is too wide for the ± of the results, which is of first order.",
     ]
     assert capsys.readouterr().out.splitlines()[2:] == doubts
     assert main(["run", str(path), "--dry-run"]) == 0
@@ -227,7 +227,11 @@ def test_a_run_says_what_the_model_does_not_describe(tmp_path, monkeypatch, caps
         ("[output]", f"{DRAWN}body = {{start = 0, stop = 2}}\n[output]", r"body = .*: must be a list to choose from"),
         ("[output]", f"{DRAWN}Ra = ['2 um', 2]\n[output]", r"Ra\[1\] = 2 has no unit: must be a length"),
         ("[output]", f"{DRAWN}Ra = ['2 um', '2 GPa']\n[output]", r'Ra\[1\] = "2 GPa" is a pressure'),
-        ("[output]", f"{DRAWN}layer = ['PTFE', 'PTFF']\n[output]", 'layer: "PTFF" is no material; did you mean "PTFE"'),
+        (
+            "[output]",
+            f"{DRAWN}layer = ['PTFE', 'PTFF']\n[output]",
+            'layer: "PTFF" is not a material; did you mean "PTFE"',
+        ),
         ("[output]", f"{DRAWN}base = ['layered', 'none']\n[output]", r'base\[1\] = "none": must be one of'),
         ("[output]", f"{DRAWN}nu2 = [0.3, '0.3 m']\n[output]", r'nu2\[1\] = "0.3 m" is a length: must be a number'),
         ("[output]", f"{DRAWN}nu9 = [0.1]\n[output]", r'\[sample\] "nu9" is not a parameter'),

@@ -52,7 +52,8 @@ def test_the_error_comes_with_its_size(pitch):
 def test_far_below_and_beyond_what_was_measured():
     (near,) = said(at(0.5))
     assert near.endswith(
-        " Here the pitch 1/sqrt(Nbar) is 0.5 h: up to h nothing of it was seen in the test cases of docs/validate.md."
+        " Here the pitch 1/sqrt(Nbar) is 0.5 h: up to a pitch of h the test cases of docs/validate.md show no such "
+        "error."
     )
     for sentence in said(at(24.0)):
         assert "is 24 h, more than in the test cases" in sentence and "at 16 h missed A[p] by about 89 %" in sentence
@@ -91,7 +92,7 @@ def test_the_depth_of_an_elastic_punch_is_said_to_be_of_both():
 
 
 def test_whose_asperities():
-    words = "The asperities are the punch's; a rough surface under a polished punch is the same contact"
+    words = "The asperities belong to the punch. A rough surface under a polished punch is the same contact"
     for layer in ({"base": "half_space"}, {"h": 0.02, "n": 0.5}, {"h": 0.02, "n": 0.5, "base": "thin_layer"}):
         rough = study.summary(study.solve(P=1e-5, **layer, Nbar=250000, Ra=0.004, x=2))
         assert re.search(rf"\nModel: .*\. {words}", rough)

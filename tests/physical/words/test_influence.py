@@ -29,9 +29,8 @@ def test_the_share_is_that_of_the_variance_and_h_does_what_is_said(more, name, s
     found = quiet(**FILM | more)
     alone = quiet(**FILM | more | {"h": "100 um", "P": "5 N"})  # the spread of E1 by itself
     share = float((alone[f"{name}_spread"] / found[f"{name}_spread"]) ** 2)
-    form = (
-        rf"Spreads: E1 makes (\d+) % of the variance of {symbol}; {symbol} is 1 % larger where h is ([\d.]+) % (\w+)\."
-    )
+    form = rf"Spreads: E1 contributes (\d+) % of the variance of {symbol}; "
+    form += rf"a ([\d.]+) % (\w+) h makes {symbol} 1 % larger\."
     percent, change, way = re.fullmatch(form, sentence(found)).groups()
     assert int(percent) == round(100 * share)
     factor = 1 + (1 if way == "larger" else -1) * float(change) / 100
@@ -44,13 +43,17 @@ def test_where_nothing_is_said():
     assert sentence(quiet(**FILM | exact, micro="smooth")) == ""
     assert sentence(quiet(**FILM, micro="smooth").drop_vars("micro").assign_coords(micro="of_another")) == ""
     correlated = quiet(**FILM, micro="smooth", correlations={("E1", "h"): 0.5})
-    assert "variance" not in sentence(correlated) and "where h is" in sentence(correlated)
+    assert "variance" not in sentence(correlated) and "h makes" in sentence(correlated)
     assert correlated.attrs["correlations"] == "E1 and h: 0.5"
 
 
 def test_an_input_that_makes_nearly_all_and_a_layer_that_hardly_acts():
+    """The change is that of a contact solved again on a layer that is 10 % thicker."""
     thick = quiet(**FILM | {"h": "10.0 ± 0.1 mm", "P": "5 N"}, micro="smooth")
-    assert sentence(thick) == "Spreads: E1 makes nearly all of the variance of p(0); h hardly changes p(0)."
+    thicker = quiet(**FILM | {"h": "11 mm", "P": "5 N"}, micro="smooth")
+    form = r"Spreads: E1 contributes nearly all of the variance of p\(0\); 10 % of h changes p\(0\) by (\S+) %\."
+    change = float(re.fullmatch(form, sentence(thick))[1])
+    assert change == pytest.approx(100 * abs(thicker.p0.item() / thick.p0.item() - 1), rel=0.15), "to first order"
     assert np.isfinite(thick.p0_spread)
 
 
@@ -62,5 +65,5 @@ def test_a_spread_that_no_digit_shows_has_no_parts():
     assert 0 < contact.p0_spread < 1e-8 * contact.p0
     assert sentence(contact) == (
         "Spreads: the ± of the inputs changes p(0) by less than a part in ten million; "
-        "p(0) is 1 % larger where h is 10 % smaller."
+        "a 10 % smaller h makes p(0) 1 % larger."
     )

@@ -54,7 +54,7 @@ def test_a_form_that_is_left_is_said(name):
         curved = form - np.polynomial.polynomial.polyfit(x, form.mean(0), 1)[0] if given == "mean" else form
         share = np.var(curved) / np.var(z + curved)
         assert_allclose(float(note.split()[3]) / 100, share, atol=0.05)  # the tilt of the form is 0
-        assert 'form="quadratic" or "sphere" takes them off' in note
+        assert 'form="quadratic" or "sphere" removes them' in note
     assert not said(flat, step, form="quadratic")
     assert bool(said(flat, step, form="sphere")) == (name not in ("ball", "cup"))
     middle = flat[:, 128] if name == "cylinder along x" else flat[128]

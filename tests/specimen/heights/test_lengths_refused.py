@@ -43,7 +43,7 @@ def test_what_the_form_leaves_may_be_too_flat():
     z = 2e-16 * Z + 1e-9 * TILT
     scan = roughness.height_map(z, dx=1e-7, name="tilted.csv")
     with pytest.raises(
-        ValueError, match=r"^tilted.csv: the heights spread by (2|1.99)e-16 m \(rms, plane taken off\); .*huge"
+        ValueError, match=r"^tilted.csv: the heights spread by (2|1.99)e-16 m \(rms, plane removed\); .*huge"
     ):
         roughness.measure(scan)
     assert roughness.measure(scan, form="mean").notes
@@ -73,7 +73,7 @@ def test_lengths_just_within_the_limits_are_taken():
 
 def test_a_tilt_alone_is_nothing_and_no_matter_of_size():
     scan = roughness.height_map(1e-9 * TILT, dx=1e-7, name="flat.csv")
-    with pytest.raises(ValueError, match="^flat.csv: nothing is left of the heights: plane taken off"):
+    with pytest.raises(ValueError, match="^flat.csv: nothing is left of the heights: plane removed"):
         roughness.measure(scan)
 
 

@@ -141,7 +141,7 @@ def test_a_low_pass_over_gaps_as_wide_as_asperities(share):
         )
         assert moments(means)[0] > (1.1 if share < 0.1 else 1.6) * known[0]
         answer = skipped(holes, cutoff=cutoff)
-        np.testing.assert_allclose(answer.Nbar, known[0], rtol=0.02, atol=0)  # with the plane taken off
+        np.testing.assert_allclose(answer.Nbar, known[0], rtol=0.02, atol=0)  # with the plane removed
 
 
 def test_errors_of_filled_points():

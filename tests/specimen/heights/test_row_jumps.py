@@ -68,11 +68,11 @@ def test_jumps_are_named_with_their_size_and_taken_off(size, seed):
     assert not nothing and after.Nbar > 1.3 * before.Nbar
     stated = float(note.split("by some ")[1].split(" nm")[0])
     assert_allclose(stated, size, rtol=0.25)  # of 128 offsets
-    assert note.startswith("the rows jump") and 'rows="median" takes them off' in note
+    assert note.startswith("the rows jump") and 'rows="median" removes them' in note
     assert not any("long, not round" in one for one in after.notes)
     mended, quiet = said(jumped, rows="median")
     assert not quiet and mended.filter.startswith(
-        "the median of the differences of neighbouring rows taken off; plane taken off"
+        "the median of the differences of neighbouring rows removed; plane removed"
     )
     # of the surface itself goes what all points of a row have in common; the median of each row would make N̄ 1.6
     assert_allclose([mended.Nbar, mended.Ra], [before.Nbar, before.Ra], rtol=0.1)

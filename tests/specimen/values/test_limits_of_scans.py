@@ -56,7 +56,7 @@ def test_the_place_that_stands_twice_or_is_missing_is_named(tmp_path, row, colum
 @pytest.mark.parametrize("row", [2, 5, 19])
 def test_the_line_that_is_no_row_is_named(tmp_path, heading, row):
     """Its number in the file, with the heading and empty lines."""
-    for wrong, words in (("1 2 3", "3 number(s) after lines of 2"), ("5 x", "'5 x' has something else than numbers")):
+    for wrong, words in (("1 2 3", "3 number(s) after lines of 2"), ("5 x", "'5 x' has something other than numbers")):
         lines = [*heading, *(f"{i} {z}" for i, z in enumerate(Z[0, :20]))]
         lines[len(heading) + row] = wrong
         (tmp_path / "a.txt").write_text("\n".join(lines), encoding="utf-8")

@@ -60,5 +60,5 @@ def test_a_pipe_is_not_waited_for(tmp_path, name):
     os.mkfifo(tmp_path / name)
     (tmp_path / f"endless-{name}").symlink_to("/dev/zero")
     for each in (name, f"endless-{name}"):
-        with pytest.raises(ValueError, match=f"^{each}: is no file but a pipe or device"):
+        with pytest.raises(ValueError, match=f"^{each}: is not a file but a pipe or device"):
             roughness.read(tmp_path / each, unit="um", dx=1)

@@ -89,7 +89,7 @@ def test_what_a_netcdf_file_does_not_state_is_asked_for(tmp_path, z):
         ({}, {"dy": 0.5}, "give dx beside dy, both in the place of what the file states"),
         ({}, {"columns": (0,)}, "leave out columns"),
         ({}, {"channel": "height"}, "channel = 'height', but the file has 'heights'"),
-        ({"height": "V"}, {}, "heights is in 'V', which is no unit of length"),
+        ({"height": "V"}, {}, "heights is in 'V', which is not a unit of length"),
         ({"lateral": ("mm", "um")}, {}, "x is in um, y in mm: write both in one unit"),
     ],
 )
@@ -264,7 +264,7 @@ def test_a_file_of_labels_and_an_image(tmp_path, z):
         h5["aa_labels"], h5["image"] = (z.T > 1).astype(int) + (z.T > 2), z.T
     with pytest.raises(ValueError, match=r"has the data sets 'aa_labels', 'image': choose the heights with channel="):
         roughness.read(file, **lengths)
-    with pytest.raises(ValueError, match=r"channel 'aa_labels' of .* has labels, which are no heights"):
+    with pytest.raises(ValueError, match=r"channel 'aa_labels' of .* has labels, which are not heights"):
         roughness.read(file, **lengths, channel="aa_labels")
     assert_allclose(roughness.read(file, **lengths, channel="image").z, z * UM, rtol=1e-12)
 

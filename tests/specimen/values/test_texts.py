@@ -46,9 +46,9 @@ def test_texts_do_not_depend_on_the_decimals_of_the_caller(context):
 )
 def test_a_spread_is_not_negative(sign, spread):
     """The minus sign was dropped without a word."""
-    with pytest.raises(ValueError, match="^E1 = .*: behind ± must be a number"):
+    with pytest.raises(ValueError, match="^E1 = .*: ± must be followed by a number"):
         quantity("E1", f"200 GPa {sign} {spread}", "Pa")
-    with pytest.raises(ValueError, match="behind ± must be a number"):
+    with pytest.raises(ValueError, match="± must be followed by a number"):
         quantity("E1", f"200 {sign} {spread}", "Pa")
 
 
@@ -93,5 +93,5 @@ def test_long_names_of_units(text, unit, value):
 def test_capitals_of_units(text, unit, near):
     with pytest.raises(ValueError, match=rf'\(did you mean "{near}"\?\).*must be a '):
         quantity("x", text, unit)
-    with pytest.raises(ValueError, match="no unit is called like this; must be"):
+    with pytest.raises(ValueError, match="no unit has this name; must be"):
         quantity("x", "12 furrlong", unit)

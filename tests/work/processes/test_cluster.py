@@ -72,7 +72,7 @@ def test_a_killed_scheduler_costs_nothing_that_is_on_disk(cluster, tmp_path, und
     joined(process)
     code, errors = answers.get(timeout=PATIENCE)
     assert code == 1
-    said = "line.toml: the scheduler is gone; finished blocks are kept, the same command goes on from there\n"
+    said = "line.toml: the scheduler is gone; finished blocks are kept, and the same command continues from there\n"
     assert errors.endswith(said)
     assert cases_on_disk(opened) == set(range(3 * BLOCK))
     assert_ends_well(opened, undisturbed, CASES - 3 * BLOCK)

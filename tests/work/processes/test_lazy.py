@@ -85,7 +85,7 @@ def test_processes_solve_them_and_a_law_of_ones_own_goes_with_its_chunk():
         ("8 MB", 'chunks = "8 MB": must be a dictionary'),
         ((1, 2), "chunks = (1, 2): must be a dictionary"),
         (True, "chunks = True: must be a dictionary"),
-        ({"x": 3}, 'chunks: "x" is no dimension of the grid (P)'),
+        ({"x": 3}, 'chunks: "x" is not a dimension of the grid (P)'),
         ({"P": 0}, "chunks: P = 0: must be a whole number, 1 or more, -1 for all, or a tuple"),
         ({"P": "all"}, 'chunks: P = "all": must be a whole number'),
         (

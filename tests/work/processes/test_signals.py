@@ -37,7 +37,7 @@ def test_the_first_ends_in_good_order_without_waiting_for_the_block_in_work(open
     process.join(PATIENCE)
     assert process.exitcode == 130
     said = (tmp_path / "errors").read_text()
-    assert said.endswith("\ninterrupted; finished blocks are kept, the same command goes on from there\n")
+    assert said.endswith("\ninterrupted; finished blocks are kept, and the same command continues from there\n")
     assert "Traceback" not in said
     assert not list(tmp_path.rglob("*.tmp")) and present(opened) == 15
     assert opened.run().computed == 45
@@ -68,7 +68,7 @@ def test_a_signal_that_the_parent_ignores_is_ignored(opened, tmp_path, number):
     assert opened.status()["state"] == "done"
 
 
-INTERRUPTED = "\ninterrupted; finished blocks are kept, the same command goes on from there\n"
+INTERRUPTED = "\ninterrupted; finished blocks are kept, and the same command continues from there\n"
 
 
 class Destroyed:

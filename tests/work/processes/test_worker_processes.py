@@ -163,7 +163,9 @@ def test_an_interrupt_of_all_processes_is_the_runs_alone(opened, moment):
     code, errors = ended(process, opened)
     assert code == 130
     text = errors.removeprefix("\n")  # of a line of progress, if there was one
-    assert text in ("", "interrupted; finished blocks are kept, the same command goes on from there\n"), "or it began"
+    assert text in ("", "interrupted; finished blocks are kept, and the same command continues from there\n"), (
+        "or it began"
+    )
     wait_for(lambda: not workers_of(process))
     assert_ends_well(opened, BEFORE if moment == "at work" else present(opened))
 

@@ -106,7 +106,8 @@ def _scales(R: Any, E2_star: Any) -> dict[str, float]:
 def physical_attributes(entry: Entry, attributes: dict) -> dict:
     """The attributes of a dimensionless variable when its numbers are in SI units; `entry` : its row."""
     kept = {key: text for key, text in attributes.items() if key != "scale"}
-    return kept | {"long_name": entry.long_name, "units": entry.unit}
+    words = entry.long_name if entry.symbol else attributes.get("long_name", entry.long_name)  # that of stacks differs
+    return kept | {"long_name": words, "units": entry.unit}
 
 
 def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:

@@ -6,13 +6,15 @@ from typing import Any
 import numpy as np
 
 from solver.bases import may_be_layered
+from solver.layers import numbers_of
 
 from ..specimen.foreign import plain
 from ..terminal import counted, shown
 from .grid import Grid, along
 from .punch.asperities import many_bodies
+from .punch.stresses import LAYER_NUMBER, dimension
 from .request import MOST_MESSAGES
-from .vocabulary import finite, names
+from .vocabulary import FIRST_MATERIAL, finite, names
 
 POINTS = 33  # of a profile, unless the study says it
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a mistake, so `run` wants --yes
@@ -84,17 +86,36 @@ class Definition:
     @property
     def numbers(self) -> int:
         """How many numbers the blocks hold, roughly. The results hold as many, and as many spreads."""
-        per_case = PER_CASE + len(self.stresses) + len(self.x) * len(self.profiles)
+        stresses = sum(int(np.prod(self.shape_of(name))) for name in self.stresses)
+        per_case = PER_CASE + stresses + len(self.x) * len(self.profiles)
         return self.grid.size * per_case * (1 + len(self.inputs))
+
+    @property
+    def layers(self) -> int:
+        """The number of layers over which stresses are stored; 0 of no stack, or of no stresses."""
+        return numbers_of(self.grid.values) if self.stresses else 0
+
+    def dims_of(self, name: str) -> tuple[str, ...]:
+        """The dimensions that a result has behind those of the cases, while `layer` may still be an axis of materials:
+        x of profiles, the number of a layer or of an interface of the largest stresses of stacks."""
+        if name in self.profiles:
+            return ("x",)
+        dim = dimension(name) if self.layers and name in self.stresses else ""
+        return (LAYER_NUMBER if dim == "layer" else dim,) if dim else ()
+
+    def shape_of(self, name: str) -> tuple[int, ...]:
+        """The lengths of these dimensions."""
+        return tuple(len(self.x) if dim == "x" else self.layers for dim in self.dims_of(name))
 
     def in_results(self, table: dict) -> dict:
         """The table, whose keys are dimensions of the grid, with the names that the results give to these."""
-        names = self.scene.dims if self.scene else {}
+        names = (self.scene.dims if self.scene else {}) | ({"layer": FIRST_MATERIAL} if self.layers else {})
         return {names.get(dim, dim): value for dim, value in table.items()}
 
 
 def settings(tables: dict, errors: list[str]) -> tuple:
-    """What the title and the section [output] say: title, x, profiles, dtype and stresses of a Definition."""
+    """What the title and the section [output] say: title, x, profiles and dtype of a Definition, and whether it has
+    stresses."""
     title = tables.get("title", "")
     output = {"x": POINTS, "profiles": True, "dtype": DTYPES[0], "stresses": False} | tables.get("output", {})
     x = profile_points(output["x"], errors)
@@ -105,7 +126,7 @@ def settings(tables: dict, errors: list[str]) -> tuple:
         errors.append(f"[output] dtype = {shown(dtype)}: must be one of " + ", ".join(f'"{d}"' for d in DTYPES))
     if not isinstance(output["stresses"], bool):
         errors.append(f"[output] stresses = {shown(output['stresses'])}: must be true or false")
-    return title, x, profiles, dtype, names("stress") if output["stresses"] is True else ()
+    return title, x, profiles, dtype, output["stresses"] is True
 
 
 def refusal(where: str, errors: list[str]) -> StudyError:

@@ -22,10 +22,10 @@ from .draft import Draft
 from .identity import digest_of, law_versions
 from .punch import asperities, sticking
 from .punch.laws import results_of
-from .punch.stresses import none_in
+from .punch.stresses import none_in, stored
 from .request import MOST_MESSAGES, Request
 from .scene.stacks import axes_in, in_layers
-from .vocabulary import NUMERICS, absent, names, suggest
+from .vocabulary import NUMERICS, absent, suggest
 
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
 KEYS = {
@@ -104,8 +104,8 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
     grid = draft.finish()
     errors += [] if errors else sticking.rough_and_sticking(grid, scene and scene.unit)
     inputs = () if errors or scene is None or not scene.spreads else inputs_of(scene, grid)
-    title, x, profiles, dtype, stresses = settings(tables, errors)
-    if stresses and not errors and (reason := none_in(grid)):
+    title, x, profiles, dtype, with_stresses = settings(tables, errors)
+    if with_stresses and not errors and (reason := none_in(grid)):
         errors.append(f"[output] stresses = true: {reason}")
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:
@@ -113,13 +113,12 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
     some_feel = not errors and bool(asperities.felt(grid).any())
     micro = grid.values["micro"][1] if "micro" in grid.values else ()
     results = results_of(grid.lexicon.known.laws, micro, "w_adhesion" in grid.values, some_feel)
-    stresses += names("spot_stress") if stresses and some_feel else ()
     definition = Definition(
         *(name, title, text, grid, x, profiles, dtype, block, ""),
         scene=scene,
         results=results,
         inputs=inputs,
-        stresses=stresses,
+        stresses=stored(grid, some_feel) if with_stresses and not errors else (),
         says_what_is_felt=not errors and asperities.is_said(grid),
     )
     if (numbers := definition.numbers) > most:

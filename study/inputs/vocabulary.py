@@ -98,6 +98,8 @@ def entries(tables: dict) -> dict[str, Entry]:
 _TABLES = tomllib.loads((files(__package__) / "vocabulary.toml").read_text(encoding="utf-8"))
 #: What the first layer of a stack has under the name of a case with one layer.
 FIRST_LAYER = FIRST | {"E1": "E1", "material": "layer"}
+#: What the material of the first layer is called beside `layer`, the number of a layer.
+FIRST_MATERIAL = "layers.1.material"
 #: What a layer may have in a list, and its words.
 OF_A_LAYER = {
     "h": "thickness of layer {}",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -109,13 +109,14 @@ def numbers(variables: Mapping) -> Mapping:
     """Name -> array over the dimensions of `status`, of length 1 along some; NaN of a name that is not there. They are
     arrays, since DataArrays take as long as a contact.
 
-    Beside the variables: layered, rough, thin (bool: a thin layer was used), on_half_space (bool: asperities press on
-    one, whatever their pitch), E1* (reduced modulus of the layer), spots (how many touch), b (radius of the central
-    one), slope (f'(a) of the shape of the punch), pressure (p(0), and where that is not finite the mean), known (what
-    the words of `micro` and `shape` stand for).
+    Beside the variables: "mises_layer 1" and so on (of stacks whose stresses are stored), layered, rough, thin (bool: a
+    thin layer was used), on_half_space (bool: asperities press on one, whatever their pitch), E1* (reduced modulus of
+    the layer), spots (how many touch), b (radius of the central one), slope (f'(a) of the shape of the punch), pressure
+    (p(0), and where that is not finite the mean), known (what the words of `micro` and `shape` stand for).
     """
     dims, used = variables["status"].dims, variables["model_used"].attrs
     arrays = {name: along(dims, array) for name, array in variables.items() if set(array.dims) <= set(dims)}
+    arrays |= _of_layers(dims, variables["mises_layer"]) if "mises_layer" in variables else {}
     known = lexicon_in(variables).known
     v = defaultdict(lambda: np.nan, {"m": 0.0, "known": known} | arrays)
     models = zip(used["flag_values"], used["flag_meanings"].split(), strict=True)
@@ -128,6 +129,15 @@ def numbers(variables: Mapping) -> Mapping:
     rough = have("rough", v["micro"], known)
     v |= {"layered": ~is_bare(v["base"]), "rough": rough, "E1*": layer_modulus(v["n"])}
     return v | {"spots": spots(v) * _touching(v), "b": spot_radius(v)}
+
+
+def _of_layers(dims: tuple, stress: Labelled) -> dict[str, Any]:
+    """The largest stress of each layer of stacks, "mises_layer 1" and so on; {} without the dimension of layers."""
+    behind = [dim for dim in stress.dims if dim not in dims]
+    if len(behind) != 1 or len(stress.dims) != len(dims) + 1:
+        return {}
+    values = stress.transpose(*dims, *behind).data
+    return {f"mises_layer {j + 1}": values[..., j] for j in range(values.shape[-1])}
 
 
 def slope(v):

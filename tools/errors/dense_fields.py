@@ -1,4 +1,4 @@
-"""Does any point of a dense field have more than the search found? `python tools/errors/dense_fields.py [BODIES [SEED]]`.
+"""Does a dense field have more than the search found? `python tools/errors/dense_fields.py [BODIES [SEED]]`.
 
 Random smooth contacts on one layer, on two or three, bonded, sliding, on springs and on rigid bases, with friction and
 without. A line a body: its seed, its layers, friction, and by how much of the largest stress some extreme is less than

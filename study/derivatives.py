@@ -130,7 +130,7 @@ def relative_spreads(case: xr.Dataset, names: Iterable[str]) -> dict[str, float]
 
 def correlated(contact: xr.Dataset) -> bool:
     """Whether the spreads of some inputs are correlated. Then no input has a share of its own."""
-    bodies = [contact[body] for body in bodies_of(contact.coords) if body in contact]
+    bodies = [contact[body] for body in bodies_of(contact.coords) if body in contact.coords]
     return "correlations" in contact.attrs or any("comment" in body.attrs for body in bodies)
 
 

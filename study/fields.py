@@ -17,11 +17,13 @@ from solver.fields.waves import farthest
 from solver.layers import full_name, numbers_of
 from solver.yields.below.central_spot import of_contacts as below_spots
 from solver.yields.contact import of_contacts as extremes_of
-from solver.yields.stacked import largest as of_stacks
+from solver.yields.stacked.mixture import of_mixture
 
 from .data.contacts import Contacts
+from .data.dataset import are_numbers
 from .inputs.definition import StudyError
-from .inputs.vocabulary import VOCABULARY
+from .inputs.punch import stresses as largest
+from .inputs.vocabulary import FIRST_MATERIAL, VOCABULARY
 from .solving import solve as solve_inputs
 from .specimen.foreign import plain
 from .specimen.quantities import quantity
@@ -148,16 +150,16 @@ def _ends(contacts: Contacts) -> np.ndarray:
 def with_numbered_layers(contacts: Contacts) -> Contacts:
     """The contacts with the material of the first layer of a stack named like those of the other layers. `layer` is
     then free to be the number of a layer."""
-    names = {"layer": "layers.1.material"} if "layer" in (*contacts.dataset.coords, *contacts.dims) else {}
+    there = contacts.dataset.coords
+    named = "layer" in (*there, *contacts.dims) and not ("layer" in there and are_numbers(there["layer"]))
+    names = {"layer": FIRST_MATERIAL} if named else {}
     dims = tuple(names.get(dim, dim) for dim in contacts.dims)
     return contacts._replace(dataset=contacts.dataset.rename(names), dims=dims)
 
 
 def numbered(contacts: Contacts, *dims: str) -> dict:
     """Coordinates of the layers and interfaces of stacks: numbers from 1 at the surface."""
-    numbers = np.arange(1, numbers_of(contacts.problem.parameters) + 1)
-    words = {"layer": "layer, from the surface down", "interface": "interface, below the layer of the same number"}
-    return {dim: (dim, numbers, {"long_name": words[dim]}) for dim in dims}
+    return largest.numbered(numbers_of(contacts.problem.parameters), *dims)
 
 
 def _refuse_far_away(r: np.ndarray, contacts: Contacts, solution: Any) -> None:
@@ -223,14 +225,15 @@ def extremes(
     unit, _ = contacts.units
     residual = residual_stresses(sigma_res, contacts)
     solution = _solved(contacts)
-    values, variables = extremes_of(contacts.problem, solution, mu, residual[:, 0]), {}
-    stacked = numbers_of(contacts.problem.parameters) > 0
+    stacked, variables = numbers_of(contacts.problem.parameters) > 0, {}
     if stacked:
-        values = _with_stacks(values, of_stacks.of_contacts(contacts.problem, solution, mu, residual))
+        values = of_mixture(contacts.problem, solution, mu, residual)
         contacts = with_numbered_layers(contacts)
+    else:
+        values = extremes_of(contacts.problem, solution, mu, residual[:, 0])
     for name, (value, r, z) in values.items():
-        axes = _axes_of(name) if stacked else ()
-        long_name = _OF_STACKS[name] if stacked and name in _OF_STACKS else VOCABULARY[name].long_name
+        axes = (largest.dimension(name),) if stacked and largest.dimension(name) else ()
+        long_name = largest.words(name, stacked)
         place = {"long_name": f"{long_name}: its {'radius' if mu == 0 else 'x, behind the contact < 0,'} over a"}
         value = value * unit.reshape(-1, *[1] * len(axes))
         variables[name] = _labelled(contacts, value, axes, _about(contacts, long_name, "Pa"))
@@ -243,38 +246,6 @@ def extremes(
             variables[f"{name}_z"] = _labelled(contacts, z, (), {"long_name": f"{long_name}: its depth over a"})
     variables = carried(contacts.dataset, variables)
     return variables.assign_coords(numbered(contacts, "layer", "interface") if stacked else {})
-
-
-#: Extreme of stacks -> its long name.
-_OF_STACKS = {
-    "mises_layer": "largest von Mises stress of each layer",
-    "tresca_layer": "largest Tresca stress of each layer",
-    "s1_layer": "largest tension in each layer",
-    "sr_interface": "largest radial tension at the lower side of each layer",
-    "tau_interface": "largest shear stress at each interface",
-    "sz_interface_max": "largest axial tension at each interface",
-    "sz_interface_min": "largest axial compression at each interface",
-}
-#: Extreme of contacts with one layer -> the same extreme of stacks, which has a value for each layer.
-_OF_ONE_LAYER = {"mises1": "mises_layer", "tresca1": "tresca_layer", "sr_interface1": "sr_interface"}
-
-
-def _axes_of(name: str) -> tuple:
-    """The further dimension of an extreme of stacks, besides those of the contacts."""
-    dim = of_stacks.DIMENSION[of_stacks.EXTREMES[name][1]] if name in of_stacks.EXTREMES else None
-    return (dim,) if dim else ()
-
-
-def _with_stacks(others: dict, values: dict) -> dict:
-    """The extremes of stacks; `others` fill in for contacts without layers. Stacks of one layer also have the names of
-    contacts with one layer."""
-    extremes = {
-        name: parts if _axes_of(name) else np.where(np.isnan(parts[0]), others[name], parts)
-        for name, parts in values.items()
-    }
-    if values["mises_layer"].shape[2] == 1:
-        extremes |= {name: values[same][..., 0] for name, same in _OF_ONE_LAYER.items()}
-    return extremes
 
 
 def _solved(contacts: Contacts) -> Any:

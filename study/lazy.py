@@ -66,8 +66,9 @@ def lazily(definition: Definition, chunks: Any, command: str) -> xr.Dataset:
     first_case = _dataset(first, not_run(first, first.grid.size), command)
     variables = {}
     for name, array in first_case.data_vars.items():
-        more = {"new_axis": len(shape)} if "x" in array.dims else {}
-        lengths_with_x = (*lengths, (len(definition.x),)) if more else lengths
+        behind = definition.shape_of(name)
+        more = {"new_axis": len(shape)} if behind else {}
+        lengths_with_x = (*lengths, *((size,) for size in behind))
         more["meta"] = np.empty((0,) * array.ndim, array.dtype)
         values = solved.map_blocks(Packed(_values, name), chunks=lengths_with_x, name=f"{name}-{uuid4().hex}", **more)
         variables[name] = xr.Variable(array.dims, values, array.attrs)

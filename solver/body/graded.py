@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..bases import is_exact_stack, is_stack
+from ..bases import is_exact_stack
 from ..layers import full_name, numbers_of
 
 #: Number of octaves of the depth over which the sublayers become thinner towards the top: in a graded layer at the
@@ -22,16 +22,6 @@ def is_graded(problem):
     numbers = range(1, numbers_of(problem.parameters) + 1)
     graded = np.any([getattr(problem, full_name(i, "profile")) != "uniform" for i in numbers], axis=0)
     return graded & is_exact_stack(problem.base) & (problem.sublayers == 0)
-
-
-def has_graded(problem):
-    """(B,) bool: the cases of a stack, exact or thin, with a graded layer."""
-    if not numbers_of(problem.parameters):
-        return np.zeros(len(problem), dtype=bool)
-    numbers = range(1, numbers_of(problem.parameters) + 1)
-    return is_stack(problem.base) & np.any(
-        [getattr(problem, full_name(i, "profile")) != "uniform" for i in numbers], axis=0
-    )
 
 
 def graded_first(problem):

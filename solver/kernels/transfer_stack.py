@@ -43,6 +43,11 @@ class StackWaves(NamedTuple):
     shear: np.ndarray
     at_bottom: np.ndarray
 
+    def up_to(self, end):
+        """The first waves, as many as `end`."""
+        kept = {"tops": self.tops, "nu": self.nu}
+        return StackWaves(**{name: values[..., :end] for name, values in self._asdict().items()} | kept)
+
     def state(self, region, z, less=False):
         """u, w, S, T (4, B, Z, K) of :func:`~.transfer.wave_state` at depths z (B, Z) in a region. less : less those of
         a half-space of the first layer's material; the region must then be the first layer."""

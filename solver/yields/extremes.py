@@ -111,9 +111,11 @@ def together(batches, names=EXTREMES):
                     task = Climb(function, number, i, *at)
                     if task not in tasks:
                         tasks[task] = []
-                        boxes.append(_box(grids[task.region], task))
+                        boxes.append(box_of(grids[task.region], task))
                     tasks[task].append(name)
-    for task, value, place in zip(tasks, *_climbed(batches, list(tasks), boxes), strict=True):
+    scales = [np.abs(loaded.pressure.values).max(axis=1) for loaded in batches]
+    jets = [Jets(loaded) for loaded in batches]
+    for task, value, place in zip(tasks, *climbed(jets, list(tasks), boxes, scales, batches[0].signs), strict=True):
         for name in tasks[task]:
             best = made[task.batch][name][:, task.case]
             if not best[0] >= value:
@@ -233,11 +235,16 @@ def _starts(i, value, kinds, coarse, grids, largest):
     return [start for value, start in starts if value >= best - (1 - _RIVAL) * abs(best) - _ROUGH * largest]
 
 
-def _climbed(batches, tasks, boxes):
-    """Largest values (T,) near the starts of T tasks, and their places (T, 2), r and z."""
+def climbed(jets, tasks, boxes, scales, signs):
+    """Largest values (T,) near the starts of T tasks, and their places (T, 2), r and z.
+
+    jets : of each batch; :class:`~.search.jets.Jets`, or :class:`~.stacked.stack_jets.StackJets`
+    boxes : of :func:`box_of`; scales : of each batch, a number (B,) of the size of the stresses
+    signs : of x on the sides
+    """
     if not tasks:
         return [], []
-    jets, functions = [Jets(loaded) for loaded in batches], _numbered([task.function for task in tasks])
+    functions = _numbered([task.function for task in tasks])
     areas = _numbered([(task.batch, task.region) for task in tasks])
     case, side = (np.array([getattr(task, name) for task in tasks]) for name in ("case", "side"))
     root, boxes = np.array([root for _, root in boxes]), np.array([box for box, _ in boxes]).swapaxes(0, 1)
@@ -260,11 +267,10 @@ def _climbed(batches, tasks, boxes):
                 made[here] = VALUES[name](*stresses[:, here])
         return made
 
-    scales = [np.abs(loaded.pressure.values).max(axis=1) for loaded in batches]
     scale = np.array([scales[task.batch][task.case] for task in tasks])
     values, places = climb(at, value, *boxes, scale)
     r = np.where(root, np.sqrt(np.maximum(1 - places[:, 0] * np.abs(places[:, 0]), 0.0)), places[:, 0])
-    return values, np.stack([r * np.array(batches[0].signs)[side], places[:, 1]], axis=1)
+    return values, np.stack([r * np.array(signs)[side], places[:, 1]], axis=1)
 
 
 class _Numbered(NamedTuple):
@@ -280,7 +286,7 @@ def _numbered(words):
     return _Numbered(names, np.array([numbers[word] for word in words]))
 
 
-def _box(grid, task):
+def box_of(grid, task):
     """(4, 2): start, half widths, and lower and upper bounds of a task; and whether its u is the root. Near the axis u
     is the radius."""
     u, v = grid.u[task.column], grid.v[task.case]

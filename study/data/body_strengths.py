@@ -15,7 +15,7 @@ from ..inputs.vocabulary import name_in_stack
 from ..rules.strength import first, softer
 from ..specimen.materials import Material, Strength, known_strength
 from .contacts import Contacts, without_coordinates
-from .dataset import STRENGTHS
+from .dataset import STRENGTHS, material_name
 from .si import OF_USERS
 
 
@@ -68,6 +68,7 @@ def _spread(contacts: Contacts, name: str) -> np.ndarray:
 def _of_materials(contacts: Contacts, body: str, materials: Mapping[str, Material]) -> list:
     """Strength, standard deviation, whether it comes from hardness: (B,) each, the first two in the unit of E2."""
     cases, dataset = len(contacts.problem), contacts.dataset
+    body = material_name(dataset, body)
     if body not in dataset.coords or contacts.scene is None:
         return [np.full(cases, np.nan), np.zeros(cases), np.zeros(cases, bool)]
     names = contacts.column(without_coordinates(dataset[body])).astype(str)

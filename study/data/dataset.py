@@ -19,10 +19,12 @@ from ..inputs.grid import along, unflatten
 from ..inputs.identity import law_versions
 from ..inputs.lexicon import KNOWN, encoding_of
 from ..inputs.punch.micro_laws import COMMENT, USED, used
+from ..inputs.punch.stresses import LAYER_NUMBER, numbered, words
 from ..inputs.scene.scene import bare_variable
 from ..inputs.vocabulary import (
     BY_INPUT,
     CONTROLS,
+    FIRST_MATERIAL,
     INTEGERS,
     NOT_RUN,
     NUMERICS,
@@ -44,8 +46,8 @@ def failed_cases(status: np.ndarray) -> np.ndarray:
 def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:
     """Arrays of `size` cases that were never computed: NaN, status NOT_RUN, counts 0."""
     numbers = (*CONTROLS, *definition.results, *definition.stresses)
-    arrays = {name: np.full(size, np.nan, definition.dtype) for name in numbers if name not in TRUTHS}
-    arrays |= {name: np.full((size, len(definition.x)), np.nan, definition.dtype) for name in definition.profiles}
+    shapes = {name: (size, *definition.shape_of(name)) for name in (*numbers, *definition.profiles)}
+    arrays = {name: np.full(shape, np.nan, definition.dtype) for name, shape in shapes.items() if name not in TRUTHS}
     if definition.inputs:
         with_spreads = [(name, arrays[name]) for name in (*WITH_SPREADS, *definition.profiles)]
         shape = size, len(definition.inputs)
@@ -185,10 +187,13 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     coordinates = {name: Labelled(*pair, attributes_of.get(name, {})) for name, pair in values.items()}
     coordinates["micro"].encoding = encoding_of(grid.lexicon, {name: array for name, (_, array) in grid.values.items()})
     coordinates["x"] = Labelled(("x",), definition.x, attributes("x"))
+    for name, (dim, *labels) in numbered(definition.layers, "layer", "interface").items() if definition.layers else ():
+        name, dim = (LAYER_NUMBER if word == "layer" else word for word in (name, dim))
+        coordinates[name] = Labelled((dim,), *labels)
     dims = tuple(grid.sizes)
     flats = {name: flat.astype(bool) if name in TRUTHS else flat for name, flat in arrays.items()}
     variables = {
-        name: Labelled(dims + ("x",) * (flat.ndim - 1), unflatten(grid, flat), attributes(name, rigid))
+        name: Labelled(dims + definition.dims_of(name), unflatten(grid, flat), _about(definition, name, rigid))
         for name, flat in flats.items()
         if name not in grid.values and not name.endswith(BY_INPUT)
     }
@@ -198,6 +203,46 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     if "shape" in grid.values:  # the length that is 1
         about["scale"] = (definition.scene.scale or "R") if definition.scene else "1"
     return DatasetParts(variables, coordinates, about, by_input)
+
+
+def _about(definition: Definition, name: str, rigid: bool) -> dict:
+    """The attributes of a dimensionless result."""
+    about = attributes(name, rigid)
+    return about | {"long_name": words(name, definition.layers > 0)} if name in definition.stresses else about
+
+
+def with_numbered_layers(parts: DatasetParts) -> DatasetParts:
+    """The parts of a study that stores stresses of stacks: `layer` is the number of a layer, and the material of the
+    first layer has a name as those of the others."""
+    names = {"layer": FIRST_MATERIAL, LAYER_NUMBER: "layer"}
+
+    def renamed(table: dict[str, Labelled]) -> dict[str, Labelled]:
+        return {
+            names.get(name, name): Labelled(tuple(names.get(dim, dim) for dim in v.dims), v.data, v.attrs, v.encoding)
+            for name, v in table.items()
+        }
+
+    return parts._replace(variables=renamed(parts.variables), coords=renamed(parts.coords))
+
+
+def are_numbers(layer: xr.DataArray | Labelled) -> bool:
+    """Whether a coordinate `layer` has numbers of layers, and not materials."""
+    return layer.dtype.kind in "iu"
+
+
+def material_name(dataset: xr.Dataset | OneCase, body: str) -> str:
+    """The name of the coordinate that has the materials of a body; that of the first layer has another one where
+    `layer` is the number of a layer."""
+    return FIRST_MATERIAL if body == "layer" and body in dataset and are_numbers(dataset[body]) else body
+
+
+def without_numbered_layers(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset without what it has over layers and interfaces of stacks: `layer` is the material of the first."""
+    if "layer" not in dataset.coords or not are_numbers(dataset["layer"]):
+        return dataset
+    over = [name for name, variable in dataset.variables.items() if {"layer", "interface"} & {*variable.dims}]
+    there = dataset.drop_vars([*over, *{"layer", "interface"} & {*dataset.coords} - {*over}])
+    return there.rename({FIRST_MATERIAL: "layer"}) if FIRST_MATERIAL in there.coords else there
 
 
 def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:

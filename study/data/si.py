@@ -14,7 +14,7 @@ from ..inputs.definition import Definition
 from ..inputs.scene.scene import Scene, bare_variable
 from ..inputs.vocabulary import Entry
 from ..specimen.materials import Strength, known_strength
-from .dataset import DatasetParts, labelled
+from .dataset import DatasetParts, labelled, with_numbered_layers
 from .spreads import spreads_of
 from .units import PHYSICAL_SCALE, physical_attributes, with_unit
 
@@ -47,7 +47,8 @@ def axes_of(definition: Definition) -> dict[str, np.ndarray]:
 
 def in_units(definition: Definition, parts: DatasetParts) -> DatasetParts:
     """Dimensionless parts in the units of the study."""
-    return results(definition, parts) if definition.scene else parts
+    parts = results(definition, parts) if definition.scene else parts
+    return with_numbered_layers(parts) if definition.layers else parts
 
 
 def results(definition: Definition, parts: DatasetParts) -> DatasetParts:

@@ -109,7 +109,8 @@ def physical_attributes(entry: Entry, attributes: dict) -> dict:
     entry : its row of the vocabulary
     """
     others = {key: text for key, text in attributes.items() if key != "scale"}
-    return others | {"long_name": entry.long_name, "units": entry.unit}
+    words = entry.long_name if entry.symbol else attributes.get("long_name", entry.long_name)  # that of stacks differs
+    return others | {"long_name": words, "units": entry.unit}
 
 
 def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:

@@ -99,7 +99,7 @@ def shaped(
         return map_of(contacts, x, y, colour, (scale, _ends(contacts[colour], limits)), new)
     figure, columns = drawn(dataset, x, y, hue, where, new)
     if scale or limits is not None:
-        ordinate = with_names(dataset, [short(y)])[short(y)]
+        ordinate = with_names(dataset, [_name_in(dataset, y)])[_name_in(dataset, y)]
         ends = _ends(ordinate, limits)
         for axes in (axes for axes in figure.axes if axes.get_visible()):
             axes.set(**({"yscale": scale} if scale else {}))
@@ -123,6 +123,11 @@ def _ends(array: xr.DataArray, limits: Any) -> list[float] | None:
     return ends
 
 
+def _name_in(dataset: xr.Dataset, name: str) -> str:
+    """The name that a dataset has of an input of a layer: h for layers.1.h."""
+    return name if name in dataset.variables else short(name)
+
+
 def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Callable[..., Figure]) -> tuple:
     """The figure of `plot`, and its numbers (Columns).
 
@@ -130,8 +135,8 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     """
     if not isinstance(dataset, xr.Dataset):
         raise StudyError([f"plot takes a dataset of contacts, not a {type(dataset).__name__}"])
-    x, y, hue = map(short, (x, y, hue))
-    where = {short(name): value for name, value in where.items()}
+    x, y, hue = (_name_in(dataset, name) for name in (x, y, hue))
+    where = {_name_in(dataset, name): value for name, value in where.items()}
     if "fit_status" in dataset:
         return fits(dataset, where, new)
     if not x or not y:

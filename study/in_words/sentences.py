@@ -63,7 +63,9 @@ not slide, and a soft one is then much stiffer: give bonding = "bonded".'
 
 #: A law that ends below this share of the largest contact fraction ends because the disc cell goes wrong.
 _EARLY = 0.999
-_WIDE_PITCH = f"The pitch of the asperities is above {MOST_PITCH:g} h, where the effect of the layer on them is not known"
+_WIDE_PITCH = (
+    f"The pitch of the asperities is above {MOST_PITCH:g} h, where the effect of the layer on them is not known"
+)
 _MERGED = (
     f"The spots cover more than {REACH:g} of the area in the centre, or in a ring, and are no longer circles: the \
 law of asperities on the coated body ends there"

@@ -10,10 +10,19 @@ from solver.bases import is_bare
 from solver.laws.own_table import LAW_UNIT
 
 from ..arrays import xarray_later as xr
+from ..data.dataset import are_numbers
 from ..data.si import SAME_PIECE
 from ..inputs.lexicon import Lexicon, lexicon_in
 from ..inputs.punch.shapes import in_metres
-from ..inputs.vocabulary import BODIES, CONTROLS, bodies_of, names, parameters_of_layers, scene_of
+from ..inputs.vocabulary import (
+    BODIES,
+    CONTROLS,
+    FIRST_MATERIAL,
+    bodies_of,
+    names,
+    parameters_of_layers,
+    scene_of,
+)
 from .numbers import given_text, spread_of
 
 _OF_BODIES = [name for body in ("punch", "layer", "body") for name in (body, *BODIES[body][:2])]
@@ -28,7 +37,7 @@ def of_lower_layers(inputs: Iterable[str]) -> list[str]:
     """
     inputs = [str(name) for name in inputs]
     names = (*bodies_of(inputs), *scene_of(inputs), *parameters_of_layers(inputs))
-    names = [name for name in names if name.startswith("layers.")]
+    names = [name for name in (*names, *{FIRST_MATERIAL} & {*inputs}) if name.startswith("layers.")]
     order = (
         "material",
         "h",
@@ -81,6 +90,7 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
     hidden |= {"m", "punch", "E_punch", "nu_punch", "Y_punch"} if is_rigid(contacts, "punch") else set()
     hidden |= {"n", "body", "E2", "nu2", "Y2"} if is_rigid(contacts, "base") else set()
     hidden |= {"layer", "E1", "nu1", "Y1"} if is_bare(values("base")).all() else set()
+    hidden |= {"layer"} if "layer" in contacts and are_numbers(contacts["layer"]) else set()
     hidden |= {"micro"} if np.isin(values("micro"), lexicon.smooth_laws()).all() else set()
     unknown_law = not np.isin(values("micro"), list(lexicon.known.laws)).all()
     certain = {ratio for modulus, ratio, _ in bodies_of(contacts.variables).values() if modulus in contacts}

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from ..arrays import xarray_later as xr
-from ..data.dataset import as_dataset, decode, is_contact
+from ..data.dataset import as_dataset, decode, is_contact, without_numbered_layers
 from ..inputs.lexicon import lexicon_in
 from ..inputs.vocabulary import NOT_RUN, VOCABULARY
 from ..specimen.pictures import curve, with_picture
@@ -88,6 +88,7 @@ def summary(contact: xr.Dataset) -> Summary:
         return Summary(text)
     if "fit_status" in contact:
         return Summary(of_fit(contact))
+    contact = without_numbered_layers(contact) if xr.is_dataset(contact) else contact
     if "design_status" in contact and "solution" in contact.dims:
         return _of_design(contact)
     missing = [name for name in ("status", "model_used", "validity", "base", "micro", *SHOWN) if name not in contact]

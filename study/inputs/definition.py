@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from solver.bases import may_be_layered
+from solver.layers import numbers_of
 
 from ..specimen.foreign import plain
 from ..terminal import counted, shown
@@ -26,10 +27,10 @@ from .checks import (
 from .grid import Grid, along
 from .identity import digest_of, law_versions
 from .punch import micro_laws, shapes, sticking
-from .punch.stresses import none_in
+from .punch.stresses import LAYER_NUMBER, dimension, none_in, stored
 from .request import MOST_MESSAGES, Request
 from .scene.stacks import axes_in, in_layers
-from .vocabulary import finite, names
+from .vocabulary import FIRST_MATERIAL, finite, names
 
 POINTS = 33  # of a profile, unless the study sets them
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a mistake, so `run` wants --yes
@@ -111,12 +112,30 @@ class Definition:
     @property
     def numbers(self) -> int:
         """Rough number of the numbers in the blocks. The results hold as many, and as many spreads."""
-        per_case = PER_CASE + len(self.stresses) + len(self.x) * len(self.profiles)
+        stresses = sum(int(np.prod(self.shape_of(name))) for name in self.stresses)
+        per_case = PER_CASE + stresses + len(self.x) * len(self.profiles)
         return self.grid.size * per_case * (1 + len(self.inputs))
+
+    @property
+    def layers(self) -> int:
+        """The number of layers over which stresses are stored; 0 of no stack, or of no stresses."""
+        return numbers_of(self.grid.values) if self.stresses else 0
+
+    def dims_of(self, name: str) -> tuple[str, ...]:
+        """The dimensions that a result has behind those of the cases, while `layer` may still be an axis of materials:
+        x of profiles, the number of a layer or of an interface of the largest stresses of stacks."""
+        if name in self.profiles:
+            return ("x",)
+        dim = dimension(name) if self.layers and name in self.stresses else ""
+        return (LAYER_NUMBER if dim == "layer" else dim,) if dim else ()
+
+    def shape_of(self, name: str) -> tuple[int, ...]:
+        """The lengths of these dimensions."""
+        return tuple(len(self.x) if dim == "x" else self.layers for dim in self.dims_of(name))
 
     def in_results(self, table: dict) -> dict:
         """The table, whose keys are dimensions of the grid, with the names of these dimensions in the results."""
-        names = self.scene.dims if self.scene else {}
+        names = (self.scene.dims if self.scene else {}) | ({"layer": FIRST_MATERIAL} if self.layers else {})
         return {names.get(dim, dim): value for dim, value in table.items()}
 
 
@@ -164,8 +183,8 @@ def definition_of(
     if "w_adhesion" in grid.values and not errors:
         errors += sticking.rough_and_sticking(grid, scene and scene.unit)
     inputs = () if errors or scene is None or not scene.spreads else inputs_of(scene, grid)
-    title, x, profiles, dtype, stresses = settings(tables, errors)
-    if stresses and not errors and (reason := none_in(grid)):
+    title, x, profiles, dtype, with_stresses = settings(tables, errors)
+    if with_stresses and not errors and (reason := none_in(grid)):
         errors.append(f"[output] stresses = true: {reason}")
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:
@@ -173,13 +192,12 @@ def definition_of(
     some_feel = not errors and bool(micro_laws.felt(grid).any())
     micro = grid.values["micro"][1] if "micro" in grid.values else ()
     results = micro_laws.results_of(grid.lexicon.known.laws, micro, "w_adhesion" in grid.values, some_feel)
-    stresses += names("spot_stress") if stresses and some_feel else ()
     definition = Definition(
         *(name, title, text, grid, x, profiles, dtype, block, ""),
         scene=scene,
         results=results,
         inputs=inputs,
-        stresses=stresses,
+        stresses=stored(grid, some_feel) if with_stresses and not errors else (),
         says_what_is_felt=not errors and micro_laws.is_said(grid),
     )
     if (numbers := definition.numbers) > most:
@@ -243,7 +261,8 @@ def _labels_of(request: Request) -> dict:
 
 
 def settings(tables: dict, errors: list[str]) -> tuple:
-    """The title, x, profiles, dtype and stresses of a Definition, from the title and the section [output]."""
+    """The title, x, profiles and dtype of a Definition, from the title and the section [output], and whether it has
+    stresses."""
     title = tables.get("title", "")
     output = {"x": POINTS, "profiles": True, "dtype": DTYPES[0], "stresses": False} | tables.get("output", {})
     x = profile_points(output["x"], errors)
@@ -254,7 +273,7 @@ def settings(tables: dict, errors: list[str]) -> tuple:
         errors.append(f"[output] dtype = {shown(dtype)}: must be one of " + ", ".join(f'"{d}"' for d in DTYPES))
     if not isinstance(output["stresses"], bool):
         errors.append(f"[output] stresses = {shown(output['stresses'])}: must be true or false")
-    return title, x, profiles, dtype, names("stress") if output["stresses"] is True else ()
+    return title, x, profiles, dtype, output["stresses"] is True
 
 
 def refusal(where: str, errors: list[str]) -> StudyError:

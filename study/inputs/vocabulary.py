@@ -98,7 +98,9 @@ def entries(tables: dict) -> dict[str, Entry]:
 _TABLES = tomllib.loads((files(__package__) / "vocabulary.toml").read_text(encoding="utf-8"))
 #: Field of the first layer of a stack -> its name, which is that of a case with one layer.
 FIRST_LAYER = FIRST | {"E1": "E1", "material": "layer"}
-#: Field that a layer may have in a list -> its words.
+#: Field that the material of the first layer is called beside `layer`, the number of a layer.
+FIRST_MATERIAL = "layers.1.material"
+#: What a layer may have in a list -> its words.
 OF_A_LAYER = {
     "h": "thickness of layer {}",
     "n": "ratio of the reduced moduli of layer {} and half-space",

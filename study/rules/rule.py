@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -114,13 +114,15 @@ def numbers(variables: Mapping) -> Mapping:
 
     They are arrays, since computing with DataArrays takes as long as solving a contact.
 
-    In addition to the variables it has: layered, rough, thin (bool: a thin layer was used), on_half_space (bool:
-    asperities press on a half-space, whatever their pitch), E1* (reduced modulus of the layer), spots (number of
-    asperities that touch), b (radius of the central spot), slope (f'(a) of the shape of the punch), pressure (p(0), or
-    the mean where p(0) is not finite), known (laws and shapes for the words of `micro` and `shape`).
+    In addition to the variables it has: "mises_layer 1" and so on (for stacks whose stresses are stored), layered,
+    rough, thin (bool: a thin layer was used), on_half_space (bool: asperities press on a half-space, whatever their
+    pitch), E1* (reduced modulus of the layer), spots (number of asperities that touch), b (radius of the central spot),
+    slope (f'(a) of the shape of the punch), pressure (p(0), or the mean where p(0) is not finite), known (laws and
+    shapes for the words of `micro` and `shape`).
     """
     dims, used = variables["status"].dims, variables["model_used"].attrs
     arrays = {name: along(dims, array) for name, array in variables.items() if set(array.dims) <= set(dims)}
+    arrays |= _of_layers(dims, variables["mises_layer"]) if "mises_layer" in variables else {}
     known = lexicon_in(variables).known
     v = defaultdict(lambda: np.nan, {"m": 0.0, "known": known} | arrays)
     models = zip(used["flag_values"], used["flag_meanings"].split(), strict=True)
@@ -133,6 +135,15 @@ def numbers(variables: Mapping) -> Mapping:
     rough = have("rough", v["micro"], known)
     v |= {"layered": ~is_bare(v["base"]), "rough": rough, "E1*": layer_modulus(v["n"])}
     return v | {"spots": spots(v) * _touching(v), "b": spot_radius(v)}
+
+
+def _of_layers(dims: tuple, stress: Labelled) -> dict[str, Any]:
+    """The largest stress of each layer of stacks, "mises_layer 1" and so on; {} without the dimension of layers."""
+    behind = [dim for dim in stress.dims if dim not in dims]
+    if len(behind) != 1 or len(stress.dims) != len(dims) + 1:
+        return {}
+    values = stress.transpose(*dims, *behind).data
+    return {f"mises_layer {j + 1}": values[..., j] for j in range(values.shape[-1])}
 
 
 def slope(v):

@@ -33,21 +33,29 @@ def body_yields(v, times):
     stay elastic."""
     limits = {name: _limit(v, times * of_body(v, name)[0]) for name in _BODIES if {*v} & {name, f"{name}{OF_MATERIAL}"}}
     limits = {_BODIES[name]: limit for name, limit in limits.items() if np.isfinite(limit).any()}
-    bounds = yield_bounds.of_bodies(v) if {*limits} - {*v} else {}
+    unknown = [extreme for extreme in limits if _stored(v, extreme) is None]
+    bounds = yield_bounds.of_bodies(v) if unknown else {}
     yields = np.False_
     for extreme, limit in limits.items():
-        if extreme in v:
-            yields = yields | (v[extreme] > limit)
+        if (stored := _stored(v, extreme)) is not None:
+            yields = yields | (stored > limit)
             continue
         low, high = bounds[extreme]
         body = "layer" if extreme == "mises1" else "body"
         yields = yields | _exceeded(limit, low, high, lambda index, limit, body=body: _stress(v, body, 0, index, limit))
     for layer in range(1, numbers_of(v)):
         limit = _limit(v, times * of_body(v, full_name(layer + 1, "Y"))[0])
-        if np.isfinite(limit).any():
+        if (stored := v.get(f"mises_layer {layer + 1}")) is not None:
+            yields = yields | (stored > limit)
+        elif np.isfinite(limit).any():
             low, high = yield_bounds.of_stacks(v)
             yields = yields | _exceeded(limit, low, high, partial(_stress, v, "layer", layer))
     return yields
+
+
+def _stored(v, extreme):
+    """The largest stress of the layer, of stacks the first, or of the body, of results that have it; None of others."""
+    return v.get("mises_layer 1" if extreme == "mises1" and numbers_of(v) else extreme)
 
 
 @rule(1024, "asperities would yield", "0.65")

@@ -15,6 +15,7 @@ from solver import NUMERICS_VERSION, Problem, Solution, sensitivities, solve
 from solver.known import Known
 from solver.laws import BUILT_IN, Law
 from solver.laws.trial import going_on
+from solver.layers import numbers_of
 
 from ..inputs.definition import Definition
 from ..inputs.grid import columns
@@ -105,11 +106,14 @@ def arrays_of(solution: Solution, results: tuple[str, ...], profiles: tuple[str,
 
 
 def stresses_of(problem: Problem, solution: Solution, names: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """The largest stresses and their places, NAME, NAME_r and NAME_z -> (B,), if `names` has them."""
+    """The largest stresses and their places: those of the `names` NAME, NAME_r, NAME_z -> (B,), or (B, N) over the N
+    layers or interfaces of stacks."""
     from solver.yields.below import central_spot
     from solver.yields.contact import of_contacts  # here, since most studies want no stresses
+    from solver.yields.stacked.mixture import of_mixture
 
-    places, columns = {("", "_r", "_z"): of_contacts(problem, solution)}, {}
+    of_bodies = of_mixture if numbers_of(problem.parameters) else of_contacts
+    places, columns = {("", "_r", "_z"): of_bodies(problem, solution)}, {}
     if {*central_spot.SPOT_EXTREMES} & {*names}:
         places["", "_z"] = central_spot.of_contacts(problem, solution)
     for ends, stresses in places.items():

@@ -10,6 +10,7 @@ from solver.yields.extremes import EXTREMES
 from study.data import derived
 from study.data.units import factor
 from study.inputs.lexicon import PACKAGE
+from study.inputs.punch.stresses import OF_STACKS
 from study.inputs.vocabulary import PARAMETERS, VOCABULARY
 
 SCALE = {"R": 5e-3, "E2_star": 2e11}
@@ -36,6 +37,7 @@ FACTORS = {
             "sigma0",
             "p_spot",
             *EXTREMES,
+            *OF_STACKS,
             *SPOT_EXTREMES,
         ),
         2e11,

@@ -7,6 +7,8 @@ from solver_cases import difference
 
 from solver import Problem, Status, scaling, solve
 from solver.models import law_error
+from solver.yields import spots
+from solver.yields.below import central_spot
 
 CASE = {"a": 0.03, "Nbar": 250000.0, "Ra": 0.004, "micro": "square_lattice", "rtol": 1e-4}
 GRADED = {"nu": 0.3, "profile": "exponential", "bonding": "bonded"}
@@ -42,3 +44,21 @@ def test_a_thin_layer_between_is_felt():
     soft, stiff = (solve(Problem.of(**CASE, layers=[top, layer])) for layer in between)
     one = solve(Problem.of(**CASE, layers=[top | {"h": 5.5e-4}]))
     assert soft.p_max < 0.8 * stiff.p_max and abs(stiff.p_max / one.p_max - 1) < 1e-6
+
+
+def test_below_a_spot_on_a_uniform_layer_above_a_graded_one():
+    """As on uniform layers where the modulus hardly changes; where it falls the body below has more of the load."""
+    top = {"h": 0.008, "n": 5.0, "nu": 0.2, "bonding": "bonded"}
+    below = [top | {"h": 0.012}, *(GRADED | {"h": 0.012, "n": [5.0, n], "nu": 0.2} for n in (5.000005, 1.0))]
+    rough = {"P": 1e-4, "Nbar": 100.0, "Ra": 0.02, "asperities_on": "layer", "micro": "disc_cell", "nu2": 0.3}
+    largest, of_spots = [], []
+    for layer in below:
+        problem = Problem.of(layers=[top, layer], sublayers=2 if "profile" in layer else 0, **rough)
+        solution = solve(problem)
+        largest.append(central_spot.of_contacts(problem, solution))
+        of_spots.append(spots.of_contacts(problem, solution)[0])
+    for name, values in largest[0].items():
+        assert_allclose(largest[1][name], values, rtol=3e-5, err_msg=name)
+    assert_allclose(of_spots[1], of_spots[0], rtol=1e-6)
+    assert largest[2]["mises2_spot"][0] > 1.05 * largest[0]["mises2_spot"][0]
+    assert_allclose(of_spots[2], largest[2]["mises1_spot"][0], rtol=1e-6)

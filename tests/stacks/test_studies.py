@@ -229,14 +229,6 @@ def test_strengths_beside_a_stack():
         assert not study.solve(**inputs, **strong, **{weak: "100 GPa"}).validity.item() & 512
 
 
-def test_stored_stresses_are_refused(tmp_path):
-    (tmp_path / "stack.toml").write_text(
-        'title = "t"\n[model]\nmicro = "smooth"\nP = 1e-5\n[[layers]]\nh = 0.01\nn = 2.0\n[output]\nstresses = true\n'
-    )
-    with pytest.raises(study.StudyError, match="stacks of layers are not stored: study.extremes computes them"):
-        study.load(tmp_path / "stack.toml")
-
-
 BAD = {
     "too many": ({"layers": PURE * 9}, "18 layers: at most 16"),
     "beside": ({"layers": PURE, "h": 0.1}, "h is given beside layers"),

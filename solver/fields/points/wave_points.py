@@ -27,8 +27,8 @@ from ...numerics.quadrature import gauss_legendre
 from ..waves import FIRST, SHORTEST, quadrature
 from . import edge_waves
 
-#: The sum for a field that decays like e^(-kz) ends at k = _END/z: the rest is 1e-12 of the largest stress.
-_END = 28.0
+#: The sum for a field that decays like e^(-kz) ends at k = END/z: the rest is 1e-12 of the largest stress.
+END = 28.0
 #: A panel of 20 Gauss points spans at most _RADIANS radians of phase: the error is 1e-12 of the integral.
 _RADIANS = 32.0
 #: A panel of short waves at k is at most _SHARE k wide: at the points that they serve, their phase turns by at most
@@ -60,6 +60,41 @@ class OctaveWaves(NamedTuple):
     f: np.ndarray | None
     loads: dict
 
+    def reach(self, kind, case, z):
+        """How far from the source waves are at depths z (P,) of the cases `case`, in :class:`StatePart` `kind`."""
+        return {StatePart.BODY: z, StatePart.LAYER: z, StatePart.DIFFERENCE: 2 * self.h[case] - z}[kind]
+
+    def poisson(self, kind, case):
+        """Poisson ratios (P, 1) there."""
+        return (self.bodies.nu2 if kind == StatePart.BODY else self.bodies.nu1)[case]
+
+    def state(self, load, kind, case, z, end):
+        """State (4 of (P, end)) there under the first waves, times p, and the antiplane pair."""
+        k, h, bodies, made = self.k[:end], self.h[case, None], self.bodies, self.loads[load]
+        X, x, middle = k * h, k * z[:, None], min(self.thin, end)
+        nu1, p = bodies.nu1[case], self.p[case, :end]
+        if kind == StatePart.BODY:
+            v = decaying(x - X, bodies.nu2[case], *(part[case, :end] for part in made.base))
+        else:
+            low, high, thick = slice(None, middle), slice(middle, end), slice(0, end - middle)
+            parts = []
+            if middle:
+                state = carried(x[:, low], nu1, [part[case, :middle] for part in made.surface])
+                if kind == StatePart.DIFFERENCE:
+                    less = decaying(x[:, low], nu1, *(s * p[:, low] for s in load))
+                    state = [a - b for a, b in zip(state, less, strict=True)]
+                parts.append(state)
+            if end > middle:
+                down = made.down_less if kind == StatePart.DIFFERENCE else made.down
+                falls = decaying(x[:, high], nu1, *(part[case, thick] for part in down))
+                rises = growing((X - x)[:, high], nu1, *(part[case, thick] for part in made.up))
+                parts.append([a + b for a, b in zip(falls, rises, strict=True)])
+            v = parts[0] if len(parts) == 1 else [np.concatenate(pair, axis=1) for pair in zip(*parts, strict=True)]
+        if load[1] == 0:
+            return v, 0.0, 0.0
+        these = Bodies(*(values[case] for values in bodies))
+        return v, *(p * values for values in antiplane(kind, these, X, x))
+
 
 class _Constants(NamedTuple):
     """The constants of the waves of one load, multiplied by p.
@@ -81,20 +116,26 @@ def waves_of(layers, h, pressure, radius, least, tractions):
     """Two :class:`OctaveWaves` of the loads `tractions`, for radii up to `radius` and depths from `least` h on: the
     waves that count everywhere, and the short ones that count only next to the edge, None if there are none."""
     octave = 2.0 ** np.floor(np.log2(h.min()))
-    last = _END / (least * octave)
     first = FIRST * min(1.0, 0.5 / octave) / max(1.0, layers.n.max())
+    long, short = rules_of(pressure, first, END / (least * octave), radius)
+    return _waves(layers, h, *long, tractions), short and _waves(layers, h, *short, tractions)
+
+
+def rules_of(pressure, first, last, radius):
+    """k (K,), p and f of :class:`OctaveWaves` from `first` to `last`: of the waves that are felt everywhere, and of the
+    short ones next to the edge, None if there are none."""
     split = last > 1.2 * edge_waves.LAST and edge_waves.have_edge_waves(pressure.mesh)
     k, weight = quadrature(first, edge_waves.LAST if split else min(last, SHORTEST), 1 + radius, _RADIANS)
     p = edge_waves.transform(pressure, k) * (k * weight * (edge_waves.longer(k) if split else 1.0))
-    long = _waves(layers, h, k, p, None, tractions)
+    long = k, p, None
     if not split:
         return long, None
     panels = int(np.ceil(np.log(last / edge_waves.LEAST) / np.log1p(_SHARE)))
     ends = edge_waves.LEAST * (last / edge_waves.LEAST) ** (np.arange(panels + 1) / panels)
     t, w = gauss_legendre(20)
     k, weight = (ends[:-1, None] + np.diff(ends)[:, None] * t).ravel(), (np.diff(ends)[:, None] * w).ravel()
-    p = np.broadcast_to(k * weight, (len(h), len(k)))
-    return long, _waves(layers, h, k, p, edge_waves.of_edge(pressure, k), tractions)
+    p = np.broadcast_to(k * weight, (len(pressure.values), len(k)))
+    return long, (k, p, edge_waves.of_edge(pressure, k))
 
 
 def _waves(layers, h, k, p, f, tractions):
@@ -119,14 +160,15 @@ def sums(waves, integrands, load, orders, kind, case, r, z):
     """The integrals over k for a load and their derivatives, (JET, fields, P), at the points r, z (P,) of the cases
     `case` (P,).
 
+    waves : :class:`OctaveWaves`, or :class:`~.stack_points.StackPoints`
     integrands : ``integrands(v, nu, Q, across)`` returns the integrands, linear in the state v and the pair Q, across
     orders : of the Bessel function of each integrand
-    kind : :class:`~solver.kernels.transfer.StatePart` of all points
+    kind : where all points are: :class:`~solver.kernels.transfer.StatePart`, or in which region of the stack
     """
     made = np.empty((JET, len(orders), len(r)))
-    reach = {StatePart.BODY: z, StatePart.LAYER: z, StatePart.DIFFERENCE: 2 * waves.h[case] - z}[kind]
+    reach = waves.reach(kind, case, z)
     order = np.argsort(-reach)
-    ends = np.searchsorted(waves.k, _END / reach[order])
+    ends = np.searchsorted(waves.k, END / reach[order])
     start = 0
     while start < len(order):
         stop = start + 1
@@ -141,8 +183,8 @@ def sums(waves, integrands, load, orders, kind, case, r, z):
 
 
 def _of_some(waves, integrands, load, orders, kind, case, r, z, end):
-    k, nu = waves.k[:end], (waves.bodies.nu2 if kind == StatePart.BODY else waves.bodies.nu1)[case]
-    v, Q, across = _state(waves, load, kind, case, z, end)
+    k, nu = waves.k[:end], waves.poisson(kind, case)
+    v, Q, across = waves.state(load, kind, case, z, end)
     first = [k * values for values in derivative(v, nu)]
     second = [k * values for values in derivative(first, nu)]
     antiplane = (Q, across), (k * across / 2, 2 * k * Q), (k * k * Q, k * k * across)
@@ -189,34 +231,6 @@ def _series(m, x):
         total = total + term
         term = term * square / (j * (j + m))
     return total
-
-
-def _state(waves, load, kind, case, z, end):
-    """The states at the points, multiplied by p, a list of 4 arrays (P, K); and the antiplane pair, likewise."""
-    k, h, bodies, made = waves.k[:end], waves.h[case, None], waves.bodies, waves.loads[load]
-    X, x, middle = k * h, k * z[:, None], min(waves.thin, end)
-    nu1, p = bodies.nu1[case], waves.p[case, :end]
-    if kind == StatePart.BODY:
-        v = decaying(x - X, bodies.nu2[case], *(part[case, :end] for part in made.base))
-    else:
-        low, high, thick = slice(None, middle), slice(middle, end), slice(0, end - middle)
-        parts = []
-        if middle:
-            state = carried(x[:, low], nu1, [part[case, :middle] for part in made.surface])
-            if kind == StatePart.DIFFERENCE:
-                less = decaying(x[:, low], nu1, *(s * p[:, low] for s in load))
-                state = [a - b for a, b in zip(state, less, strict=True)]
-            parts.append(state)
-        if end > middle:
-            down = made.down_less if kind == StatePart.DIFFERENCE else made.down
-            falls = decaying(x[:, high], nu1, *(part[case, thick] for part in down))
-            rises = growing((X - x)[:, high], nu1, *(part[case, thick] for part in made.up))
-            parts.append([a + b for a, b in zip(falls, rises, strict=True)])
-        v = parts[0] if len(parts) == 1 else [np.concatenate(pair, axis=1) for pair in zip(*parts, strict=True)]
-    if load[1] == 0:
-        return v, 0.0, 0.0
-    these = Bodies(*(values[case] for values in bodies))
-    return v, *(p * values for values in antiplane(kind, these, X, x))
 
 
 def of_normal(v, nu, Q, across):

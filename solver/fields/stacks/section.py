@@ -70,7 +70,7 @@ class Section(NamedTuple):
         """Name -> (Z, R), at radii r (R,) and depths z (Z,) in the layers `number` (Z,), counted from 0, or N for the
         body. Displacements are times the unit of stress. With mu > 0 there are also the amplitudes of sliding, times
         mu. `displacements`: whether there are displacements, or only stresses."""
-        region = self._region(z, number)
+        region = self.region_of(z, number)
         here = self.stack, self.h, self.pressure, r, z[None], region, roughly
         G2 = self.stack.shear[0, region][:, None]
         field = {}
@@ -98,34 +98,37 @@ class Section(NamedTuple):
         """The signs of x in the plane y = 0, since with sliding the leading and the trailing side differ."""
         return (1.0, -1.0) if self.mu > 0 else (1.0,)
 
-    def _region(self, z, number):
-        """The sublayer of each depth, (Z,)."""
+    def region_of(self, z, number):
+        """Which sublayer the depths z (Z,) in the layers `number` (Z,) are in, (Z,)."""
         tops = self.stack.tops(self.h)[0]
         first = np.append(0, self.last + 1)
         inner = np.searchsorted(tops, z, side="right") - 1
         return np.clip(inner, first[number], np.append(self.last, self.last[-1] + 1)[number])
 
+    def is_graded(self, number):
+        """Whether a layer, or the body, is graded."""
+        return bool(self.graded) and number < len(self.last) and bool(graded_among(self.graded)[number])
+
+    def of_depth(self, number, region, z):
+        """What makes the stresses that the modulus at depths z (Z,) of a graded layer makes, from those of its
+        sublayers `region` (Z,), under the same strains in the plane and the same sz: sr + st is the first times
+        sr + st plus the second times sz, and sr - st the third times sr - st; (Z,) each."""
+        top, end = np.append(0.0, self.ends)[number : number + 2]
+        share = np.clip((z - top) / (end - top), 0.0, 1.0)
+        n, nu = (values[0] for values in at_depths(self.graded, number, share[None], self.profiles))
+        old, more = self.stack.poisson[0, region], n * (1 - nu) / self.stack.shear[0, region]
+        of_strain = (1 + nu) * more / ((1 + old) * (1 - nu))
+        return of_strain * (1 - old), 2 * nu / (1 - nu) - 2 * old * of_strain, more
+
     def _at_their_depth(self, field, z, number, region):
         """Change the stresses of `field` in graded layers to those with the modulus at their depth."""
-        tops, ends = np.append(0.0, self.ends), self.ends
         for j in np.flatnonzero(graded_among(self.graded)):
             rows = np.flatnonzero(number == j)
-            share = (z[rows] - tops[j]) / (ends[j] - tops[j])
-            n, nu = at_depths(self.graded, j, np.clip(share, 0.0, 1.0)[None], self.profiles)
-            old = self.stack.poisson[0, region[rows]]
-            more = n[0] * (1 - nu[0]) / self.stack.shear[0, region[rows]]
+            of_total, of_axial, more = (v[:, None] for v in self.of_depth(j, region[rows], z[rows]))
             for end in ("", "_c") if self.mu > 0 else ("",):
-                total, difference = field[f"sr{end}"][rows], field[f"st{end}"][rows]
-                total, difference, sz = total + difference, total - difference, field[f"sz{end}"][rows]
-                total = _with(total, sz, old[:, None], nu[0][:, None], more[:, None])
-                field[f"sr{end}"][rows] = (total + more[:, None] * difference) / 2
-                field[f"st{end}"][rows] = (total - more[:, None] * difference) / 2
+                sr, st, sz = (field[f"{name}{end}"][rows] for name in ("sr", "st", "sz"))
+                total, difference = of_total * (sr + st) + of_axial * sz, more * (sr - st)
+                field[f"sr{end}"][rows] = (total + difference) / 2
+                field[f"st{end}"][rows] = (total - difference) / 2
             if self.mu > 0:
-                field["srt_s"][rows] *= more[:, None]
-
-
-def _with(total, sz, old, nu, more):
-    """sr + st in a material with the Poisson ratio nu and `more` times the shear modulus, from `total`, sr + st in one
-    with the Poisson ratio `old`, at the same strains in the plane and the same sz."""
-    of_strain = ((1 - old) * total - 2 * old * sz) / (1 + old)
-    return (2 * nu * sz + (1 + nu) * more * of_strain) / (1 - nu)
+                field["srt_s"][rows] *= more

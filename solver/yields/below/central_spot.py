@@ -8,7 +8,7 @@ from the axis.
 import numpy as np
 
 from ...bases import is_stack
-from ...body.graded import has_graded
+from ...body.graded import graded_first
 from ...fields.contact import have_fields, pressures_of
 from ...fields.invariants import mises
 from ...laws.cell.sums import LATTICES
@@ -86,7 +86,7 @@ def spot_of(problem, solution):
 
 def _cells(problem, solution, mu, residual):
     """Yield the cells of contacts, their :class:`~..loaded.Loaded`, and their indices and largest pressures in E2*."""
-    index = np.flatnonzero(problem.feels_layer() & have_fields(problem, solution) & ~has_graded(problem))
+    index = np.flatnonzero(problem.feels_layer() & have_fields(problem, solution) & ~graded_first(problem))
     if not len(index):
         return
     residual = np.broadcast_to(residual, len(problem)) / problem.E2

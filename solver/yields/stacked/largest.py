@@ -1,12 +1,10 @@
 """The largest stresses in each layer of a stack, at each interface and in the body, with their places.
 
-Each of these regions is searched separately: the inside of each layer, its lower side, the body, and the surface inside
-and outside of the contact. A search evaluates a coarse grid of radii and depths, then refines its peaks with patches
-that shrink (:mod:`.patches`). The spacings of the grid follow the lengths over which stresses change
-(:func:`lengths_of`).
+Each layer, the sides of each, the body, and the surface inside and outside of the contact are searched by themselves,
+on a coarse grid of radii and depths, then from its peaks upwards (:mod:`..search.climb`). The grid has the lengths of
+all that is there: a, the thickness of each layer and the depth of its top, and those over which stiff layers spread the
+pressure.
 """
-
-from typing import NamedTuple
 
 import numpy as np
 
@@ -18,8 +16,8 @@ from ...layers import numbers_of
 from ...numerics.threads import one_blas_thread
 from ...scaling import dimensionless_pair
 from ..contact import of_contacts as of_one_layer
-from ..extremes import VALUES
-from .patches import climbed
+from ..extremes import VALUES, Climb, SearchGrid, box_of, climbed
+from .stack_jets import StackJets
 
 #: Name -> the function of the stresses whose largest value it is, and the place that is searched: each "layer", the
 #: "lower" side of each, the "surface", or the "body".
@@ -39,8 +37,11 @@ EXTREMES = {
 DIMENSION = {"layer": "layer", "lower": "interface", "surface": None, "body": None}
 #: Names of extremes that need not exist: a value below _NOTHING of the largest pressure is rounding and becomes 0.
 _MAY_LACK, _NOTHING = ("s1_surface", "s1_layer", "sr_interface", "tau_interface", "sz_interface_max"), 1e-11
-#: A further peak of the coarse grid is refined if it has at least this part of the largest value.
-_RIVAL = 0.85
+#: A further place of the coarse grid is looked at too where it has this part of the best, or misses it by less than
+#: _ROUGH of the largest pressure, as rough stresses may.
+_RIVAL, _ROUGH = 0.85, 3e-4
+#: Cases whose largest stresses are looked for together.
+_TOGETHER = 32
 #: The coarse grid: radii in a; distances beyond the edge, in each length; depths below the top of a layer, in its
 #: thickness and in each length; depths below the last interface, in each length.
 _RADII = np.array([0, 0.2, 0.4, 0.6, 0.75, 0.85, 0.93, 0.98, 1, 1.04, 1.12, 1.25, 1.5])
@@ -74,13 +75,17 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
         a = ended.a
         sharp = np.isfinite(corners(scaled, a))
         residual = np.broadcast_to(residual, (len(problem), N))[index] / part.E2[:, None]
-        for rows, pressure, _ in pressures_of(scaled, ended, a):
-            for i, row in enumerate(rows):
-                case = Section.of(scaled.take([row]), a[[row]], pressure.take([i]), mu, residual[row])
-                for name, values in _of_section(case, names, coarse, only).items():
-                    made[name][:, index[row]] = values * np.array([part.E2[row], 1, 1])[:, None]
-                if sharp[row] and part.nu1[row] < 0.5:
-                    _at_tip(made, index[row], corners(scaled.take([row]), a[[row]])[0])
+        for rows, pressure, _ in pressures_of(scaled, ended, a, with_errors=False):
+            for few in np.array_split(np.arange(len(rows)), -(-len(rows) // _TOGETHER)):
+                where = zip(rows[few], few, strict=True)
+                cases = [
+                    Section.of(scaled.take([row]), a[[row]], pressure.take([i]), mu, residual[row]) for row, i in where
+                ]
+                for row, values in zip(rows[few], _of_sections(cases, names, coarse, only), strict=True):
+                    for name in names:
+                        made[name][:, index[row]] = values[name] * np.array([part.E2[row], 1, 1])[:, None]
+        for row in np.flatnonzero(sharp & (part.nu1 < 0.5)):
+            _at_tip(made, index[row], corners(scaled.take([row]), a[[row]])[0])
     return {name: values if DIMENSION[EXTREMES[name][1]] else values[..., 0] for name, values in made.items()}
 
 
@@ -112,67 +117,56 @@ def _at_tip(made, case, radius):
         made[name][:, case, 0] = np.inf, radius, 0.0
 
 
-class StackGrid(NamedTuple):
-    """The coarse grid of a region.
+def _of_sections(cases, names, coarse, only):
+    """Of each :class:`~...fields.stacks.section.Section` name -> (3, N)."""
+    made, tasks, boxes = [], {}, []  # tasks -> the names whose starts they are, and the number of the layer
+    for number, case in enumerate(cases):
+        made.append({name: np.full((3, len(case.ends)), np.nan) for name in names})
+        for name, j, grids, values in _on_coarse_grids(case, names, only):
+            top = max((v.max() for v in values.values()), default=np.nan)
+            if coarse:
+                made[-1][name][0, j] = top
+            least = top - (1 - _RIVAL) * abs(top) - _ROUGH * np.abs(case.pressure.values).max()
+            for region in values if not coarse else ():
+                for at in _peaks(values[region], least):
+                    task = Climb(EXTREMES[name][0], number, 0, region, *at)
+                    if task not in tasks:
+                        tasks[task] = []
+                        boxes.append(box_of(grids[region], task))
+                    tasks[task].append((name, j))
+    scales = [np.abs(case.pressure.values).max(axis=1) for case in cases]
+    jets = [StackJets(case) for case in cases]
+    for task, value, place in zip(tasks, *climbed(jets, list(tasks), boxes, scales, cases[0].signs), strict=True):
+        for name, j in tasks[task]:
+            best = made[task.batch][name][:, j]
+            if not best[0] >= value:
+                best[:] = value, *place
+    for values, scale in zip(made, scales, strict=True):
+        for name, best in values.items():
+            if name in _MAY_LACK:
+                best[:, best[0] <= _NOTHING * scale] = np.array([0.0, np.nan, np.nan])[:, None]
+            if EXTREMES[name][0] == "compression":
+                best[0] *= -1
+    return made
 
-    u, v : (U,) and (V,); v is the depth
-    bounds : ((least u, largest u), (least v, largest v))
-    number : of the layer, from 0; N for the body
-    root : whether the radius is sqrt(1 - u |u|) rather than u: on the surface stresses are smooth in this u up to the
-        edge
-    """
 
-    u: np.ndarray
-    v: np.ndarray
-    bounds: tuple
-    number: int
-    root: bool = False
-
-    def radius(self, u):
-        return np.sqrt(np.maximum(1 - u * np.abs(u), 0.0)) if self.root else u
-
-    def stresses(self, case, u, v, roughly=False):
-        """sr, st, sz, trz (4, S, V, U) at u (U,) and v (V,)."""
-        return case.stresses(self.radius(u), v, np.full(len(v), self.number), roughly)
-
-
-def _of_section(case, names, coarse, only):
-    """Name -> value and place in each layer, (3, N), of one case; NaN where nothing was searched."""
-    N, largest = len(case.ends), np.abs(case.pressure.values).max()
-    made = {name: np.full((3, N), np.nan) for name in names}
+def _on_coarse_grids(case, names, only):
+    """Yield each name, the number of the layer or interface, its regions -> :class:`~..extremes.SearchGrid`, and the
+    values there (S, V, U). A region is the number of the layer, from 0, or of the body, and which part of it."""
     if not np.isfinite(case.pressure.values).all():
-        return made
-    lengths = lengths_of(case)
+        return
+    lengths, stresses = lengths_of(case), {}
     for place in dict.fromkeys(EXTREMES[name][1] for name in names):
-        for j in range(N) if DIMENSION[place] else (0,):
+        for j in range(len(case.ends)) if DIMENSION[place] else (0,):
             if only is not None and DIMENSION[place] and j != only:
                 continue
-            wanted = [name for name in names if EXTREMES[name][1] == place]
-            for name, values in _in_grids(case, _grids(case, place, j, lengths), wanted, coarse).items():
-                lacks = name in _MAY_LACK and values[0] <= _NOTHING * largest
-                made[name][:, j] = (0.0, np.nan, np.nan) if lacks else values
-    return made
-
-
-def _in_grids(case, grids, names, coarse):
-    """Name -> the largest value in the regions of `grids` and its place, (3,); NaN if there are none."""
-    made, fine = {}, [_Fine(case, grid) for grid in grids]
-    on_grid = [grid.stresses(case, grid.u, grid.v, roughly=True) for grid in grids]
-    for name in names:
-        value, best = VALUES[EXTREMES[name][0]], np.full(3, np.nan)
-        values = [value(*stresses) for stresses in on_grid]
-        top = max((v.max() for v in values), default=np.nan)
-        if coarse:
-            best[0] = top
-        for grid, patches, here in zip(grids, fine, values, strict=True) if not coarse else ():
-            for side, row, column in _peaks(here, top):
-                found = _refined(grid, patches, value, side, row, column)
-                if not found[0] <= best[0]:
-                    best = found
-        if EXTREMES[name][0] == "compression":
-            best[0] *= -1
-        made[name] = best
-    return made
+            grids = _grids(case, place, j, lengths)
+            for region, grid in grids.items():
+                if region not in stresses:
+                    z, number = grid.v[0], np.full(grid.v.shape[1], region[0])
+                    stresses[region] = case.stresses(grid.radius(grid.u), z, number, roughly=True)
+            for name in [name for name in names if EXTREMES[name][1] == place]:
+                yield name, j, grids, {region: VALUES[EXTREMES[name][0]](*stresses[region]) for region in grids}
 
 
 def lengths_of(case):
@@ -196,34 +190,39 @@ def farthest_of(lengths):
 
 
 def _grids(case, place, j, lengths):
-    """The coarse grids of a place."""
-    far = farthest_of(lengths)
+    """The coarse grids of a place, by their regions."""
+    far, tops = farthest_of(lengths), np.append(0.0, case.ends)
     beyond = 1 + np.outer(lengths, _BEYOND).ravel()
     radii = _unlike(np.concatenate([_RADII, beyond[beyond < far]]))
-    tops = np.append(0.0, case.ends)
-    surface = np.zeros(1)
-    if place == "surface" or place == "layer" and j == 0:
-        inner = StackGrid(np.linspace(0, 1, 12), surface, ((0.0, 1.0), (0.0, 0.0)), 0, True)
+
+    def grid(u, v, low, high, ends=(0.0, far), root=False):
+        return SearchGrid(u, np.array([v]), np.array([ends]), np.array([[low, high]]), False, root)
+
+    def row(number, part, depth):
+        return {(number, part): grid(radii, [depth], depth, depth)}
+
+    if place == "surface":
         wide = radii[radii >= 1]
-        outer = StackGrid(-np.sqrt(wide**2 - 1)[::-1], surface, ((-far, 0.0), (0.0, 0.0)), 0, True)
-        if place == "surface":
-            return [inner, outer]
+        outer = -np.sqrt(wide**2 - 1)[::-1]
+        return {
+            (0, "inside"): grid(np.linspace(0, 1, 12), [0.0], 0.0, 0.0, (0.0, 1.0), True),
+            (0, "outside"): grid(outer, [0.0], 0.0, 0.0, (-far, 0.0), True),
+        }
     if place == "lower":
-        return [StackGrid(radii, tops[j + 1 : j + 2], ((0.0, far), (tops[j + 1],) * 2), j)]
+        return row(j, "lower", tops[j + 1])
     if place == "body":
         if case.rigid:
-            return []
+            return {}
         depths = tops[-1] + _unlike(np.outer(lengths, _BELOW).ravel())
-        return [StackGrid(radii, depths, ((0.0, far), (tops[-1], tops[-1] + far)), len(tops) - 1)]
+        below = {(len(tops) - 1, "body"): grid(radii, depths, tops[-1], tops[-1] + far)}
+        return below | row(len(tops) - 1, "upper", tops[-1])
     h = tops[j + 1] - tops[j]
     of_lengths = np.outer(lengths, _OF_LENGTH).ravel()
     depths = tops[j] + _unlike(np.concatenate([h * _OF_LAYER, of_lengths[of_lengths < h]]))
     depths = depths[depths > 0]
-    inside = StackGrid(radii, depths, ((0.0, far), (tops[j], tops[j + 1])), j)
-    lower = StackGrid(radii, tops[j + 1 : j + 2], ((0.0, far), (tops[j + 1],) * 2), j)
     # At some radii stresses rise towards the upper interface; the grid inside can miss these.
-    upper = StackGrid(radii, tops[j : j + 1], ((0.0, far), (tops[j],) * 2), j)
-    return [inside, lower, *((inner, outer) if j == 0 else (upper,))]
+    upper = row(j, "upper", tops[j]) if j else _grids(case, "surface", 0, lengths)
+    return {(j, "layer"): grid(radii, depths, tops[j], tops[j + 1])} | row(j, "lower", tops[j + 1]) | upper
 
 
 def _unlike(values):
@@ -232,37 +231,10 @@ def _unlike(values):
     return values[np.append(True, np.diff(values) > 0.01 * np.abs(values[1:]))]
 
 
-def _peaks(values, top):
-    """(side, row, column) of the values (S, V, U) that no neighbour exceeds and that are nearly as large as `top`."""
+def _peaks(values, least):
+    """(side, row, column) of the values (S, V, U) that no neighbour exceeds and that are at least `least`."""
     padded = np.pad(values, ((0, 0), (1, 1), (1, 1)), constant_values=-np.inf)
     rows, columns = values.shape[1:]
     around = [padded[:, a : a + rows, b : b + columns] for a in range(3) for b in range(3)]
-    best = (values >= np.max(around, axis=0)) & (values >= top - (1 - _RIVAL) * abs(top))
+    best = (values >= np.max(around, axis=0)) & (values >= least)
     return list(map(tuple, np.argwhere(best)))
-
-
-def _refined(grid, patches, value, side, row, column):
-    """The value of a peak and its r and z, (3,), refined from a point of the coarse grid."""
-    at, half = (grid.u[column], grid.v[row]), [_spacing(grid.u, column), _spacing(grid.v, row)]
-    largest, (u, v) = climbed(lambda u, v: patches(u, v)[:, side], value, at, half, grid.bounds)
-    return np.array([largest, float(grid.radius(u)) * patches.case.signs[side], v])
-
-
-def _spacing(axis, at):
-    """The larger of the distances from a point of a coarse axis to its neighbours; 1 for an axis of one point."""
-    return np.abs(np.diff(axis[max(at - 1, 0) : at + 2])).max() if len(axis) > 1 else 1.0
-
-
-class _Fine:
-    """Stresses (4, S, V, U) in a region, at u (U,) and v (V,). Results are kept, because the searches for several
-    extremes begin with the same patch."""
-
-    def __init__(self, case, grid):
-        self.case, self.grid, self._kept = case, grid, {}
-
-    def __call__(self, u, v):
-        u, v = np.atleast_1d(u), np.atleast_1d(v)
-        key = u.tobytes(), v.tobytes()
-        if key not in self._kept:
-            self._kept[key] = self.grid.stresses(self.case, u, v)
-        return self._kept[key]

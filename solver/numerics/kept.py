@@ -67,6 +67,13 @@ class Kept:
                 self._count(self._values.popitem(last=False)[1], -1)
         return made
 
+    def find(self, key):
+        """The value of `key`; None if it is not kept."""
+        with self._lock:
+            if key in self._values:
+                self._values.move_to_end(key)
+            return self._values.get(key)
+
     def values(self):
         """All that are kept, the latest used last."""
         with self._lock:

@@ -68,6 +68,8 @@ def first_place(table, line):
     over, failed = _first_over(table, line, way)
     made.unsolved[:] = failed & (over == _NONE)
     index = np.flatnonzero(over != _NONE)
+    if not len(index):
+        return made
     nodes = over[index, None] + way[index, None] * _STENCIL
     shares = _shares(table, line, np.repeat(index, len(_STENCIL)), nodes.ravel()).reshape(nodes.shape)
     enclosed = (shares[:, 1] < 0) & (shares[:, 2] >= 0)

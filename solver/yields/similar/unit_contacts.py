@@ -2,7 +2,7 @@
 theirs, the pressure too, the load (a/R)³ and the depth (a/R)² times.
 
 They are solved in the basis of :mod:`~solver.smooth.galerkin`, of kernels that are tabulated once: an octave of h/a
-that a process has not met takes a tenth of a second, where the nodes of the mesh take .7.
+that a process has not met takes some ten milliseconds, where tables of the mesh take .7 of a second.
 """
 
 from typing import NamedTuple
@@ -26,7 +26,7 @@ from ..extremes import coarsely, together
 
 #: Nodes of the polynomial that is the pressure, where the coarse grid is enough and elsewhere
 #: (tests/yields/similar/test_unit_contacts.py).
-_ROUGHLY, _NODES = 24, 64
+_ROUGHLY, _NODES = 22, 64
 #: Contacts that are in memory together.
 _TOGETHER = 64
 #: Films thinner than this part of the radius at which a search ends are left to the mesh: the basis does not resolve
@@ -82,7 +82,7 @@ def unit_contacts(scaled, t, sought=None, punch=None, coarse=False):
     for some in np.array_split(np.arange(len(t)), -(-len(t) // _TOGETHER)):
         part, a, none = scaled.take(some).but(h=t[some]), np.ones(len(some)), np.zeros(len(some))
         shape, body = shape_of(part), Tabulated.of(BODIES["layered"](part))
-        response = respond(shape, body, a)
+        response = respond(shape, body, a, by_recurrence=True)
         numbers = response.P, response.D, pressures_of(shape, response, none, np.zeros(1))[:, 0]
         for values, column in zip(made, numbers, strict=False):
             values[some] = column

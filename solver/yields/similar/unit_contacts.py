@@ -15,9 +15,10 @@ from ...fields.pressure import Pressure
 from ...numerics import batch
 from ...numerics.mesh import mesh_of
 from ...numerics.threads import one_blas_thread
+from ...problem import Problem
 from ...scaling import dimensionless, refused
 from ...shapes import shape_of, shaped
-from ...smooth.galerkin import respond
+from ...smooth.galerkin import Response, respond
 from ...smooth.pressure import pressures_of, without_edge
 from ...smooth.tabulated_body import Tabulated
 from ...smooth.tension import is_tensile
@@ -39,22 +40,29 @@ class UnitContacts(NamedTuple):
     """Contacts at a = R, (B,) each, in units R = E2* = 1; NaN where the punch would lift off.
 
     P, D, p0 : load, depth and pressure in the centre
+    growth : d ln P/d ln a
     mises, r, z : the largest von Mises stress, and its place in a; NaN where it is not asked for
     """
 
     P: np.ndarray
     D: np.ndarray
     p0: np.ndarray
+    growth: np.ndarray
     mises: np.ndarray
     r: np.ndarray
     z: np.ndarray
 
 
 class Sought(NamedTuple):
-    """Whose stress is sought: the "layer", the "body" or the "punch", and the friction mu."""
+    """Whose von Mises stress is sought: that of the "layer", the "body" or the "punch"; and the friction mu."""
 
     body: str
     mu: float
+
+    @property
+    def name(self):
+        """Its name among :data:`~..extremes.EXTREMES`: a punch is a half-space."""
+        return "mises1" if self.body == "layer" else "mises2"
 
 
 def are_similar(problem, farthest):
@@ -78,32 +86,53 @@ def unit_contacts(scaled, t, sought=None, punch=None, coarse=False):
     punch : (B,), Poisson ratios of the punches, where the stress is theirs
     coarse : the stress is that of the coarse grid, up to 10 % too small, without its place
     """
-    made = UnitContacts(*np.full((6, len(t)), np.nan))
+    made = UnitContacts(*np.full((7, len(t)), np.nan))
     for some in np.array_split(np.arange(len(t)), -(-len(t) // _TOGETHER)):
-        part, a, none = scaled.take(some).but(h=t[some]), np.ones(len(some)), np.zeros(len(some))
-        shape, body = shape_of(part), Tabulated.of(BODIES["layered"](part))
-        response = respond(shape, body, a, by_recurrence=True)
-        numbers = response.P, response.D, pressures_of(shape, response, none, np.zeros(1))[:, 0]
-        for values, column in zip(made, numbers, strict=False):
+        contact = Solved.of(scaled.take(some).but(h=t[some]))
+        for values, column in zip(made, contact.numbers(), strict=False):
             values[some] = column
         if sought is not None:
-            mesh = mesh_of(_ROUGHLY if coarse else _NODES)
-            pressure = Pressure(mesh, without_edge(shape, response, none, mesh.x))
             nu = punch[some] if sought.body == "punch" else None
-            made.mises[some], made.r[some], made.z[some] = _largest(part, pressure, sought, nu, coarse)
-        tensile = some[is_tensile(shape, body, response)]
+            largest = contact.largest((sought.name,), sought.mu, nu, coarse)[sought.name]
+            made.mises[some], made.r[some], made.z[some] = largest
         for values in made:
-            values[tensile] = np.nan
+            values[some[contact.tensile()]] = np.nan
     return made
 
 
-def _largest(part, pressure, sought, punch, coarse):
-    """The largest stress and its place, (3, B), under pressures at a = R."""
-    name, none = "mises1" if sought.body == "layer" else "mises2", np.zeros(len(part))
-    groups = [*alike(part, none + 1, pressure, sought.mu, none, punch)]
-    batches = [loaded for _, loaded in groups]
-    answers = [coarsely(loaded, (name,)) for loaded in batches] if coarse else together(batches, (name,))
-    made = np.full((3, len(part)), np.nan)
-    for (rows, _), answer in zip(groups, answers, strict=True):
-        made[:, rows] = answer[name]
-    return made
+class Solved(NamedTuple):
+    """Contacts at a = R, in units R = E2* = 1, with their :class:`~solver.smooth.galerkin.Response`."""
+
+    problem: Problem
+    body: Tabulated
+    response: Response
+
+    @classmethod
+    def of(cls, problem):
+        """The contacts of cases for which :func:`are_similar`, h in a."""
+        body = Tabulated.of(BODIES["layered"](problem))
+        return cls(problem, body, respond(shape_of(problem), body, np.ones(len(problem)), by_recurrence=True))
+
+    def numbers(self):
+        """P, D, p0 and d ln P/d ln a, (B,) each."""
+        response, none = self.response, np.zeros(len(self.problem))
+        p0 = pressures_of(shape_of(self.problem), response, none, np.zeros(1))[:, 0]
+        return response.P, response.D, p0, response.S * response.slope / response.P
+
+    def tensile(self):
+        """(B,) bool: the punch would lift off somewhere."""
+        return is_tensile(shape_of(self.problem), self.body, self.response)
+
+    def largest(self, names, mu=0.0, punch=None, coarse=False):
+        """Name of :data:`~..extremes.EXTREMES` -> the largest value and its place, (3, B)."""
+        size = len(self.problem)
+        none, mesh = np.zeros(size), mesh_of(_ROUGHLY if coarse else _NODES)
+        pressure = Pressure(mesh, without_edge(shape_of(self.problem), self.response, none, mesh.x))
+        groups = [*alike(self.problem, none + 1, pressure, mu, none, punch)]
+        batches = [loaded for _, loaded in groups]
+        answers = [coarsely(loaded, names) for loaded in batches] if coarse else together(batches, names)
+        made = {name: np.full((3, size), np.nan) for name in names}
+        for (rows, _), answer in zip(groups, answers, strict=True):
+            for name in names:
+                made[name][:, rows] = answer[name]
+        return made

@@ -67,6 +67,13 @@ def sensitivities(contact: xr.Dataset) -> xr.Dataset:
     return contact.drop_vars(left_out).assign(variables).assign_coords(input=list(logs["a"]))
 
 
+def sensitivities_of_case(case: xr.Dataset, name: str) -> dict[str, float]:
+    """Input -> `NAME_sensitivity` of :func:`sensitivities` of one contact, for which no dataset is made: xarray is not
+    imported. Raises StudyError as that does."""
+    logs, _ = _by_inputs(Contacts.of(case, "sensitivities"), ())
+    return {by: values.item() for by, values in logs[name].items()}
+
+
 def _by_inputs(contacts: Contacts, x: Any) -> tuple[dict, dict]:
     """Two tables: result, also A0 -> input -> sensitivity (B,); and input -> d p/d ln input (B, m) at the radii x, in
     the unit of p. NaN for cases that have not converged.

@@ -78,6 +78,13 @@ class Kept:
         while self.nbytes > self.most and len(self._values) > 1:
             self._count(self._values.popitem(last=False)[1], -1)
 
+    def find(self, key):
+        """The value of `key`; None if it is not kept."""
+        with self._lock:
+            if key in self._values:
+                self._values.move_to_end(key)
+            return self._values.get(key)
+
     def values(self):
         """All values in the cache, the one used last at the end."""
         with self._lock:

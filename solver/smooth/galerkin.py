@@ -101,8 +101,12 @@ class Response(NamedTuple):
         return cls(*arrays)
 
 
-def respond(shape, body, a):
-    """:class:`Response` of B shapes on a body at radii a (B,); NaN where a is NaN."""
+def respond(shape, body, a, by_recurrence=False):
+    """:class:`Response` of B shapes on a body at radii a (B,); NaN where a is NaN.
+
+    by_recurrence : the functions of a table that no process has made yet are, which takes a thirtieth of the time; the
+        last bits are others (tests/smooth/test_products.py)
+    """
     if body.kernel is None:
         return _on_half_space(shape, body, a)
     octave, place = place_of(body, a)
@@ -118,7 +122,8 @@ def respond(shape, body, a):
         part, size = body.take(index), size_of(int(fine[index[0]]), bool(kind % 2))
         chosen = None if kind // 2 % 2 else sampler
         L1 = excess(part, wave_nodes(chosen, *which, size) * (part.h / a[index])[:, None])
-        products, of_waves = Products.of(L1, chosen, *which, size), error_of_waves(chosen, which[0])
+        products = Products.of(L1, chosen, *which, size, by_recurrence)
+        of_waves = error_of_waves(chosen, which[0])
         pieces.append((index, _on_kernel(shape.take(index), part, a[index], products, of_waves)))
     return Response.join(len(a), pieces)
 

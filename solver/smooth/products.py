@@ -67,10 +67,14 @@ class Products(NamedTuple):
     slope: np.ndarray
 
     @classmethod
-    def of(cls, L1, sampler, octave, stiffness, size):
-        """The products of a kernel. L1 : (B, M), L - 1 at :func:`wave_nodes`."""
+    def of(cls, L1, sampler, octave, stiffness, size, by_recurrence=False):
+        """The products of a kernel.
+
+        L1 : (B, M), L - 1 at :func:`wave_nodes`
+        by_recurrence : see :func:`~.galerkin.respond`; it has an effect where few nodes do not determine the kernel
+        """
         if not has_few(sampler, octave):
-            return cls._summed(L1, octave, stiffness, size)
+            return cls._summed(L1, octave, stiffness, size, by_recurrence)
         key = sampler, octave, stiffness, size
         flat = in_blocks(L1, _TABLES.get(key, lambda: _table(*key)))
         places = _places(size)
@@ -85,9 +89,10 @@ class Products(NamedTuple):
         return cls((d * q[:, None]) @ np.swapaxes(d, 1, 2), edge, (q * cosine**2).sum(axis=1), edge)
 
     @classmethod
-    def _summed(cls, L1, octave, stiffness, size):
+    def _summed(cls, L1, octave, stiffness, size, by_recurrence):
         """The products by sums over all nodes, case by case, where a table would be too large."""
-        waves = _WAVES.get((octave, stiffness, size), lambda: _waves(octave, stiffness, size))
+        key = octave, stiffness, size, by_recurrence
+        waves = _WAVES.get(key, lambda: _waves(*key))
         near, far, count = waves.near, waves.far, waves.near.shape[1]
         out = np.empty((len(L1), size + 2, size + 2))
         for sums, values in zip(out, 2 / np.pi * waves.weight * L1, strict=True):
@@ -145,19 +150,36 @@ def _far_rule(size):
     return k, np.concatenate(weight) * (1 - step(k / CUT))
 
 
-def _waves(octave, stiffness, size):
+def _waves(octave, stiffness, size, by_recurrence=False):
     if octave == FILM:
         k, weight = _film_rule(stiffness)
         far, far_weight = _far_rule(size)
     else:
         (k, weight), (far, far_weight) = quadrature(octave, stiffness), np.empty((2, 0))
-    near = np.vstack([differences(size, k), np.cos(k), k * np.sin(k)])
-    m, turned = np.arange(size)[:, None], np.exp(-1j * far)
-    waves = special.spherical_jn(2 * m, far) + 1j * special.spherical_yn(2 * m, far)
-    amplitudes = (-1.0) ** m * np.sqrt(4 * m + 1) * waves * turned
+    made = differences_at(size, k[None])[0] if by_recurrence else differences(size, k)
+    near = np.vstack([made, np.cos(k), k * np.sin(k)])
+    amplitudes = _far_by_recurrence(size, far) if by_recurrence else _far(size, far)
     if len(far):
         amplitudes[0] = -1 - 1j / far
     return WaveFunctions(near, np.vstack([amplitudes, np.ones_like(far), -1j * far]), np.append(weight, far_weight))
+
+
+def _far(size, far):
+    """A (N, G') of ê_m at far waves."""
+    m = np.arange(size)[:, None]
+    waves = special.spherical_jn(2 * m, far) + 1j * special.spherical_yn(2 * m, far)
+    return (-1.0) ** m * np.sqrt(4 * m + 1) * waves * np.exp(-1j * far)
+
+
+def _far_by_recurrence(size, far):
+    """The same by recurrence over the order: upwards, since far waves are beyond all orders."""
+    out = np.empty((size, len(far)), complex)
+    before, now = 1 / far, -1j / far  # of e^iκ/κ and -i e^iκ/κ
+    for n in range(2 * size - 1):
+        if n % 2 == 0:
+            out[n // 2] = (-1.0) ** (n // 2) * np.sqrt(2 * n + 1) * now
+        before, now = now, (2 * n + 1) / far * now - before
+    return out
 
 
 def in_blocks(rows, matrix, block=16):

@@ -20,7 +20,7 @@ _TOGETHER = 8
 #: A place is accepted when the stress agrees with the strength to _SAME, and abandoned after _MOST steps.
 _SAME, _MOST = 1e-7, 40
 #: By which part of the place a contact beside the crossing is away: slopes then have an error of about as much.
-_ASIDE = 1e-3
+ASIDE = 1e-3
 #: Numbers of the contact that a crossing has.
 NUMBERS = ("P", "a", "D", "p0")
 
@@ -79,7 +79,7 @@ def first_crossing(
 def _sloped(made, stress, index):
     """Put `by_strength` into `made`, by a contact a little beyond the crossing."""
     if len(index):
-        value, _, _, solution = stress(index, made.at[index] * (1 + _ASIDE), False)
+        value, _, _, solution = stress(index, made.at[index] * (1 + ASIDE), False)
         for number in NUMBERS:
             change = np.log(getattr(solution, number) / made.numbers[number][index])
             made.by_strength[number][index] = change / np.log(value)

@@ -16,6 +16,8 @@ from ..solve import solve
 from . import spots
 from .crossing import NUMBERS, first_crossing
 from .reach import NARROWEST, WIDEST, reach_of, stiffest
+from .similar.first_load import put_first_loads
+from .similar.unit_contacts import Sought, are_similar
 from .stacked.largest import mises_in
 
 #: No body yields if (a/R) E*/strength is below _NEVER/(1 + _BY_FRICTION mu), with the larger E* of layer and body.
@@ -72,9 +74,11 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slope
 
     start, round_ = _start(problem, body, left / problem.E2, mu), np.isin(problem.shape, ROUND)
     start = np.where(round_, np.maximum(start, NARROWEST), np.where(reach.sharp, np.nan, reach.start))
-    made = first_crossing(
-        stress, np.where(left > 0, start, np.nan), np.where(round_, WIDEST, reach.last), slopes, same_grid
-    )
+    last = np.where(round_, WIDEST, reach.last)
+    tabled = are_similar(problem, last) & np.all(residual == 0, axis=1) & (body != "asperities") & (layer == 0)
+    made = first_crossing(stress, np.where((left > 0) & ~tabled, start, np.nan), last, slopes, same_grid)
+    sought = Sought(body, float(mu)), punch, slopes
+    put_first_loads(made, problem, np.flatnonzero(tabled & (left > 0)), strength, sought, (start, last))
     # the residual stress alone is as large as the strength, or there is a tip or corner below which it is infinite
     rest = (left <= 0) | reach.sharp & (left > 0)
     made.crossed[rest], made.at[rest] = True, 0.0

@@ -8,6 +8,8 @@ from ..bases import is_stack
 from ..layers import numbers_of
 from ..solve import solve
 from .crossing import Crossing, first_crossing
+from .similar.thickness import Ends, put_thicknesses
+from .similar.unit_contacts import are_similar
 from .stacked.largest import mises_in
 
 #: The stress of the body is below some 0.5 P/h²: no body yields below a layer thicker than _THICK sqrt(P/strength).
@@ -61,9 +63,17 @@ def protection(problem, strength, mu=0.0, by="h"):
     def thicker(index, at, coarse):
         return largest(problem.take(index).but(**{by: thin[index] * at}), index, coarse)
 
-    down = first_crossing(thinner, np.where(some, 1.0, np.nan), thick / thin)
+    tabled = some & (by == "h") & are_similar(problem.but(h=thin), alone.a / problem.R)
+    ends = Ends(thin, thick, alone.a)
+    down = first_crossing(thinner, np.where(some & ~tabled, 1.0, np.nan), thick / thin)
+    down.at[:] = thick / down.at
+    put_thicknesses(down, problem, np.flatnonzero(tabled), strength, mu, ends)
     safe = down.crossed & (bare < 1)
-    up = first_crossing(thicker, np.where(safe, 1.0, np.nan), thick / thin) if safe.any() else Crossing.none(len(bare))
+    up = Crossing.none(len(bare))
+    if (safe & ~tabled).any():
+        up = first_crossing(thicker, np.where(safe & ~tabled, 1.0, np.nan), thick / thin)
+        up.at[:] = thin * up.at
+    put_thicknesses(up, problem, np.flatnonzero(safe & tabled), strength, mu, ends.upwards())
     never = ~down.crossed & ~down.unsolved & (bare < 1)
     unsolved = down.unsolved | up.unsolved | np.isnan(bare)
-    return Protection(np.where(never, 0.0, thick / down.at), thin * up.at, unsolved)
+    return Protection(np.where(never, 0.0, down.at), up.at, unsolved)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import xarray_later as xr
-from ..derivatives import correlated, relative_spreads, sensitivities
+from ..derivatives import correlated, relative_spreads, sensitivities_of_case
 from ..inputs.definition import StudyError
 from ..inputs.vocabulary import VOCABULARY
 from ..terminal import rounded
@@ -30,7 +30,7 @@ def influence(case: xr.Dataset, name: str) -> list[str]:
     if not float(case.get(f"{name}_spread", 0.0)) > 0:
         return []
     try:
-        by_input = sensitivities(case)[f"{name}_sensitivity"].to_series().to_dict()
+        by_input = sensitivities_of_case(case, name)
     except StudyError:  # the dataset has lost an input
         return []
     symbol = VOCABULARY[name].symbol

@@ -17,6 +17,8 @@ from solver.yields.below import central_spot
 from solver.yields.below.central_spot import SPOT_EXTREMES
 from solver.yields.contact import of_contacts
 from solver.yields.extremes import EXTREMES
+from solver.yields.similar.under_load import extremes_at, radius_under
+from solver.yields.similar.unit_contacts import are_similar
 
 from ..arrays import xarray_later as xr
 from ..data.body_strengths import known_strengths, layer_strengths, strengths
@@ -177,17 +179,32 @@ def _looked_at(case: xr.Dataset) -> _Looked | str:
 def _stresses(limits: list[_Limit], problem: Problem, solution: Any, case: xr.Dataset) -> list[tuple]:
     """(limit, stress, r, z) of each limit, r and z in a. The stresses of all bodies are searched for together."""
     names = tuple(limit.stress for limit in limits if limit.stress in EXTREMES)
+    if are_similar(problem, solution.a / problem.R)[0] and solution.status[0] == 0:
+        return _of_similar(limits, problem, solution.a, case)
     stresses = of_contacts(problem, solution, names=names) if names else {}
     stresses |= in_stacks(problem, solution, [limit.stress for limit in limits])
     if any(limit.stress in SPOT_EXTREMES for limit in limits):
         below = central_spot.of_contacts(problem, solution)
         stresses |= {name: np.stack([value, 0 * value, z]) for name, (value, z) in below.items()}
     if any(limit.stress == _PUNCH for limit in limits):
-        nu = float(case["nu_punch"]) if "nu_punch" in case else 0.3
-        stresses[_PUNCH] = of_contacts(problem, solution, names=("mises2",), punch=np.array([nu]))["mises2"]
+        nu = np.array([_nu_punch(case)])
+        stresses[_PUNCH] = of_contacts(problem, solution, names=("mises2",), punch=nu)["mises2"]
     if any(limit.stress == _SPOTS for limit in limits):
         stresses[_SPOTS] = _of_spots(problem, solution)
     return [(limit, *stresses[limit.stress][:, 0].tolist()) for limit in limits]
+
+
+def _of_similar(limits: list[_Limit], problem: Problem, a: np.ndarray, case: xr.Dataset) -> list[tuple]:
+    """The same of a smooth contact on one layer at the radius a, which needs no tables of a mesh."""
+    names = tuple(limit.stress for limit in limits if limit.stress in EXTREMES)
+    found = extremes_at(problem, a, names) if names else {}
+    if any(limit.stress == _PUNCH for limit in limits):
+        found[_PUNCH] = extremes_at(problem, a, ("mises2",), np.array([_nu_punch(case)]))["mises2"]
+    return [(limit, *found[limit.stress][:, 0].tolist()) for limit in limits]
+
+
+def _nu_punch(case: xr.Dataset) -> float:
+    return float(case["nu_punch"]) if "nu_punch" in case else 0.3
 
 
 def _of_spots(problem: Problem, solution: Any) -> np.ndarray:
@@ -361,13 +378,21 @@ def _load(looked: _Looked, first: _Compared, case: xr.Dataset) -> tuple[float, f
     """
     problem, limit = looked.problem, first.limit
     P, value, slope = np.log(looked.solution.P[0]), np.log(first.share), 1 / 3
+    similar = bool(are_similar(problem, np.array([_WIDEST]))[0])
+    a, solution = looked.solution.a, looked.solution
     for _ in range(_MOST):
         step = float(np.clip(-value / slope, -3, 3))
-        at = replace(problem, control="P", value=np.exp([P + step]))
-        solution = solve(at)
-        if solution.a[0] > _WIDEST and value < 0:
+        load = np.exp([P + step])
+        if similar:
+            a = radius_under(problem, load, a)
+        else:
+            at = replace(problem, control="P", value=load)
+            solution = solve(at)
+            a = solution.a
+        if a[0] / problem.R[0] > _WIDEST and value < 0:
             return None
-        after = np.log(_stresses([limit], at, solution, case)[0][1] / limit.strength)
+        stresses = _of_similar([limit], problem, a, case) if similar else _stresses([limit], at, solution, case)
+        after = np.log(stresses[0][1] / limit.strength)
         if not np.isfinite(after):
             return None
         slope = max((after - value) / step, 0.05) if step else slope

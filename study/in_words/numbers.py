@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import xarray_later as xr
+from ..data.dataset import as_dataset
 from ..data.derived import QUANTITIES
 from ..data.si import ASSUMED
 from ..derivatives import spread_of_formula
@@ -79,7 +80,7 @@ def peak_text(case: xr.Dataset, pressure: float) -> str:
     """The largest real pressure, in a ring, with ± where inputs have spreads."""
     if "p_max_spread" not in case:
         return in_its_unit(case, "p_max", float(f"{pressure:.3g}"))
-    spread = spread_of_formula(case, QUANTITIES["p_peak"])
+    spread = spread_of_formula(as_dataset(case), QUANTITIES["p_peak"])  # whose formulas are those of a dataset
     return _with_spread(case, "p_max", pressure, spread, "profile_error")
 
 
@@ -92,7 +93,7 @@ def _with_spread(case: xr.Dataset, name: str, value: float, spread: float, error
         return "unknown" if np.isnan(value) else "infinite" if value > 0 else "minus infinite"
     if not np.isfinite(spread):
         return f"{in_its_unit(case, name, value)} ± unknown"
-    kinds = [kind for kind in (error, "model_error") if error and kind in case and np.isfinite(case[kind])]
+    kinds = [kind for kind in (error, "model_error") if error and kind in case and np.isfinite(float(case[kind]))]
     parts = [spread, *(_size(case, name, value) * float(case[kind]) for kind in kinds)]
     return in_its_unit(case, name, value, float(np.sqrt(np.sum(np.square(parts)))))
 

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from ..arrays import xarray_later as xr
-from ..data.dataset import as_dataset, decode, is_contact, without_numbered_layers
+from ..data.dataset import decode, is_contact, without_numbered_layers
 from ..inputs.lexicon import lexicon_in
 from ..inputs.vocabulary import NOT_RUN, VOCABULARY
 from ..specimen.pictures import curve, with_picture
@@ -99,7 +99,6 @@ def summary(contact: xr.Dataset) -> Summary:
         raise ValueError(f"{bare[0]} has lost its attributes, which say what its numbers mean: keep them (keep_attrs)")
     dims = [str(dim) for dim in contact["status"].dims]
     if not dims:
-        contact = as_dataset(contact) if "p_spread" in contact else contact  # derivatives need a dataset
         return Summary.of(_summary_of_case(contact), contact)
     contact = contact.reset_index([dim for dim in dims if hasattr(contact.indexes.get(dim), "levels")])
     cases = contact.stack({"one": dims}, create_index=False)

@@ -2,7 +2,7 @@
    columns are in blocks of 8 rows: `_blocks` of tables.py. LAYOUT changes with all that is here: library.py takes no
    core of another one. */
 #include <stdint.h>
-#define LAYOUT 3
+#define LAYOUT 4
 enum { LOAD, RADIUS, DEPTH };               /* the control of a batch */
 enum { DISC_CELL, POWER_LAW, SMOOTH, CELL };        /* its micro law */
 /* A family of cells on the coated body (cells.py): these numbers, PIECES pieces an octave of 1 + kappa y with the
@@ -50,3 +50,14 @@ typedef struct {
     const Mesh *(*mesh)(int64_t n);
     const Table *(*table)(int64_t n, int64_t octave, int64_t stiffness);
 } Batch;
+/* Loads at points of curves (sticking.h): P and its slope by the depth (curves, points), and derivatives by the other
+   rows (others, curves, points) and by the logarithms of the four parts (4, curves, points). */
+typedef struct { double *P, *slope, *by_rows, *by_parts; } Loads;
+#define MOST_LENGTH 256
+typedef struct {
+    int64_t curves, points, length, others;
+    double step;                            /* of the lattice of `length` points, at most MOST_LENGTH */
+    const double *rows, *depth;             /* (1 + others, curves, 8, length), (curves, points) */
+    Loads sticks, free;
+    double *D_off, *D_least;                /* (curves,) */
+} Sticking;

@@ -1,4 +1,4 @@
-/* The compiled core: Newton's method for many cases at once. The numpy path (solver/rough) is its reference, and says
+/* The compiled core: Newton's method for many cases at once, and the loads of curves that stick. The numpy path (solver/rough) is its reference, and says
    what is computed and why. Here each case has a lane of a vector and meets no number of another case: so it has the
    same bits in any company. The files sse2.c, avx2.c and avx512.c compile this for their vectors of W numbers; Python
    takes the widest that the processor has (solver/compiled/library.py). */
@@ -10,7 +10,11 @@
 #include "newton.h"
 #include "cases.h"
 #include "run.h"
+#include "sticking.h"
 
 #define SOLVE_(name) roughcoat_##name
 #define SOLVE(name) SOLVE_(name)
 int SOLVE(NAME)(const Batch *b, int64_t most) { return solve(b, most); }
+#define STICKING_(name) roughcoat_sticking_##name
+#define STICKING(name) STICKING_(name)
+void STICKING(NAME)(const Sticking *s) { for (int64_t i = 0; i < s->curves; i++) of_curve(s, i); }

@@ -6,7 +6,7 @@ Without the variable the core with the widest vectors of the processor is used, 
 
 import os
 from collections.abc import Callable
-from ctypes import CDLL, CFUNCTYPE, POINTER, Structure, c_int, c_int32, c_int64, c_void_p, sizeof
+from ctypes import CDLL, CFUNCTYPE, POINTER, Structure, c_double, c_int, c_int32, c_int64, c_void_p, sizeof
 from functools import lru_cache
 from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
@@ -19,7 +19,7 @@ import numpy as np
 NAME, VARIANTS, VARIABLE = "_core", ("avx512", "avx2", "sse2"), "ROUGHCOAT_CORE"
 
 #: LAYOUT of batch.h. A core that was built with another layout would read the numbers of this one at wrong places.
-LAYOUT = 3
+LAYOUT = 4
 
 _LAYERED = ("h", "m", "n", "bonded", "c1", "c2", "one_c1", "one_c2", "plus_c1", "one_c1c2")
 
@@ -72,6 +72,22 @@ class CBatch(Structure):
     ]
 
 
+class CLoads(Structure):
+    """As in batch.h."""
+
+    _fields_ = [(name, c_void_p) for name in ("P", "slope", "by_rows", "by_parts")]
+
+
+class CSticking(Structure):
+    """As in batch.h."""
+
+    _fields_ = [
+        *((name, c_int64) for name in ("curves", "points", "length", "others")),
+        *(("step", c_double), ("rows", c_void_p), ("depth", c_void_p), ("sticks", CLoads), ("free", CLoads)),
+        *(("D_off", c_void_p), ("D_least", c_void_p)),
+    ]
+
+
 def pointer(array: np.ndarray, start: int = 0) -> int:
     """The address of a contiguous array, from its row `start` on."""
     return array.ctypes.data + start * (array.strides[0] if array.ndim else 0)
@@ -81,7 +97,7 @@ def layout() -> int:
     """The number that `roughcoat_layout` returns in a core built of these sources: it combines LAYOUT and the sizes of
     the structures."""
     number = LAYOUT
-    for structure in (CBatch, CMesh, CTable):
+    for structure in (CBatch, CMesh, CTable, CSticking):
         number = number * 4096 + sizeof(structure)
     return number
 
@@ -130,12 +146,27 @@ def core() -> Callable | None:
 
     Raises ValueError for a choice that does not exist or is not available here.
     """
+    name = _chosen()
+    return _variant(name) if name else None
+
+
+def sticking_core() -> Callable | None:
+    """The function ``sticking(curves)`` of the variant that is chosen, of a :class:`CSticking`; as :func:`core`."""
+    if not (name := _chosen()):
+        return None
+    function = getattr(_library(), f"roughcoat_sticking_{name}")
+    function.argtypes, function.restype = [POINTER(CSticking)], None
+    return function
+
+
+def _chosen() -> str | None:
+    """The name of the variant that is chosen, None for numpy."""
     choice = os.environ.get(VARIABLE, "")
     if choice == "numpy":
         return None
     if not choice:
-        return next((function for function in map(_variant, VARIANTS) if function), None)
-    if choice not in VARIANTS or not (function := _variant(choice)):
+        return next((name for name in VARIANTS if _variant(name)), None)
+    if choice not in VARIANTS or not _variant(choice):
         allowed = ", ".join(("numpy", *available()))
         raise ValueError(f"{VARIABLE} = {choice}: must be one of {allowed} here, or not set")
-    return function
+    return choice

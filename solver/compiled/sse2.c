@@ -4,5 +4,7 @@
 int roughcoat_has_sse2(void) { return 1; }
 /* What library.py compares with its own: a core that was built of other sources is not taken. */
 int64_t roughcoat_layout(void) {
-    return ((LAYOUT * 4096 + (int64_t)sizeof(Batch)) * 4096 + (int64_t)sizeof(Mesh)) * 4096 + (int64_t)sizeof(Table);
+    int64_t number = LAYOUT, sizes[] = {sizeof(Batch), sizeof(Mesh), sizeof(Table), sizeof(Sticking)};
+    for (int i = 0; i < 4; i++) number = number * 4096 + sizes[i];
+    return number;
 }

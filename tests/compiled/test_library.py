@@ -6,7 +6,8 @@ from both_paths import ROOT, built, by, compiler, contacts, of_the_sources  # no
 from solver import solve
 from solver.compiled import library
 
-LINES, LOAD = 1000, library._library  # the function itself: these tests have another in its place
+#: Lines of C: 1,000 for Newton's method, and 150 for loads of curves that stick.
+LINES, LOAD = 1150, library._library  # the function itself: these tests have another in its place
 
 
 @pytest.fixture

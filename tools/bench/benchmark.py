@@ -33,7 +33,7 @@ from benchmark_threads import blas_threads  # noqa: E402
 
 from solver import NUMERICS_VERSION, Status, solve  # noqa: E402
 from study.studies.evidence.problem_sets import SETS  # noqa: E402
-from study.studies.evidence.tradeoff import WAYS, measured, paper_way, taken, with_reference  # noqa: E402
+from study.studies.evidence.tradeoff import WAYS, measured, paper_way, selection, with_reference  # noqa: E402
 
 SIZES = (1_000, 10_000, 100_000, 1_000_000)
 #: From this size on the time per case counts as flat if it is within FLAT of its mean.
@@ -51,8 +51,8 @@ def speed() -> list[dict]:
     def row(cases):
         """One row of a problem, by turns with the linear systems."""
         solution = solve(cases, X)
-        found = rated(cases) | {"converged": float(np.mean(solution.status == Status.CONVERGED))}
-        return found | {"largest_error": float(np.nanmax(solution.error))}
+        rates = rated(cases) | {"converged": float(np.mean(solution.status == Status.CONVERGED))}
+        return rates | {"largest_error": float(np.nanmax(solution.error))}
 
     rows = []
     for micro, base in product(("smooth", "disc_cell"), ("thin_layer", "layered")):
@@ -117,8 +117,8 @@ def papers_way() -> list[dict]:
     newton = [measured(WAYS["newton, rtol"], rtol, cases, reference, REPEATS) for rtol in WAYS["newton, rtol"].settings]
     rows = []
     for k, intervals, count in PAPERS:
-        way = paper_way(k, most=count)
-        theirs = measured(way, intervals, *taken(cases, reference, way.index(len(reference.a))), REPEATS)
+        method = paper_way(k, most=count)
+        theirs = measured(method, intervals, *selection(cases, reference, method.index(len(reference.a))), REPEATS)
         ours = next(one for one in newton if one["most"] <= theirs["most"])
         row = {"error": theirs["most"], "k": k, "intervals": intervals, "cases": count, "ended": theirs["ended"]}
         row |= {"seconds": theirs["time"], "newton_rtol": ours["setting"], "newton_error": ours["most"]}

@@ -46,7 +46,7 @@ def measure(name: str, thousands: int) -> str:
         run.run(definition, folder, workers=WORKERS, scheduler=scheduler, yes=True)
     wall = time.perf_counter() - start
     used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-    processor = sum(one.ru_utime + one.ru_stime for one in used)
+    processor = sum(usage.ru_utime + usage.ru_stime for usage in used)
     return f"{name}: {thousands},000 cases {wall:.1f} s, all processor time {processor:.1f} s"
 
 

@@ -40,16 +40,16 @@ def contacts(size: int, families: int, micro: str, on: str) -> Problem:
     family = np.arange(size) % families
     pitch = between(1.05, 16, families) if families > 1 else np.array([4.0])
     h, n = (between(*ends, families)[family] for ends in ((1e-3, 1e-2), (0.1, 10)))
-    given = {"P": between(1e-6, 1e-4, size), "h": h, "n": n, "Ra": between(2e-3, 8e-3, size)}
-    given |= {"Nbar": (1 + _NEW * next(_TURN)) / (pitch[family] * h) ** 2, "m": 0.5, "bonding": "bonded"}
-    return Problem.of(**given, micro=micro, base="layered", rtol=1e-6, asperities_on=on)
+    inputs = {"P": between(1e-6, 1e-4, size), "h": h, "n": n, "Ra": between(2e-3, 8e-3, size)}
+    inputs |= {"Nbar": (1 + _NEW * next(_TURN)) / (pitch[family] * h) ** 2, "m": 0.5, "bonding": "bonded"}
+    return Problem.of(**inputs, micro=micro, base="layered", rtol=1e-6, asperities_on=on)
 
 
 def batch(micro: str) -> dict:
     """The time of a batch of one family, whose law is computed in the first turn, over the same on a half-space."""
     problems = [contacts(BATCH, 1, micro, on) for on in ("layer", "half_space")]
-    shares = [float(np.mean(solve(one, X).status == Status.CONVERGED)) for one in problems]
-    times = by_turns(*(lambda one=one: solve(one, X) for one in problems))
+    shares = [float(np.mean(solve(cases, X).status == Status.CONVERGED)) for cases in problems]
+    times = by_turns(*(lambda cases=cases: solve(cases, X) for cases in problems))
     ratio = float(times[0] / times[1])
     row = {"what": f"{BATCH:,} contacts, one family", "micro": micro, "layer_ms": 1e3 * times[0]}
     row |= {"half_space_ms": 1e3 * times[1], "converged": shares[0], "ratio": ratio}

@@ -30,22 +30,22 @@ def saved() -> list[dict]:
     all by numpy, since its guesses can be replaced."""
     rows = []
     for base in ("thin_layer", "layered"):
-        cases, known = load_axis(base), {}
-        with started(known):
+        cases, solutions = load_axis(base), {}
+        with started(solutions):
             solve(cases)
 
-        def guessed(size):
-            with started(known, size):  # noqa: B023
+        def solve_from_guess(size):
+            with started(solutions, size):  # noqa: B023
                 solve(cases)  # noqa: B023
 
-        times = by_turns(lambda: solve(cases), *(lambda size=size: guessed(size) for size in SIZES))  # noqa: B023
+        times = by_turns(lambda: solve(cases), *(lambda size=size: solve_from_guess(size) for size in SIZES))  # noqa: B023
         shares = {f"from {size:.0e}": used / times[0] for size, used in zip(SIZES, times[1:], strict=True)}
         rows.append({"base": base} | shares)
     return rows
 
 
 @contextmanager
-def started(known: dict, size: float | None = None):
+def started(solutions: dict, size: float | None = None):
     """The start on the first mesh of a stack: the usual one, which fills `known` with solutions, or a distance of
     `size` from these."""
     real, solve_on = adaptive.first_guess, adaptive.solve_on
@@ -54,20 +54,20 @@ def started(known: dict, size: float | None = None):
     def key(cases, mesh):
         return mesh.n, len(cases.value), float(cases.value.sum())
 
-    def begun(cases, mesh, a):
-        state = known.get(key(cases, mesh))
+    def first_guess(cases, mesh, a):
+        state = solutions.get(key(cases, mesh))
         if size is None or state is None:
             return real(cases, mesh, a)
         y = state.y * (1 + size * random.standard_normal((len(state.y), 1)))
         return Unknowns(y, state.eta + size * random.standard_normal(len(state.eta)))
 
-    def solved(begin, limit):
-        found = solve_on(begin, limit)
+    def solve_and_note(begin, limit):
+        answer = solve_on(begin, limit)
         if size is None:
-            known.setdefault(key(begin.cases, begin.mesh), found.at.state)
-        return found
+            solutions.setdefault(key(begin.cases, begin.mesh), answer.at.state)
+        return answer
 
-    adaptive.first_guess, adaptive.solve_on = begun, solved
+    adaptive.first_guess, adaptive.solve_on = first_guess, solve_and_note
     try:
         yield
     finally:

@@ -121,8 +121,8 @@ def peers(seconds) -> list[dict]:
 def _timed(action) -> tuple[float, float]:
     """The result of an action, and the seconds of a single run: runs of the other codes take up to minutes."""
     start = perf_counter()
-    found = action()
-    return found, perf_counter() - start
+    result = action()
+    return result, perf_counter() - start
 
 
 def rough_peers() -> list[dict]:

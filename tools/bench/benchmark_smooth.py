@@ -23,8 +23,9 @@ def main() -> None:
     many = problem("smooth", "thin_layer", 1e-6)
     alone = [many.take(np.array([i])) for i in range(40)]
     for what, problems in (("a batch of 16,000", [many]), ("40 cases, one by one", alone)):
-        own, of_newton = by_turns(lambda p=problems: run(OWN, p), lambda p=problems: run(newton, p))
-        print(f"{what}: {1000 * own:.0f} ms, by Newton's method {1000 * of_newton:.0f} ms, {of_newton / own:.1f} times")
+        special, newtons = by_turns(lambda p=problems: run(OWN, p), lambda p=problems: run(newton, p))
+        times = f"{1000 * special:.0f} ms, by Newton's method {1000 * newtons:.0f} ms"
+        print(f"{what}: {times}, {newtons / special:.1f} times")
 
 
 if __name__ == "__main__":

@@ -24,11 +24,11 @@ EXACT = {"R": "10 mm", "E_punch": "207 GPa", "E2": "210 GPa", "E1": "200 GPa", "
 def seconds(cases: int, spreads: bool) -> float:
     h = [f"{value} um" for value in np.geomspace(1, 20, cases // 100)]
     P = [f"{value} N" for value in np.geomspace(0.1, 100, 100)]
-    given = BALL | LAYER | ({} if spreads else EXACT | {"Ra": "2 um"})
-    begun = time.process_time()
-    found = study.solve(**given, h=h, P=P, profiles=False, workers=1)
-    assert (found.status == 0).all() and ("a_spread" in found) == spreads
-    return time.process_time() - begun
+    inputs = BALL | LAYER | ({} if spreads else EXACT | {"Ra": "2 um"})
+    start = time.process_time()
+    results = study.solve(**inputs, h=h, P=P, profiles=False, workers=1)
+    assert (results.status == 0).all() and ("a_spread" in results) == spreads
+    return time.process_time() - start
 
 
 def main() -> None:

@@ -61,12 +61,12 @@ def beside_the_solver(row: dict) -> dict:
     drawn = np.random.default_rng(0).permutation(row["cases"])[:DRAWN]
     blocks = [parcel(DEFINITION, drawn[i : i + BLOCK]) for i in range(0, DRAWN, BLOCK)]
     problems = [Problem.of(**block.parameters) for block in blocks]
-    alone, one = (
+    alone, on_one_thread = (
         min(_seconds(problems, DEFINITION.x, threads) for _ in range(REPEATS)) * row["cases"] / DRAWN
         for threads in (WORKERS, 1)
     )
     row |= {"solver_seconds": alone, "share_of_solver_rate": alone / row["seconds"]}
-    return row | {"solver_seconds_one_thread": one, "over_one_thread": row["seconds"] / one}
+    return row | {"solver_seconds_one_thread": on_one_thread, "over_one_thread": row["seconds"] / on_one_thread}
 
 
 def _seconds(problems: list[Problem], x: np.ndarray, threads: int) -> float:

@@ -77,11 +77,11 @@ NOTHING = _Nothing()
 @contextmanager
 def busy(count: int):
     """Context manager: `count` processes, each of which keeps a processor busy."""
-    others = [subprocess.Popen([sys.executable, "-c", BUSY]) for _ in range(count)]
+    processes = [subprocess.Popen([sys.executable, "-c", BUSY]) for _ in range(count)]
     try:
         yield
     finally:
-        for other in others:
+        for other in processes:
             other.kill()
             other.wait()
 
@@ -98,13 +98,13 @@ def blas_threads(grids=tuple(GRIDS), numbers=(2, 4, 8)) -> list[dict]:
     """A row for each setting, alone and with a busy process for each processor; processor time also over that of one
     forced thread under the same load."""
     rows = []
-    for grid, others in product(grids, (0, os.cpu_count())):
-        with busy(others):
+    for grid, busy_processes in product(grids, (0, os.cpu_count())):
+        with busy(busy_processes):
             ways = {"1 forced": (1, True)}
             ways |= {f"{n}, {'free' if free else 'limited'}": (n, free) for n in numbers for free in (True, False)}
             times = {way: measured(grid, *chosen) for way, chosen in ways.items()}
         for way, (processor, wall) in times.items():
-            row = {"cases": grid, "busy_processes": others, "blas_threads": way, "processor_seconds": processor}
+            row = {"cases": grid, "busy_processes": busy_processes, "blas_threads": way, "processor_seconds": processor}
             rows.append(row | {"over_forced": processor / times["1 forced"][0], "wall_seconds": wall})
     return rows
 

@@ -61,10 +61,10 @@ def workloads() -> list[dict]:
         floor = sum(flops) * per_flop / len(cases)
         for path in PATHS:
             with on_path(path):
-                found = rated(cases)
-            row = {"workload": name, "path": path, "cases_per_second": found["cases_per_second"], "r": found["r"]}
+                rates = rated(cases)
+            row = {"workload": name, "path": path, "cases_per_second": rates["cases_per_second"], "r": rates["r"]}
             rows.append(row | {"kiloflops_per_case": sum(flops) / len(cases) / 1e3,
-                               "measured_over_floor": 1 / found["cases_per_second"] / floor})  # fmt: skip
+                               "measured_over_floor": 1 / rates["cases_per_second"] / floor})  # fmt: skip
     return rows
 
 
@@ -133,10 +133,10 @@ def second_core() -> list[dict]:
     rows, reference = [], None
     for name, workers in {"one": 1, "two, started": 2, "two, waiting": 2, "one again": 1, "two again": 2}.items():
         wall, processor = time.perf_counter(), time.process_time()
-        found = study.solve(**GRID, workers=workers)
+        results = study.solve(**GRID, workers=workers)
         row = {"workers": name, "wall_seconds": time.perf_counter() - wall}
         row |= {"callers_processor_seconds": time.process_time() - processor}
-        reference = reference or (row["wall_seconds"], found)
-        same = all(found[v].values.tobytes() == reference[1][v].values.tobytes() for v in found.variables)
+        reference = reference or (row["wall_seconds"], results)
+        same = all(results[v].values.tobytes() == reference[1][v].values.tobytes() for v in results.variables)
         rows.append(row | {"gain": reference[0] / row["wall_seconds"], "same_bits": same})
     return rows

@@ -29,18 +29,18 @@ TOGETHER = 2000
 
 def distances(solution: Solution, truth: Solution) -> np.ndarray:
     """Largest relative distance (B,) of the judged numbers."""
-    both = [(getattr(solution, name), getattr(truth, name)) for name in JUDGED]
+    pairs = [(getattr(solution, name), getattr(truth, name)) for name in JUDGED]
     with np.errstate(all="ignore"):
-        return np.max([np.where(true == value, 0.0, np.abs(value / true - 1)) for value, true in both], axis=0)
+        return np.max([np.where(true == value, 0.0, np.abs(value / true - 1)) for value, true in pairs], axis=0)
 
 
 def line(name: str, rtol: float, far: np.ndarray, error: np.ndarray, base: np.ndarray) -> str:
-    beyond, above = far > rtol, far > error
-    bases = ", ".join(f"{kind} {beyond[base == kind].sum()}" for kind in np.unique(base))
-    worst = (far / rtol).max(initial=0), (far[above] / error[above]).max(initial=0)
+    over_rtol, over_error = far > rtol, far > error
+    bases = ", ".join(f"{kind} {over_rtol[base == kind].sum()}" for kind in np.unique(base))
+    worst = (far / rtol).max(initial=0), (far[over_error] / error[over_error]).max(initial=0)
     return (
-        f"{name:5s} {rtol:.0e}: {len(far)} judged; beyond rtol {beyond.sum()}, at most {worst[0]:.2f}; "
-        f"above error {above.sum()}, at most {worst[1]:.2f}; by base: {bases}"
+        f"{name:5s} {rtol:.0e}: {len(far)} judged; beyond rtol {over_rtol.sum()}, at most {worst[0]:.2f}; "
+        f"above error {over_error.sum()}, at most {worst[1]:.2f}; by base: {bases}"
     )
 
 

@@ -54,46 +54,46 @@ def tried(name: str, target: str, size: int, random: np.random.Generator) -> tup
     """For EACH targets of each of `size` contacts: number of solutions, that of the 400 points, worst miss over
     rtol."""
     control = name if name in ("P", "a", "D") else "P"
-    given = contacts(size, random) | {control: np.exp(random.uniform(np.log(1e-7), np.log(1e-4), size))}
-    given["bonding"][:] = "frictionless" if name == "h" else given["bonding"]
+    inputs = contacts(size, random) | {control: np.exp(random.uniform(np.log(1e-7), np.log(1e-4), size))}
+    inputs["bonding"][:] = "frictionless" if name == "h" else inputs["bonding"]
     rough = [law for law in LAWS if law != "smooth"]
-    given["micro"] = random.choice(rough, size) if name in ("Nbar", "Ra") or target == "Ar_An" else given["micro"]
+    inputs["micro"] = random.choice(rough, size) if name in ("Nbar", "Ra") or target == "Ar_An" else inputs["micro"]
     low, high = np.log(BY[name]) if BY[name][0] else BY[name]
     rows = np.arange(size)
 
     def results(t: np.ndarray, row: np.ndarray) -> np.ndarray:
-        moved = {key: column[row] for key, column in given.items()}
+        moved = {key: column[row] for key, column in inputs.items()}
         solution = solve(Problem.of(**moved | {name: np.exp(t) if BY[name][0] else t}, rtol=RTOL))
         return np.where(solution.status == 0, getattr(solution, target), np.nan)
 
     fine = np.linspace(low, high, POINTS)
     y = results(np.tile(fine, size), np.repeat(rows, POINTS)).reshape(size, POINTS)
-    kept = np.isfinite(y).any(axis=1)
-    least, most = (np.log(np.where(kept, extreme(y, axis=1), 1.0)) for extreme in (np.nanmin, np.nanmax))
+    finite = np.isfinite(y).any(axis=1)
+    least, most = (np.log(np.where(finite, extreme(y, axis=1), 1.0)) for extreme in (np.nanmin, np.nanmax))
     at = random.uniform(-0.1, 1.1, (EACH, size))
     level, row = np.exp(least + at * (most - least)).ravel(), np.tile(rows, EACH)
     t = crossings(results, scanned(results, rows, low, high).at(row), row, level, RTOL)
     place, number = np.nonzero(np.isfinite(t))
-    misses, again = np.zeros(len(row)), results(t[place, number], row[place])
-    np.maximum.at(misses, place, np.abs(again / level[place] - 1) / RTOL)
+    misses, results_again = np.zeros(len(row)), results(t[place, number], row[place])
+    np.maximum.at(misses, place, np.abs(results_again / level[place] - 1) / RTOL)
     above = np.where(np.isfinite(y[row]), y[row] > level[:, None], np.nan)
     counts = np.isfinite(t).sum(axis=1), (np.abs(np.diff(above, axis=1)) == 1).sum(axis=1)
-    flat = kept & (most - least > 1e-4)  # the result does not depend on the input
+    flat = finite & (most - least > 1e-4)  # the result does not depend on the input
     return tuple(array[flat[row]] for array in (*counts, misses))
 
 
 def main(total: int = 10_000, seed: int = 1) -> None:
-    random, begun, everything = np.random.default_rng(seed), time.process_time(), []
+    random, start, all_parts = np.random.default_rng(seed), time.process_time(), []
     size = -(-total // (EACH * 64))  # 64 instead of 66, since flat curves do not count
     for name in BY:
         control = name if name in ("P", "a", "D") else "P"
         parts = [
             tried(name, target, size * (4 if name == "h" else 1), random) for target in TARGETS if target != control
         ]
-        everything.append([np.concatenate(part) for part in zip(*parts, strict=True)])
-        print(line(name, *everything[-1]), flush=True)
-    print(line("all", *(np.concatenate(part) for part in zip(*everything, strict=True))))
-    print(f"{time.process_time() - begun:.0f} s of processor time, rtol {RTOL:g}")
+        all_parts.append([np.concatenate(part) for part in zip(*parts, strict=True)])
+        print(line(name, *all_parts[-1]), flush=True)
+    print(line("all", *(np.concatenate(part) for part in zip(*all_parts, strict=True))))
+    print(f"{time.process_time() - start:.0f} s of processor time, rtol {RTOL:g}")
     speed()
 
 
@@ -107,9 +107,9 @@ def speed() -> None:
     for words, scene in kinds.items():
         for count in (300, 1):
             loads = [f"{load!r} N" for load in np.linspace(0.5, 4, count).tolist()]
-            begun = time.process_time()
+            start = time.process_time()
             study.design({"p_max": "180 MPa"}, by={"h": ("1 um", "1 mm")}, P=loads, **scene)
-            each = (time.process_time() - begun) / count
+            each = (time.process_time() - start) / count
             print(f"{count:3d} at once, {words}: {1e3 * each:.0f} ms each")
 
 

@@ -37,24 +37,24 @@ def judged(base: str, law: str, size: int) -> dict[int, np.ndarray]:
     """Nodes -> rows of cases: truth, difference of two meshes, estimate, error bar, error of Ar/An over its ring, and
     the factor of the estimate."""
     case = random_cases(size, 1, EXTREMES) | {"beta": np.random.default_rng(1).uniform(0.3, 0.95, size)}
-    cases, found = as_cases(dimensionless(Problem.of(**case, base=base, micro=law))), {}
+    cases, rows = as_cases(dimensionless(Problem.of(**case, base=base, micro=law))), {}
 
     def solved(n):
         at = solve_on(evaluate(cases, first_guess(cases, mesh_of(n)), mesh_of(n)))
-        own = quantities(at.at)
-        refined = refine(at.at, own)
-        return at, own, difference(own, refined.numbers), estimate(at.at, own, refined)
+        of_mesh = quantities(at.at)
+        refined = refine(at.at, of_mesh)
+        return at, of_mesh, difference(of_mesh, refined.numbers), estimate(at.at, of_mesh, refined)
 
     fine, true, _, own_error = solved(96)
     for n in NODES:
-        (ev, closed, _), own, moved, error = solved(n)
+        (ev, closed, _), of_mesh, moved, error = solved(n)
         lam = cases.law.area(ev.state.y[:, :1], ev.curve.q[:, :1])[:, 0]
-        ring = np.where(lam > _RISEN, lam * ev.mesh.s[0] ** 2 / 2, 0.0) / own.Ar_An
-        truth, area = difference(own, true), np.abs(own.Ar_An / true.Ar_An - 1)
-        bar = completed(ev, own.Ar_An, error, np.arange(size))[1]
-        known = closed & fine.closed & (own_error < 0.1 * truth) & (truth > 1e-9)
-        found[n] = np.stack([truth, moved, error, bar, area / ring, margin(ev)], axis=1)[known]
-    return found
+        ring = np.where(lam > _RISEN, lam * ev.mesh.s[0] ** 2 / 2, 0.0) / of_mesh.Ar_An
+        truth, area = difference(of_mesh, true), np.abs(of_mesh.Ar_An / true.Ar_An - 1)
+        bar = completed(ev, of_mesh.Ar_An, error, np.arange(size))[1]
+        is_judged = closed & fine.closed & (own_error < 0.1 * truth) & (truth > 1e-9)
+        rows[n] = np.stack([truth, moved, error, bar, area / ring, margin(ev)], axis=1)[is_judged]
+    return rows
 
 
 def main(size: int = 2000) -> None:
@@ -63,8 +63,8 @@ def main(size: int = 2000) -> None:
     for n in NODES:
         truth, moved, error, bar, rings, factor = np.concatenate([part[n] for part in parts]).T
         blind = factor > MARGIN
-        beyond = [(truth[blind] > times * MARGIN * moved[blind]).sum() for times in (1, _BLIND)]
-        seen = [f"{count / blind.sum():.1%}" for count in beyond]
+        counts_above = [(truth[blind] > times * MARGIN * moved[blind]).sum() for times in (1, _BLIND)]
+        seen = [f"{count / blind.sum():.1%}" for count in counts_above]
         needed = rings[np.isfinite(rings) & (truth > error)]
         above = truth / bar
         print(

@@ -21,13 +21,13 @@ def sample(control: str, size: int, seed: int) -> dict:
     asperities from fine to coarse, or none."""
     random = np.random.default_rng([seed, *control.encode()])
 
-    def drawn(low: float, high: float) -> np.ndarray:
+    def between(low: float, high: float) -> np.ndarray:
         return np.exp(random.uniform(np.log(low), np.log(high), size))
 
     return {
-        control: drawn(*RANGES[control]), "h": drawn(1e-5, 10), "n": drawn(1e-3, 1e2), "Nbar": drawn(1e3, 1e9),
-        "Ra": drawn(1e-5, 3e-2), "B": drawn(0.03, 1), "beta": random.uniform(0.35, 0.9, size),
-        "m": np.where(random.random(size) < 0.5, 0.0, drawn(1e-3, 1e3)),
+        control: between(*RANGES[control]), "h": between(1e-5, 10), "n": between(1e-3, 1e2), "Nbar": between(1e3, 1e9),
+        "Ra": between(1e-5, 3e-2), "B": between(0.03, 1), "beta": random.uniform(0.35, 0.9, size),
+        "m": np.where(random.random(size) < 0.5, 0.0, between(1e-3, 1e3)),
         "nu1": random.uniform(-0.5, 0.5, size), "nu2": random.uniform(-0.5, 0.5, size),
         "bonding": random.choice(["frictionless", "bonded"], size),
         "micro": random.choice(["smooth", "disc_cell", "power_law"], size),
@@ -37,9 +37,9 @@ def sample(control: str, size: int, seed: int) -> dict:
 def ratios(control: str, size: int, seed: int) -> dict:
     """Model -> true error over bound, for the cases whose bound is between 1e-4 and 0.3."""
     np.seterr(all="ignore")  # cases that a model cannot have
-    given, found = sample(control, size, seed), {}
-    exact = solve(Problem.of(**given, base="layered"))
-    auto = Problem.of(**given, base="auto")
+    cases, ratios_of_models = sample(control, size, seed), {}
+    exact = solve(Problem.of(**cases, base="layered"))
+    auto = Problem.of(**cases, base="auto")
     for micro in np.unique(auto.micro):
         index = np.flatnonzero((auto.micro == micro) & (exact.status == 0))
         for model, bound in bounds(auto.take(index)).items():
@@ -49,8 +49,8 @@ def ratios(control: str, size: int, seed: int) -> dict:
             cheap = _on_model(model, auto.take(index[near]), np.array([0.0, 1.0]))
             errors = [np.abs(getattr(cheap, name) / getattr(exact, name)[index[near]] - 1) for name in JUDGED]
             error = np.where(cheap.status == 0, np.max(errors, axis=0), 0.0)
-            found.setdefault(model.name, []).append(np.maximum(error - 2e-6, 0) / bound[near])
-    return {name: np.concatenate(parts) for name, parts in found.items()}
+            ratios_of_models.setdefault(model.name, []).append(np.maximum(error - 2e-6, 0) / bound[near])
+    return {name: np.concatenate(parts) for name, parts in ratios_of_models.items()}
 
 
 def main(size: int = 1500, seed: int = 1) -> None:

@@ -47,28 +47,28 @@ WIDE = {
 }
 
 
-def compared(given: dict, draws: int, seed: int = 0) -> dict[str, tuple[float, float]]:
+def compared(inputs: dict, draws: int, seed: int = 0) -> dict[str, tuple[float, float]]:
     """Result -> its spread to first order and the deviation of its draws, both over its value."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # about validity, which does not matter here
-        found = study.solve(**given, x=2, profiles=False)
-        sampled = study.solve(**drawn(given, draws, seed), x=2, profiles=False)
-    assert found.status == 0 and (sampled.status == 0).all()
+        results = study.solve(**inputs, x=2, profiles=False)
+        sampled = study.solve(**random_draws(inputs, draws, seed), x=2, profiles=False)
+    assert results.status == 0 and (sampled.status == 0).all()
     return {
-        name: (float(found[f"{name}_spread"] / found[name]), float(sampled[name].std("draw") / found[name]))
+        name: (float(results[f"{name}_spread"] / results[name]), float(sampled[name].std("draw") / results[name]))
         for name in NAMES
-        if f"{name}_spread" in found and float(found[f"{name}_spread"]) > 0
+        if f"{name}_spread" in results and float(results[f"{name}_spread"]) > 0
     }
 
 
-def drawn(given: dict, draws: int, seed: int) -> dict:
+def random_draws(parameters: dict, draws: int, seed: int) -> dict:
     """The parameters with `draws` values for each that has a spread, along the dimension `draw`."""
-    inputs = {name: si(name, text) for name, text in given.items() if isinstance(text, str) and "±" in text}
+    inputs = {name: si(name, text) for name, text in parameters.items() if isinstance(text, str) and "±" in text}
     normal = np.random.default_rng(seed).normal(size=(draws, len(inputs)))
     normal -= normal.mean(axis=0)
     normal = normal @ np.linalg.inv(np.linalg.cholesky(np.cov(normal.T, ddof=0))).T
     columns = zip(inputs.items(), normal.T, strict=True)
-    return given | {
+    return parameters | {
         name: xr.DataArray(one.value + one.spread * column, dims="draw", attrs={"units": ROWS[name].unit})
         for (name, one), column in columns
     }
@@ -77,9 +77,9 @@ def drawn(given: dict, draws: int, seed: int) -> dict:
 def main() -> None:
     draws = int(sys.argv[1]) if len(sys.argv) > 1 else DRAWS
     print(f"relative spread of each result: to first order, and of {draws} draws (their ratio, less 1)")
-    for system, given in (SYSTEMS | WIDE).items():
+    for system, inputs in (SYSTEMS | WIDE).items():
         print(system)
-        for name, (first, sampled) in compared(given, draws).items():
+        for name, (first, sampled) in compared(inputs, draws).items():
             print(f"  {name:6} {first:9.3%} {sampled:9.3%}  ({first / sampled - 1:+.2%})")
 
 

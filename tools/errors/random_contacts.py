@@ -43,14 +43,16 @@ def distances(law: str, base: str, size: int, seed: int) -> np.ndarray:
     """Distances to the truth over `error`, of all answers."""
     case = sample(size, [seed, BASES.index(base), LAWS.index(law)]) | {"base": base, "micro": law}
     truth = solve(Problem.of(**case, rtol=1e-9))
-    found = []
+    ratios = []
     for control in ("P", "a", "D"):
         for rtol in RTOL:
-            again = solve(Problem.of(**case | {"P": None, control: getattr(truth, control), "rtol": rtol}))
-            far = np.max([np.abs(getattr(again, name) / getattr(truth, name) - 1) for name in JUDGED], axis=0)
-            known = np.isin(again.status, ENDED) & np.isin(truth.status, ENDED) & (truth.error < 0.1 * again.error)
-            found.append((far / again.error)[known])
-    return np.concatenate(found)
+            answer = solve(Problem.of(**case | {"P": None, control: getattr(truth, control), "rtol": rtol}))
+            far = np.max([np.abs(getattr(answer, name) / getattr(truth, name) - 1) for name in JUDGED], axis=0)
+            is_judged = (
+                np.isin(answer.status, ENDED) & np.isin(truth.status, ENDED) & (truth.error < 0.1 * answer.error)
+            )
+            ratios.append((far / answer.error)[is_judged])
+    return np.concatenate(ratios)
 
 
 def line(name: str, ratios: np.ndarray) -> str:

@@ -22,24 +22,24 @@ RTOL, TRUTH = (1e-3, 1e-6), 1e-9
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 
 
-def drawn(random: np.random.Generator, low: float, high: float) -> float:
+def log_uniform(random: np.random.Generator, low: float, high: float) -> float:
     return float(np.exp(random.uniform(np.log(low), np.log(high))))
 
 
 def contact(shape: str, random: np.random.Generator) -> dict:
     """Arguments of ``Problem.of``: one contact of about the radius a, from a smooth one to one whose asperities yield
     as much as the body. A half-space of the softer material gives its approximate load."""
-    a, h_a, n = drawn(random, 1e-3, 0.3), drawn(random, 3e-2, 30), drawn(random, 1e-2, 1e2)
-    sharp, part = drawn(random, 0.02, 0.5), random.uniform(0.1, 1.5)
+    a, h_a, n = log_uniform(random, 1e-3, 0.3), log_uniform(random, 3e-2, 30), log_uniform(random, 1e-2, 1e2)
+    sharp, part = log_uniform(random, 0.02, 0.5), random.uniform(0.1, 1.5)
     case = {"shape": shape, "half_angle": np.degrees(np.arctan(1 / sharp)), "flat_radius": part * a}
     case |= {"tip_radius": part * a / sharp, "edge_radius": a / sharp}
     k = random.choice([1.0, 1.5, 3.0, 4.0, 6.5])
     case |= {"shape_power": k, "shape_coefficient": sharp / k * a ** (1 - k)}
     case |= {"base": random.choice(["half_space", "layered"]), "h": h_a * a, "n": n, "micro": random.choice(LAWS)}
     case |= {"bonding": random.choice(["bonded", "frictionless"]), "m": random.choice([0.0, 0.3])}
-    A = a * sharp * drawn(random, 1e-5, 0.3)
-    case |= {"Ra": A * drawn(random, 1, 1e3), "B": drawn(random, 0.03, 1), "beta": random.uniform(0.3, 0.9)}
-    case |= {"Nbar": drawn(random, 0.1, 1) / (np.pi * case["Ra"] * A), "hardness": drawn(random, 1e-3, 1)}
+    A = a * sharp * log_uniform(random, 1e-5, 0.3)
+    case |= {"Ra": A * log_uniform(random, 1, 1e3), "B": log_uniform(random, 0.03, 1), "beta": random.uniform(0.3, 0.9)}
+    case |= {"Nbar": log_uniform(random, 0.1, 1) / (np.pi * case["Ra"] * A), "hardness": log_uniform(random, 1e-3, 1)}
     case |= {"sigma": A}
     modulus = n if case["base"] == "layered" and h_a > 1 else 1.0
     control = random.choice(["P", "D"] if shape == "flat" else ["P", "a", "D"])

@@ -36,13 +36,13 @@ ENDED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
 ROUNDING = 1e-15
 
 
-def drawn(random: np.random.Generator, low: float, high: float, size: int) -> np.ndarray:
+def log_uniform(random: np.random.Generator, low: float, high: float, size: int) -> np.ndarray:
     return np.exp(random.uniform(np.log(low), np.log(high), size))
 
 
 def shape_of(name: str, a: np.ndarray, random: np.random.Generator, folder: Path) -> tuple[dict, np.ndarray]:
     """Parameters of shapes, and possible contact radii near `a`."""
-    size, sharp, part = len(a), drawn(random, 0.02, 0.8, len(a)), random.uniform(0.05, 1.2, len(a))
+    size, sharp, part = len(a), log_uniform(random, 0.02, 0.8, len(a)), random.uniform(0.05, 1.2, len(a))
     b = np.minimum(part, 0.97) * a
     half_angle = np.degrees(np.arctan(1 / sharp))
     if name in ("paraboloid", "sphere"):
@@ -64,30 +64,34 @@ def shape_of(name: str, a: np.ndarray, random: np.random.Generator, folder: Path
 
 def body_of(base: str, a: np.ndarray, random: np.random.Generator) -> dict:
     size = len(a)
-    h_a = np.where(random.random(size) < 0.1, drawn(random, 1e-4, 1e-2, size), drawn(random, 0.03, 30, size))
-    n = np.where(random.random(size) < 0.1, 0.0, drawn(random, 1e-2, 1e3, size))
+    h_a = np.where(
+        random.random(size) < 0.1, log_uniform(random, 1e-4, 1e-2, size), log_uniform(random, 0.03, 30, size)
+    )
+    n = np.where(random.random(size) < 0.1, 0.0, log_uniform(random, 1e-2, 1e3, size))
     nu = np.where(random.random(size) < 0.2, 0.5, random.uniform(0, 0.5, size))
     if base == "half_space":
         return {"base": base}
     if base == "layered":
         m = random.choice([0.0, 0.4], size)
         return {"h": h_a * a, "n": n, "nu1": nu, "bonding": random.choice(["bonded", "frictionless"], size), "m": m}
-    below = {"h": drawn(random, 0.1, 5, size) * h_a * a, "n": drawn(random, 1e-2, 1e2, size), "nu": 0.35}
+    below = {"h": log_uniform(random, 0.1, 5, size) * h_a * a, "n": log_uniform(random, 1e-2, 1e2, size), "nu": 0.35}
     return {"layers": [{"h": h_a * a, "n": np.maximum(n, 0.01), "nu": nu}, below]}
 
 
 def cases(name: str, base: str, control: str, law: str, size: int, seed: int, folder: Path) -> dict:
     """Arguments of ``Problem.of`` of random contacts; a load or depth makes a contact of about the radius."""
     random = np.random.default_rng([seed, SHAPES.index(name), BASES.index(base), "aPD".index(control), LAWS.index(law)])
-    a = drawn(random, 1e-3, 0.4, size)
+    a = log_uniform(random, 1e-3, 0.4, size)
     shape, a = shape_of(name, a, random, folder)
     case = shape | body_of(base, a, random) | {"micro": "smooth", "rtol": 10.0 ** -random.integers(4, 11, size)}
     free = solve(Problem.of(a=a, **case) if name != "flat" else Problem.of(D=0.1 * a, **case))
     if law != "none":
-        G = np.abs(free.P) ** 2 / (8 * np.pi * a**3) * drawn(random, 1e-3, 1, size)
+        G = np.abs(free.P) ** 2 / (8 * np.pi * a**3) * log_uniform(random, 1e-3, 1, size)
         case |= {"adhesion": law, "w_adhesion": np.where(np.isfinite(G) & (G > 0), G, 1e-9)}
     if law == "maugis":
-        case |= {"sigma0": np.nan_to_num(np.abs(free.P), nan=1e-6) / (np.pi * a**2) * drawn(random, 0.1, 30, size)}
+        case |= {
+            "sigma0": np.nan_to_num(np.abs(free.P), nan=1e-6) / (np.pi * a**2) * log_uniform(random, 0.1, 30, size)
+        }
     value = {"a": a, "P": free.P, "D": free.D}[control]
     return case | {control: np.where(np.isfinite(value), value * random.uniform(0.3, 1, size), 1e-9)}
 

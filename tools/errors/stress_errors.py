@@ -47,12 +47,12 @@ def stresses(problem: Problem):
 
 def worst(size: int, seed: int) -> np.ndarray:
     """Largest difference, less the error of the better solution, over the stated error, of each contact."""
-    given = contacts(size, seed)
-    values, error = stresses(Problem.of(**given, rtol=1e-4))
-    right, own = stresses(Problem.of(**given, rtol=1e-11))
-    largest = np.nanmax(np.abs(right), axis=1)
-    missed = np.nanmax(np.abs(values - right), axis=1) / largest
-    return np.maximum(missed - own - ROUNDING, 0.0) / error
+    inputs = contacts(size, seed)
+    values, error = stresses(Problem.of(**inputs, rtol=1e-4))
+    true_values, true_error = stresses(Problem.of(**inputs, rtol=1e-11))
+    largest = np.nanmax(np.abs(true_values), axis=1)
+    missed = np.nanmax(np.abs(values - true_values), axis=1) / largest
+    return np.maximum(missed - true_error - ROUNDING, 0.0) / error
 
 
 def main() -> None:

@@ -59,15 +59,15 @@ def main() -> None:
     loads = {"P": np.tile(np.geomspace(1e-7, 1e-3, EACH), 10), "h": 0.02, "bonding": "bonded"}
     problem = Problem.of(**loads, n=n[pairs], nu1=nu1[pairs], nu2=nu2[pairs], Nbar=250000.0, Ra=0.004)
     solution = solve(problem)
-    told("extremes, 10 pairs of bodies", lambda: extremes_of(problem, solution), len(problem))
+    print_time("extremes, 10 pairs of bodies", lambda: extremes_of(problem, solution), len(problem))
     h, Y = np.geomspace(1e-3, 0.1, YIELDS), np.exp(random.uniform(np.log(2e-3), np.log(3e-2), YIELDS))
     for micro in ("smooth", "disc_cell"):
-        own = Problem.of(P=1.0, h=h, n=5.0, nu1=0.25, bonding="bonded", micro=micro, Nbar=250000.0, Ra=0.004)
+        rough_contacts = Problem.of(P=1.0, h=h, n=5.0, nu1=0.25, bonding="bonded", micro=micro, Nbar=250000.0, Ra=0.004)
         for body in ("layer", "body", *["asperities"] * (micro != "smooth")):
-            told(f"first yield, {micro}, {body}", lambda: first_yield(own, body, Y), YIELDS)  # noqa: B023
+            print_time(f"first yield, {micro}, {body}", lambda: first_yield(rough_contacts, body, Y), YIELDS)  # noqa: B023
 
 
-def told(what, action, count) -> None:
+def print_time(what, action, count) -> None:
     """Print the processor time per contact, of `count` contacts, and that of 1,000."""
     start = time.process_time()
     action()

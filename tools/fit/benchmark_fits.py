@@ -44,9 +44,9 @@ def least(function) -> float:
     function()
     seconds = []
     for _ in range(TIMES):
-        begun = process_time()
+        start = process_time()
         function()
-        seconds.append(process_time() - begun)
+        seconds.append(process_time() - start)
     return min(seconds)
 
 

@@ -85,10 +85,12 @@ def curves(
 def fitted(measured: xr.Dataset, h="known", intervals="fisher", alone=True) -> tuple[xr.Dataset, float]:
     """The fit, and its processor time in this process; alone : whether no other process may help."""
     engine.START = np.inf if alone else START
-    given = SCENE | {"h": "1 ± 0.1 um" if h == "prior" else "1 um"}
-    begun = time.process_time()
-    fit = study.fit(measured, free=["E1", "h"] if h == "free" else ["E1"], intervals=intervals, progress=False, **given)
-    return fit, time.process_time() - begun
+    inputs = SCENE | {"h": "1 ± 0.1 um" if h == "prior" else "1 um"}
+    start = time.process_time()
+    fit = study.fit(
+        measured, free=["E1", "h"] if h == "free" else ["E1"], intervals=intervals, progress=False, **inputs
+    )
+    return fit, time.process_time() - start
 
 
 def statuses(fit: xr.Dataset) -> str:
@@ -122,11 +124,11 @@ def report_times() -> None:
     for h, intervals in (("known", "fisher"), ("free", "profile")):
         measured, _ = curves(TIMED, 3, 0.01, h=h)
         _, seconds = fitted(measured, h, intervals)
-        begun = time.perf_counter()
+        start = time.perf_counter()
         fitted(measured, h, intervals, alone=False)
-        wall = time.perf_counter() - begun
-        said = f"{seconds:.1f} s of processor time alone, {wall:.1f} s by {engine.available_workers()} processors"
-        print(f"h {h}, {intervals}: {TIMED} x {POINTS}, {said}", flush=True)
+        wall = time.perf_counter() - start
+        times = f"{seconds:.1f} s of processor time alone, {wall:.1f} s by {engine.available_workers()} processors"
+        print(f"h {h}, {intervals}: {TIMED} x {POINTS}, {times}", flush=True)
 
 
 def report_hertz(count: int = 100) -> None:
@@ -134,18 +136,18 @@ def report_hertz(count: int = 100) -> None:
     E, deep = between(random, 1e2, 1e12, count), between(random, 1e-9, 1e-5, count)
     x = np.linspace(-0.2, 1.0, POINTS) * deep[:, None]
     y = 4 / 3 * (E / (1 - NU2**2))[:, None] * np.sqrt(R) * np.maximum(x, 0.0) ** 1.5
-    given = {"R": "100 um", "nu2": NU2, "micro": "smooth", "base": "half_space"}
-    fit = study.fit({"D": (x, "m"), "P": (y, "N")}, free=["E2"], progress=False, **given)
+    inputs = {"R": "100 um", "nu2": NU2, "micro": "smooth", "base": "half_space"}
+    fit = study.fit({"D": (x, "m"), "P": (y, "N")}, free=["E2"], progress=False, **inputs)
     print(f"Hertz: largest |E/true E - 1| {np.abs(fit.E2.values / E - 1).max():.0e}; {statuses(fit)}", flush=True)
 
 
 def speed() -> float:
     """Milliseconds of processor time of 1,000 solutions of 17 unknowns, to compare machines."""
     A, b = np.random.default_rng(0).random((17, 17)) + 17 * np.eye(17), np.ones(17)
-    begun = time.process_time()
+    start = time.process_time()
     for _ in range(1000):
         np.linalg.solve(A, b)
-    return 1e3 * (time.process_time() - begun)
+    return 1e3 * (time.process_time() - start)
 
 
 if __name__ == "__main__":

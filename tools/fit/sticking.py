@@ -124,8 +124,8 @@ def of_scene(kind: str, inputs: dict, data: tuple) -> dict[str, np.ndarray]:
 def report(kind: str, count: int) -> dict[str, np.ndarray]:
     rows = fitted(kind, count)
     for name in (*SHAPES, "all"):
-        here = (rows["shape"] == name) | (name == "all")
-        words, far, good = [], np.zeros(len(here), bool), here & (rows["status"] == "converged")
+        of_shape = (rows["shape"] == name) | (name == "all")
+        words, far, good = [], np.zeros(len(of_shape), bool), of_shape & (rows["status"] == "converged")
         for letter in "Ew":
             value, low, high, spread, true = (
                 rows[f"{letter} {end}"] for end in ("value", "low", "high", "spread", "true")
@@ -133,10 +133,10 @@ def report(kind: str, count: int) -> dict[str, np.ndarray]:
             share = ((low <= true) & (true <= high))[good].mean()
             words.append(f"{letter} {100 * share:.1f} ± {100 * np.sqrt(share * (1 - share) / good.sum()):.1f} %")
             far |= good & (np.abs(value - true) > np.maximum(5 * spread, 0.01 * true))
-        counts = dict(zip(*np.unique(rows["status"][here], return_counts=True), strict=True))
-        said = ", ".join(f"{word} {number}" for word, number in counts.items())
+        counts = dict(zip(*np.unique(rows["status"][of_shape], return_counts=True), strict=True))
+        texts = ", ".join(f"{word} {number}" for word, number in counts.items())
         print(f"{kind:7} {name:10} covered {', '.join(words)}; far {far.sum()}", end="; ")
-        print(f"{said}; {rows['seconds'][here].mean():.2f} s a curve", flush=True)
+        print(f"{texts}; {rows['seconds'][of_shape].mean():.2f} s a curve", flush=True)
     return rows
 
 

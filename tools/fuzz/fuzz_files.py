@@ -80,10 +80,14 @@ class Example:
             raise AssertionError(f"{what}: other variables")
         # blocks of other sizes sum in another order: 1e-12; error and residual are differences of nearly equal numbers
         for name in set(self.expected.variables) - {"error", "residual", "model_error"}:
-            one, other = found[name], self.expected[name]
-            same = one.dims == other.dims and repr(one.attrs) == repr(other.attrs)
-            numbers = one.dtype.kind == "f"
-            near = np.allclose(one, other, 1e-12, 0, equal_nan=True) if numbers else (one.values == other.values).all()
+            values, expected = found[name], self.expected[name]
+            same = values.dims == expected.dims and repr(values.attrs) == repr(expected.attrs)
+            numbers = values.dtype.kind == "f"
+            near = (
+                np.allclose(values, expected, 1e-12, 0, equal_nan=True)
+                if numbers
+                else (values.values == expected.values).all()
+            )
             if not (same and near):
                 raise AssertionError(f"{what}: {name} is silently wrong")
         if "status" in found and not np.isfinite(found.a.values[found.status.values == 0]).all():
@@ -119,10 +123,10 @@ def flip_results(example: Example, chance: random.Random, seen: Counter) -> None
     if state["state"] not in ("done", "damaged", "foreign") + ("outdated",) * sealed:
         raise AssertionError(f"status says {state['state']}")
     kind = examine(example.path).kind
-    found = attempt(opened.open, seen)
-    if found is not None:
-        example.check(found, f"open, {kind}")
-    if (found is None) != (kind in ("damaged", "foreign")) and state["state"] != "outdated":
+    results = attempt(opened.open, seen)
+    if results is not None:
+        example.check(results, f"open, {kind}")
+    if (results is None) != (kind in ("damaged", "foreign")) and state["state"] != "outdated":
         raise AssertionError(f"open and verify disagree: {kind}")
     report = attempt(opened.run, seen)
     seen[f"{kind}, sealed anew" if sealed else kind] += 1
@@ -151,7 +155,7 @@ def flip_block(example: Example, chance: random.Random, seen: Counter) -> None:
     seen["block"] += 1
 
 
-def apart(flip, example: Example, seed: float, seen: Counter, said: Path) -> str:
+def in_a_process(flip, example: Example, seed: float, seen: Counter, output: Path) -> str:
     """Run `flip` in a separate process; returns the fault or "". Damaged files corrupt the memory of HDF5: after some
     hundred of them in one process it ends the interpreter."""
     chance = random.Random(seed)
@@ -164,13 +168,13 @@ def apart(flip, example: Example, seed: float, seen: Counter, said: Path) -> str
             flip(example, chance, counts)
         except Exception:
             fault = traceback.format_exc()
-        said.write_text(json.dumps([counts, fault]), encoding="utf-8")
+        output.write_text(json.dumps([counts, fault]), encoding="utf-8")
         os._exit(0)
     _, ending = os.waitpid(child, 0)
     if ending:
         seen[ENDED] += may_end
         return "" if may_end else f"the process ended by signal {ending}"
-    counts, fault = json.loads(said.read_text(encoding="utf-8"))
+    counts, fault = json.loads(output.read_text(encoding="utf-8"))
     seen.update(counts)
     return fault
 
@@ -187,7 +191,7 @@ def main(flips: int, seed: int) -> int:
             example, seen = Example(kind, folder), Counter()
             for number in range(flips // len(STUDIES)):
                 flip = flip_block if example.blocks and number % 4 == 3 else flip_results
-                fault = apart(flip, example, chance.random(), seen, Path(name) / "said")
+                fault = in_a_process(flip, example, chance.random(), seen, Path(name) / "said")
                 if fault:
                     faults.append(f"{kind}, flip {number}: {fault}")
             print(f"{kind}: {dict(seen)}", flush=True)

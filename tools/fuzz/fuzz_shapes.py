@@ -118,13 +118,13 @@ def under(random, base, size, usual):
 def group(seed, number):
     """Arguments of ``Problem.of`` of a group, and its control."""
     random = np.random.default_rng([seed, number])
-    way, shape, base = WAYS[number % 5], NAMES[number // 5 % len(NAMES)], random.choice(BASES)
-    if way == "dmt" or (way == "maugis" and shape == "flat"):
+    kind, shape, base = WAYS[number % 5], NAMES[number // 5 % len(NAMES)], random.choice(BASES)
+    if kind == "dmt" or (kind == "maugis" and shape == "flat"):
         shape = "paraboloid"
     if shape == TABLE:
         shape = table(random, seed, number)
     control = str(random.choice(("P", "D") if shape == "flat" else tuple(CONTROL)))
-    size, usual = SIZES[way], random.random() < 0.5
+    size, usual = SIZES[kind], random.random() < 0.5
     numbers = SHAPES[shape].parameters if shape in SHAPES else ()
     case = {name: drawn(random, name, size, usual) for name in numbers if name in USUAL}
     case |= {"shape": shape, "base": str(base), "micro": "smooth", "rtol": 10 ** random.uniform(-9, -2, size)}
@@ -133,14 +133,14 @@ def group(seed, number):
         case["tip"] = random.choice(("paraboloid", "sphere"), size)
     case |= under(random, base, size, usual)
     value = drawn(random, control, size, usual)
-    if way == "rough":
+    if kind == "rough":
         case |= {name: drawn(random, name, size, usual) for name in ("Nbar", "Ra", "B", "beta")}
         case["micro"] = str(random.choice(LAWS))
-    elif way != "smooth":
-        case |= {"adhesion": way, "w_adhesion": drawn(random, "w_adhesion", size, usual)}
+    elif kind != "smooth":
+        case |= {"adhesion": kind, "w_adhesion": drawn(random, "w_adhesion", size, usual)}
         case |= {"branch": random.choice(BRANCHES, size, p=[0.8, 0.2])}
         case |= {"k_machine": drawn(random, "k_machine", size, True)} if random.random() < 0.3 else {}
-        case |= {"sigma0": drawn(random, "sigma0", size, usual)} if way == "maugis" else {}
+        case |= {"sigma0": drawn(random, "sigma0", size, usual)} if kind == "maugis" else {}
         if control == "P":
             value = np.where(random.random(size) < 0.5, -5 * random.random(size) * case["w_adhesion"], value)
         elif control == "D":
@@ -176,13 +176,13 @@ def differs(s: Solution, case: dict, control: str) -> np.ndarray:
     if control == "a" or case["shape"] == "flat" or not len(index):
         return out
     part = {name: v[index] if isinstance(v, np.ndarray) else v for name, v in case.items() if name != control}
-    again = solve(Problem.of(**part, a=s.a[index]), X)
-    by_radius = np.abs(getattr(again, control) - getattr(s, control)[index])
+    of_radius = solve(Problem.of(**part, a=s.a[index]), X)
+    by_radius = np.abs(getattr(of_radius, control) - getattr(s, control)[index])
     # with the radius, P or D has an error from the rounding of a: a - b at a flat end, P near 0 with adhesion
     scale = np.abs(s.dP_dD if control == "P" else 1 / s.dP_dD)[index] * np.abs(s.D if control == "P" else s.P)[index]
     scale = np.maximum(np.abs(getattr(s, control)[index]), np.where(np.isfinite(scale), scale, np.inf))
-    allowed = AGREE * (s.error[index] + again.error + 1e-9) * scale
-    out[index] = (again.status == Status.CONVERGED) & ~(by_radius <= allowed)
+    allowed = AGREE * (s.error[index] + of_radius.error + 1e-9) * scale
+    out[index] = (of_radius.status == Status.CONVERGED) & ~(by_radius <= allowed)
     return out
 
 
@@ -211,12 +211,12 @@ def violations(seed, number, ended):
 
 
 def main(count: int = 500, seed: int = 0) -> int:
-    begun, ended, texts = perf_counter(), Counter(), []
+    start, ended, texts = perf_counter(), Counter(), []
     for number in range(count):
         new = violations(seed, number, ended)
         texts += new
         print(*new, sep="\n", end="\n" if new else "", flush=True)
-    print(f"{sum(ended.values())} cases in {perf_counter() - begun:.0f} s: {dict(ended)}; {len(texts)} violations")
+    print(f"{sum(ended.values())} cases in {perf_counter() - start:.0f} s: {dict(ended)}; {len(texts)} violations")
     return min(len(texts), 1)
 
 

@@ -132,13 +132,13 @@ def differs(s: Solution, case: dict, control: str) -> np.ndarray:
     if control == "a" or not len(index):
         return out
     part = {name: value[index] if np.ndim(value) else value for name, value in case.items() if name != control}
-    again = solve(Problem.of(**part, a=s.a[index]), X)
-    given, found = getattr(s, control)[index], getattr(again, control)
-    both = again.status == Status.CONVERGED
-    allowed = AGREE * (s.error[index] + again.error + 1e-12)
-    out[index] = both & ~(np.abs(found / given - 1) <= allowed)
-    if case["base"] == "auto":  # by its radius it may take another model
-        out[index] &= again.model_used == s.model_used[index]
+    of_radius = solve(Problem.of(**part, a=s.a[index]), X)
+    of_load, of_same_radius = getattr(s, control)[index], getattr(of_radius, control)
+    both_converged = of_radius.status == Status.CONVERGED
+    allowed = AGREE * (s.error[index] + of_radius.error + 1e-12)
+    out[index] = both_converged & ~(np.abs(of_same_radius / of_load - 1) <= allowed)
+    if case["base"] == "auto":  # with its radius it may take another model
+        out[index] &= of_radius.model_used == s.model_used[index]
     return out
 
 
@@ -147,13 +147,15 @@ def fuzz(groups, seed, singles=0, share=1):
 
     singles : part of the cases that are solved alone; share : groups are this many times smaller.
     """
-    found, ended, times = [], Counter(), []
+    texts, ended, times = [], Counter(), []
     with TemporaryDirectory() as folder:
         for number in groups:
             wrong = [*violations(seed, number, Path(folder), singles, share, ended, times)]
-            own = Path(folder) / f"{number}.csv"
-            found += [f"{text}\n{own.read_text(encoding='utf-8')}" if own.exists() else text for text in wrong]
-    return found, ended, times
+            table_file = Path(folder) / f"{number}.csv"
+            texts += [
+                f"{text}\n{table_file.read_text(encoding='utf-8')}" if table_file.exists() else text for text in wrong
+            ]
+    return texts, ended, times
 
 
 def violations(seed, number, folder, singles, share, ended, times):
@@ -173,10 +175,10 @@ def violations(seed, number, folder, singles, share, ended, times):
         yield from (f"{words}: {alone(case, i)}: {shown(s, i)}" for i in np.flatnonzero(mask))
     for i in np.flatnonzero(np.random.default_rng([seed, number, 1]).random(len(s.a)) < singles):
         start = time.process_time()
-        one = solve(Problem.of(**alone(case, i)), X)
+        lone = solve(Problem.of(**alone(case, i)), X)
         times.append(time.process_time() - start)
         if times[-1] > SLOWEST:
-            yield f"{times[-1]:.1f} s: {alone(case, i)}: {Status(one.status[0]).name}"
+            yield f"{times[-1]:.1f} s: {alone(case, i)}: {Status(lone.status[0]).name}"
 
 
 def alone(case, i):
@@ -195,17 +197,17 @@ def main(arguments=None):
     parser.add_argument("--cases", type=int, default=20_000)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--singles", type=float, default=0.1, help="part of the cases solved once more, and timed")
-    given = parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
     start = time.perf_counter()
-    found, ended, times = fuzz(range(ROUND * -(-given.cases // 5400)), given.seed, given.singles)
-    print("\n".join(found[:50]))
+    texts, ended, times = fuzz(range(ROUND * -(-options.cases // 5400)), options.seed, options.singles)
+    print("\n".join(texts[:50]))
     seconds = np.array(times) if times else np.zeros(1)
     ends_of = ", ".join(f"{count} {name}" for name, count in ended.most_common())
     print(f"{sum(ended.values())} cases in {time.perf_counter() - start:.0f} s: {ends_of}")
     median, most = np.median(seconds), np.quantile(seconds, 0.99)
     print(f"{len(times)} alone: median {median:.3f} s, 99 % below {most:.2f} s, longest {seconds.max():.1f} s")
-    print(f"{len(found)} violations")
-    return 1 if found else 0
+    print(f"{len(texts)} violations")
+    return 1 if texts else 0
 
 
 if __name__ == "__main__":

@@ -106,10 +106,10 @@ def _number(chance, lines, at):
     numbers = list(re.finditer(r"\d[\d_]*\.?\d*(?:e[-+]?\d+)?", lines[at]))
     if not numbers:
         return lines
-    found = chance.choice(numbers)
-    value = float(found[0].replace("_", "")) * 10 ** chance.choice((0.1, -0.1, 1, -1, 4, -4))
-    new = f"{value:.4g}" if "." in found[0] or "e" in found[0] else str(min(int(value), 10**18))
-    return [*lines[:at], lines[at][: found.start()] + new + lines[at][found.end() :], *lines[at + 1 :]]
+    number = chance.choice(numbers)
+    value = float(number[0].replace("_", "")) * 10 ** chance.choice((0.1, -0.1, 1, -1, 4, -4))
+    new = f"{value:.4g}" if "." in number[0] or "e" in number[0] else str(min(int(value), 10**18))
+    return [*lines[:at], lines[at][: number.start()] + new + lines[at][number.end() :], *lines[at + 1 :]]
 
 
 def _word(chance, lines, at):
@@ -130,7 +130,7 @@ CHANGES = (
 )  # fmt: skip
 
 
-def said(arguments: list[str]) -> tuple[int, str]:
+def exit_and_messages(arguments: list[str]) -> tuple[int, str]:
     """Exit code of a command and its output on stderr."""
     from study.__main__ import main
 
@@ -151,7 +151,7 @@ def fault(arguments: list[str]) -> tuple[int, str]:
     # lost.
     signal.setitimer(signal.ITIMER_VIRTUAL, PATIENCE, PATIENCE)
     try:
-        code, text = said(arguments)
+        code, text = exit_and_messages(arguments)
     except (Exception, SystemExit, Hang) as error:
         return 1, f"{type(error).__name__}: {str(error)[:300]}"
     finally:
@@ -166,7 +166,7 @@ def faults(count: int, seed: int, folder: Path, done: Counter) -> list[str]:
     """The faults in the ends of the commands; `done` counts the commands by exit code."""
     from study.inputs.reading import read
 
-    found, texts, file = [], bases(), folder / "mutated.toml"
+    texts_of_faults, texts, file = [], bases(), folder / "mutated.toml"
     for number in range(count):
         chance = random.Random(f"{seed} {number}")
         file.write_bytes(mutated(chance, chance.choice(texts)))
@@ -178,26 +178,26 @@ def faults(count: int, seed: int, folder: Path, done: Counter) -> list[str]:
             commands += [["run", str(file)]] * (chance.randrange(RUN) == 0)
         for command in commands:
             results = ["--workers", "1", "--results", str(folder / str(number))]
-            code, again = fault([*command, *results])
+            code, second_fault = fault([*command, *results])
             done[f"{' '.join(command[::2])} {code}"] += 1
-            wrong = wrong or again
+            wrong = wrong or second_fault
         if wrong:
-            kept = folder / f"fault{number}.toml"
-            kept.write_bytes(file.read_bytes())
-            found.append(f"{kept}: {wrong}")
-    return found
+            copy_of_file = folder / f"fault{number}.toml"
+            copy_of_file.write_bytes(file.read_bytes())
+            texts_of_faults.append(f"{copy_of_file}: {wrong}")
+    return texts_of_faults
 
 
 def main() -> int:
-    count, seed = ([int(given) for given in sys.argv[1:]] + [5000, 0][len(sys.argv) - 1 :])[:2]
+    count, seed = ([int(word) for word in sys.argv[1:]] + [5000, 0][len(sys.argv) - 1 :])[:2]
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    begun, done = time.monotonic(), Counter()
-    found = faults(count, seed, Path(tempfile.mkdtemp(prefix="fuzz_studies")), done)
+    start, done = time.monotonic(), Counter()
+    texts = faults(count, seed, Path(tempfile.mkdtemp(prefix="fuzz_studies")), done)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024) / 1e9
-    print(*found, sep="\n")
-    print(f"{count} study files in {time.monotonic() - begun:.0f} s, {peak:.2f} GB: {len(found)} faults", dict(done))
-    return min(len(found), 1)
+    print(*texts, sep="\n")
+    print(f"{count} study files in {time.monotonic() - start:.0f} s, {peak:.2f} GB: {len(texts)} faults", dict(done))
+    return min(len(texts), 1)
 
 
 if __name__ == "__main__":

@@ -46,24 +46,24 @@ def main(kills: int, seed: int, parts: bool) -> int:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "many.toml").write_text(TEXT, encoding="utf-8")
-        there, apart = (study.load(folder / "many.toml", folder / word) for word in ("results", "apart"))
-        apart.run(workers=1)
-        command += ["run", str(folder / "many.toml"), "--results", str(there.results), "--workers", "2"]
-        path, right = there.results / place, numbers_digest(apart.results / place)
-        begun = time.monotonic()
+        killed, undisturbed = (study.load(folder / "many.toml", folder / word) for word in ("results", "apart"))
+        undisturbed.run(workers=1)
+        command += ["run", str(folder / "many.toml"), "--results", str(killed.results), "--workers", "2"]
+        path, right = killed.results / place, numbers_digest(undisturbed.results / place)
+        start = time.monotonic()
         subprocess.run(command, env=environment, capture_output=True, check=True)
-        lasts, wrong = time.monotonic() - begun, 0
+        lasts, wrong = time.monotonic() - start, 0
         for _ in range(kills):
-            if there.status()["state"] == "done":
+            if killed.status()["state"] == "done":
                 wrong += numbers_digest(path) != right
-                shutil.rmtree(there.results) if parts or chance.random() < 0.5 else path.unlink()
+                shutil.rmtree(killed.results) if parts or chance.random() < 0.5 else path.unlink()
             run = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             time.sleep(chance.uniform(0, lasts))
             run.kill()
             run.wait()
         subprocess.run(command, env=environment, capture_output=True, check=True)
         wrong += numbers_digest(path) != right
-        wrong += there.verify().kind != "sound"
+        wrong += killed.verify().kind != "sound"
     print(f"{kills} kills, {wrong} results that differ, seed {seed}")
     return bool(wrong)
 

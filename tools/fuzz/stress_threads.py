@@ -25,10 +25,10 @@ AXES = {"P": [1e-6 * i for i in range(1, 41)]}
 TEXT = '[model]\nmicro = "smooth"\nbase = "half_space"\n[axes]\nP = {}\n[numerics]\nblock = 10\n[output]\nx = 9\n'
 
 
-def right(found) -> bool:
+def right(contacts) -> bool:
     """Whether a is that of Hertz, (3P/4)^(1/3), within rtol 1e-6, which the iteration more than reaches."""
-    exact = (0.75 * found.P.values) ** (1 / 3)
-    return bool((found.status.values == 0).all() and np.allclose(found.a.values, exact, rtol=1e-6, atol=0))
+    exact = (0.75 * contacts.P.values) ** (1 / 3)
+    return bool((contacts.status.values == 0).all() and np.allclose(contacts.a.values, exact, rtol=1e-6, atol=0))
 
 
 def solving(folder: Path, number: int) -> None:
@@ -68,9 +68,9 @@ def asking(folder: Path, number: int) -> None:
 
 def written(folder: Path, name: str, loads: list) -> study.Study:
     """The study of a file that is written under another name and moved: `asking` may read it at any time, but whole."""
-    beside = folder / f"{name}.toml.new"
-    beside.write_text(TEXT.format(loads), encoding="utf-8")
-    beside.replace(folder / f"{name}.toml")
+    new_file = folder / f"{name}.toml.new"
+    new_file.write_text(TEXT.format(loads), encoding="utf-8")
+    new_file.replace(folder / f"{name}.toml")
     return opened_of(folder, name)
 
 

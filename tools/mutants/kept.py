@@ -26,11 +26,11 @@ def _within(tables: dict, path: tuple[str, ...]) -> Iterator[tuple[str, str, str
 
 def changes(root: Path = ROOT) -> list[Change]:
     """The list as changes of the files. Raises ValueError if an old text is not in its file exactly once."""
-    found = []
+    changes_of_list = []
     for name, file, old, new in read(root):
         source = (root / file).read_bytes()
         if source.count(old.encode()) != 1:
             raise ValueError(f"{name}: {file} has this {source.count(old.encode())} times: {old}")
         start = source.index(old.encode())
-        found.append(Change(file, start, start + len(old.encode()), new, "by hand"))
-    return found
+        changes_of_list.append(Change(file, start, start + len(old.encode()), new, "by hand"))
+    return changes_of_list

@@ -67,7 +67,10 @@ def table(verdicts: list[Verdict]) -> list[str]:
         rooms[str(Path(verdict.change.file).parent)].append(verdict.killed)
     lines = [f"{name}: {sum(killed)} of {len(killed)} noticed" for name, killed in sorted(parts.items())]
     left = [f"{name} {len(killed) - sum(killed)} of {len(killed)}" for name, killed in sorted(rooms.items())]
-    return [*lines, "not noticed: " + ", ".join(one for one in left if not one.startswith("0 ") and " 0 of" not in one)]
+    return [
+        *lines,
+        "not noticed: " + ", ".join(count for count in left if not count.startswith("0 ") and " 0 of" not in count),
+    ]
 
 
 def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
@@ -87,7 +90,7 @@ def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
     os.environ |= {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL")}
     for library in libraries:
         import_module(library)
-    begun, verdicts, chosen = time.monotonic(), [], {}
+    start, verdicts, chosen = time.monotonic(), [], {}
     with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as temporary:
         folders = [Path(temporary) / f"tree{i}" for i in range(options.jobs)]
         for folder in folders:
@@ -97,14 +100,16 @@ def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
                 break
             if (changed := compiled(change, root, Path(temporary) / "core")) is not None:
                 chosen[change] = changed
-        known = known_of(folders, options.map)
-        print(f"{len(known['tests'])} tests, of the code as it is failed: {known['failed']}", flush=True)
-        for verdict in judged(chosen, folders, known, options.seconds):
+        runs_of_tests = known_of(folders, options.map)
+        print(
+            f"{len(runs_of_tests['tests'])} tests, of the code as it is failed: {runs_of_tests['failed']}", flush=True
+        )
+        for verdict in judged(chosen, folders, runs_of_tests, options.seconds):
             verdicts.append(verdict)
             change, text = verdict.change, (root / verdict.change.file).read_text(encoding="utf-8")
             print(f"{len(verdicts)} of {len(chosen)}: {change.file}:{change.line(text)} {change.kind}: "
                   f"{change.shown(text)}: {verdict}", flush=True)  # fmt: skip
-    minutes = (time.monotonic() - begun) / 60
+    minutes = (time.monotonic() - start) / 60
     print(f"seed {options.seed}, {len(verdicts)} mistakes, {minutes:.0f} min with {options.jobs} processes")
     print("\n".join(table(verdicts)))
     shares = defaultdict(list)

@@ -60,8 +60,8 @@ class Change:
 def changes(file: str, text: str) -> list[Change]:
     """All mistakes that can be made in a file of this name and text, in their order; some may not compile."""
     make = _in_python if Path(file).suffix == ".py" else _in_tokens
-    made = {change for change in make(file, text) if change.applied(text) != text}
-    return sorted(made, key=lambda change: (change.start, change.stop, change.new))
+    mistakes = {change for change in make(file, text) if change.applied(text) != text}
+    return sorted(mistakes, key=lambda change: (change.start, change.stop, change.new))
 
 
 # Python ------------------------------------------------------------------------------------------------------------
@@ -187,7 +187,7 @@ TYPES = {
 
 
 def _in_tokens(file: str, text: str) -> Iterator[Change]:
-    tokens = [found for found in TOKEN.finditer(text) if found.lastgroup != "skip"]
+    tokens = [match for match in TOKEN.finditer(text) if match.lastgroup != "skip"]
 
     def change(token: re.Match, new: str, kind: str) -> Change:
         start, stop = (len(text[:at].encode()) for at in token.span())

@@ -206,7 +206,7 @@ def _function(text: str, line: int) -> range | None:
     inner = None
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
-            first = min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", []))])
+            first = min([node.lineno, *(decorator.lineno for decorator in getattr(node, "decorator_list", []))])
             if first <= line <= node.end_lineno and (inner is None or first >= inner.start):
                 inner = range(first, node.end_lineno + 1)
     return inner
@@ -225,10 +225,10 @@ def known_of(folders: list[Path], kept: Path | None) -> dict:
     ((_, computing),) = answers([Task("results", lambda _: results_in(results))], folders[:1])
     if isinstance(computing, str):
         raise RuntimeError(f"the studies of the tests cannot be computed: {computing}")
-    known = json.loads(kept.read_text()) if kept and kept.exists() else mapped(folders, results)
+    runs_of_tests = json.loads(kept.read_text()) if kept and kept.exists() else mapped(folders, results)
     if kept:
-        kept.write_text(json.dumps(known))
-    return known | {"computing": computing, "results": results}
+        kept.write_text(json.dumps(runs_of_tests))
+    return runs_of_tests | {"computing": computing, "results": results}
 
 
 def compiled(change: Change, root: Path, folder: Path) -> dict[str, bytes] | None:
@@ -276,11 +276,13 @@ def judged(changes: dict[Change, dict[str, bytes]], folders: list[Path], known: 
         yield judge(task.key, found)
 
 
-def judge(change: Change, found) -> Verdict:
+def judge(change: Change, outcome) -> Verdict:
     """The verdict from the result of the tests: a dict of :func:`tested`, or a text without one."""
-    if isinstance(found, str):
-        return Verdict(change, True, found.strip().splitlines()[-1])
-    by = (found["failed"] or [f"pytest, which ends with {found['code']}"])[0]
+    if isinstance(outcome, str):
+        return Verdict(change, True, outcome.strip().splitlines()[-1])
+    by = (outcome["failed"] or [f"pytest, which ends with {outcome['code']}"])[0]
     return (
-        Verdict(change, True, f"{by} of make verify" * left_out(by) or by) if found["code"] else Verdict(change, False)
+        Verdict(change, True, f"{by} of make verify" * left_out(by) or by)
+        if outcome["code"]
+        else Verdict(change, False)
     )

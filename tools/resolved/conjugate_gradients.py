@@ -19,17 +19,17 @@ def pressed(displaced, height, p, mean, tolerance):
     tolerance : relative change of the pressure in a step that ends the search
     """
     p = p * mean / p.mean()
-    way, size, conjugate = np.zeros_like(p), 1.0, 0.0
+    direction, size, conjugate = np.zeros_like(p), 1.0, 0.0
     for _ in range(_STEPS):
         inside, gap = p > 0, displaced(p) + height
         approach = gap[inside].mean()
         gap -= approach
         old_size, size = size, (gap[inside] ** 2).sum()
-        way = np.where(inside, gap + conjugate * size / old_size * way, 0.0)
-        change = displaced(way)
+        direction = np.where(inside, gap + conjugate * size / old_size * direction, 0.0)
+        change = displaced(direction)
         change -= change[inside].mean()
-        step = (gap * way)[inside].sum() / (change * way)[inside].sum()
-        old, p = p, np.maximum(p - step * way, 0.0)
+        step = (gap * direction)[inside].sum() / (change * direction)[inside].sum()
+        old, p = p, np.maximum(p - step * direction, 0.0)
         returning = (p == 0) & (gap < 0)
         conjugate = 0.0 if returning.any() else 1.0
         p = np.where(returning, p - step * gap, p)

@@ -35,13 +35,13 @@ def coefficients(side: float, count: int, layer: Layer | None = None) -> np.ndar
     """
     away = np.arange(count + 1) * side
     high, low = away + side / 2, away - side / 2
-    found = (_corner(high, high) - _corner(low, high) - _corner(high, low) + _corner(low, low)) / np.pi
+    displacements = (_corner(high, high) - _corner(low, high) - _corner(high, low) + _corner(low, low)) / np.pi
     if layer is None:
-        return found
+        return displacements
     points = np.array([-1.0, 1.0]) * side / np.sqrt(12)  # Gauss points, two along a side
-    beside = away[:, None] + points
-    far = np.hypot(beside[:, None, :, None], beside[None, :, None, :])
-    return found / layer.n + side**2 * remainder(far, layer).mean(axis=(2, 3))
+    points_of_elements = away[:, None] + points
+    far = np.hypot(points_of_elements[:, None, :, None], points_of_elements[None, :, None, :])
+    return displacements / layer.n + side**2 * remainder(far, layer).mean(axis=(2, 3))
 
 
 def _corner(x: np.ndarray, y: np.ndarray) -> np.ndarray:

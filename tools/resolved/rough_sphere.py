@@ -43,10 +43,10 @@ def resolved(punch: Punch, P, half, points, layer: Layer | None = None, start=No
     side = 2 * half / points
     middle = (np.arange(points) + 0.5) * side - half
     even = punch.heights is None
-    own = slice(points // 2, None) if even else slice(None)
+    part = slice(points // 2, None) if even else slice(None)
     displaced = convolution(coefficients(side, points, layer), even)
-    x, y = np.meshgrid(middle[own], middle[own], indexing="ij")
-    start = np.where(np.hypot(x, y) < 0.8 * half, 1.0, 0.0) if start is None else start[own, own]
+    x, y = np.meshgrid(middle[part], middle[part], indexing="ij")
+    start = np.where(np.hypot(x, y) < 0.8 * half, 1.0, 0.0) if start is None else start[part, part]
     D, p = pressed(displaced, height(punch, x, y), start, P / (2 * half) ** 2, tolerance)
     if even:
         p = np.pad(p, [(points // 2, 0)] * 2, mode="symmetric")
@@ -68,11 +68,11 @@ def asperities(x, y, pitch, Ra, summits) -> np.ndarray:
     above x = y = 0, and a row surrounds those of the cells on each side."""
     near, middle = [np.round(v / pitch).astype(int) for v in (x, y)], len(summits) // 2
 
-    def one(i, j):
-        apart = (x - i * pitch) ** 2 + (y - j * pitch) ** 2
-        return apart / (2 * Ra) - summits[i + middle, j + middle]
+    def paraboloid(i, j):
+        squared_distance = (x - i * pitch) ** 2 + (y - j * pitch) ** 2
+        return squared_distance / (2 * Ra) - summits[i + middle, j + middle]
 
-    return np.min([one(near[0] + i, near[1] + j) for i, j in product((-1, 0, 1), repeat=2)], axis=0)
+    return np.min([paraboloid(near[0] + i, near[1] + j) for i, j in product((-1, 0, 1), repeat=2)], axis=0)
 
 
 def cell_means(found: Resolved, pitch) -> tuple[np.ndarray, np.ndarray]:

@@ -21,7 +21,7 @@ from validate_page import texts
 from validate_rates import rates
 
 
-def found(folder: Path) -> dict[str, xr.Dataset]:
+def all_data(folder: Path) -> dict[str, xr.Dataset]:
     """All data of the pages and figures; contacts that are missing in the folder are solved."""
     spheres = xr.concat([compared(sphere, folder) for sphere in SPHERES], "case")
     spheres["finer"] = "quantity", finer(folder)
@@ -42,11 +42,12 @@ def found(folder: Path) -> dict[str, xr.Dataset]:
 
 def main(docs: Path, folder: Path) -> None:
     """Solve the missing contacts, and write the files."""
-    parts = found(folder)
+    parts = all_data(folder)
     tree = xr.DataTree.from_dict({"/": xr.Dataset(attrs={"command": "make validate"}), **parts})
     small = {"zlib": True, "dtype": "float32"}
     packed = {
-        f"/{name}": {own: small for own in part.data_vars if part[own].size > 500} for name, part in parts.items()
+        f"/{name}": {variable: small for variable in part.data_vars if part[variable].size > 500}
+        for name, part in parts.items()
     }
     tree.to_netcdf(docs / "validate.nc", encoding=packed)
     draw_means(parts["half_space"], parts["layer"], docs / "validate.png")

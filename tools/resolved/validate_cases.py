@@ -58,7 +58,7 @@ THIN = (
 )
 
 
-def kept(folder: Path, key: tuple, solve) -> dict[str, np.ndarray]:
+def stored(folder: Path, key: tuple, solve) -> dict[str, np.ndarray]:
     """The arrays that `solve` returns. They come from the folder if an earlier run had the same key."""
     name = hashlib.sha256(repr(key).encode()).hexdigest()[:16]
     path = folder / f"{name}.npz"
@@ -74,21 +74,21 @@ def kept(folder: Path, key: tuple, solve) -> dict[str, np.ndarray]:
 
 def solved(case: Case, folder: Path) -> list[Resolved]:
     """The contact on each of its meshes, from the folder or solved now; each solution starts from the coarser one."""
-    found, start = [], None
+    solutions, start = [], None
     for points in case.points:
 
         def solve(points=points, start=start):
             half = case.cells * case.pitch / 2
-            one = resolved(Punch(case.pitch, RA), case.P, half, points, case.layer, start, TOLERANCE)
-            return one._asdict()
+            solution = resolved(Punch(case.pitch, RA), case.P, half, points, case.layer, start, TOLERANCE)
+            return solution._asdict()
 
-        data = kept(folder, ("sphere", RA, case._replace(name="", points=()), points), solve)
-        found.append(Resolved(float(data["D"]), data["p"], data["middle"], float(data["side"])))
-        start = np.kron(found[-1].p, np.ones((2, 2)))
-    return found
+        data = stored(folder, ("sphere", RA, case._replace(name="", points=()), points), solve)
+        solutions.append(Resolved(float(data["D"]), data["p"], data["middle"], float(data["side"])))
+        start = np.kron(solutions[-1].p, np.ones((2, 2)))
+    return solutions
 
 
-def given(layer: Layer | None, over: str = "base") -> dict:
+def parameters_of(layer: Layer | None, over: str = "base") -> dict:
     """The layer as parameters of the two scales, with every base that may be used for it, or with every
     `asperities_on`; the best first."""
     if layer is None:
@@ -100,13 +100,13 @@ def given(layer: Layer | None, over: str = "base") -> dict:
 
 def predicted(case: Case, over: str) -> xr.Dataset:
     """The QUANTITIES on two scales, over the bases or `asperities_on`, and the laws."""
-    asked = {"P": case.P, "Nbar": case.pitch**-2, "Ra": RA, "x": 801, "rtol": 1e-6, "micro": list(LAWS[over])}
-    found = study.solve(**asked, **given(case.layer, over)).load().transpose(over, "micro", "x")
-    x, p = found["x"].values, found["p"].values
-    scaled = [[width(x, one, x) for one in some] for some in p]
-    found["width"] = (over, "micro"), scaled * found["a"].values
-    found["area"] = found["Ar_An"] * np.pi * found["a"] ** 2
-    return found
+    inputs = {"P": case.P, "Nbar": case.pitch**-2, "Ra": RA, "x": 801, "rtol": 1e-6, "micro": list(LAWS[over])}
+    results = study.solve(**inputs, **parameters_of(case.layer, over)).load().transpose(over, "micro", "x")
+    x, p = results["x"].values, results["p"].values
+    scaled = [[width(x, profile, x) for profile in profiles] for profiles in p]
+    results["width"] = (over, "micro"), scaled * results["a"].values
+    results["area"] = results["Ar_An"] * np.pi * results["a"] ** 2
+    return results
 
 
 def measured(found: Resolved) -> dict[str, float]:
@@ -134,7 +134,7 @@ def compared(case: Case, folder: Path, over: str = "base") -> xr.Dataset:
     best = two.isel({over: 0}).sel(micro="square_lattice")
     data = {f"{name}_resolved": finest[name] for name in QUANTITIES}
     data |= {f"{name}_uncertain": abs(finest[name] / fine[name] - 1) / 2 for name in QUANTITIES}
-    data |= {f"{name}_error": (dims, two[own].values / finest[name] - 1) for name, own in QUANTITIES.items()}
+    data |= {f"{name}_error": (dims, two[result].values / finest[name] - 1) for name, result in QUANTITIES.items()}
     data |= {"a0": float(best["a"]), "lam0": float(best["lam0"]), "p0": float(best["p0"])}
     data |= {"pitch": case.pitch, "h": case.layer.h if case.layer else np.inf}
     data |= {"model_error": (dims, two["model_error"].values), "cell_error": (dims, cell_errors(r, mean, two, case))}
@@ -159,5 +159,5 @@ def cell_errors(r, mean, two: xr.Dataset, case: Case) -> np.ndarray:
 
 def together(cases: tuple[Case, ...], folder: Path, over: str = "base") -> xr.Dataset:
     """`compared` of all cases, along a dimension of their names."""
-    found = xr.concat([compared(case, folder, over) for case in cases], "case", join="outer")
-    return found.assign_coords(case=[case.name for case in cases])
+    cases_together = xr.concat([compared(case, folder, over) for case in cases], "case", join="outer")
+    return cases_together.assign_coords(case=[case.name for case in cases])

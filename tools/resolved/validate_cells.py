@@ -15,7 +15,7 @@ import xarray as xr
 from influence import Layer
 from layered_independent import kernel
 from rough_sphere import touched_share
-from validate_cases import kept, richardson
+from validate_cases import richardson, stored
 
 from solver.laws import LAWS, cell_rows
 from solver.laws.cell.periodic import pressed, response_of
@@ -120,13 +120,15 @@ def cells(folder: Path) -> xr.Dataset:
     """The resolved numbers of CELLS, ± half the change between the meshes, and the errors of both laws."""
     parts = []
     for cell in CELLS:
-        p, known = laws(cell)
+        p, predictions = laws(cell)
         key = ("layer cell", *cell[:3], *cell.layer, cell.m, MESHES)
-        meshes = kept(folder, key, lambda cell=cell, p=p: {"meshes": [resolved(cell, p, points) for points in MESHES]})
+        meshes = stored(
+            folder, key, lambda cell=cell, p=p: {"meshes": [resolved(cell, p, points) for points in MESHES]}
+        )
         coarse, fine = meshes["meshes"][-2:]
         limit = richardson(coarse[:3], fine[:3], ORDER)
         data = {"p": p, "resolved": ("quantity", limit), "uncertain": ("quantity", np.abs(limit / fine[:3] - 1) / 2)}
-        data |= {"error": (("on", "quantity"), known / limit - 1), "largest": fine[3] / fine[2]}
+        data |= {"error": (("on", "quantity"), predictions / limit - 1), "largest": fine[3] / fine[2]}
         data |= {"lattice": cell.lattice, "lam": cell.lam, "pitch_over_h": cell.pitch, "m": cell.m}
         parts.append(xr.Dataset(data | {name: getattr(cell.layer, name) for name in ("n", "nu1", "nu2", "bonded")}))
     return xr.concat(parts, "cell").assign_coords(on=["half_space", "layer"], quantity=list(QUANTITIES))
@@ -141,9 +143,9 @@ def films() -> xr.Dataset:
         for j, lam in enumerate(LAMS):
             for k, pitch in enumerate(PITCHES):
                 cell = Cell("square", lam, pitch, layer)
-                p, known = laws(cell)
+                p, predictions = laws(cell)
                 exact = resolved(cell, p, POINTS)[:3]
-                change[i, j, k], error[i, j, k] = exact / known[0] - 1, known / exact - 1
+                change[i, j, k], error[i, j, k] = exact / predictions[0] - 1, predictions / exact - 1
             A = np.array([laws(Cell("square", lam, pitch, layer))[1][:, 0] for pitch in FINE.tolist()])
             law[i, j] = A[:, 1] / A[:, 0] - 1
     dims = ("material", "lam", "pitch_over_h")
@@ -156,11 +158,11 @@ def films() -> xr.Dataset:
 def sparse() -> xr.Dataset:
     """A over that on a half-space, less 1, of spots of a tenth of the layer's thickness, over (n, λ); and pitch/h."""
     pitch = 0.1 / np.sqrt(np.array(SPARSE) / np.pi)
-    found = np.empty((len(STIFF), len(SPARSE)))
+    changes = np.empty((len(STIFF), len(SPARSE)))
     for i, n in enumerate(STIFF):
         for j, (lam, l_h) in enumerate(zip(SPARSE, pitch, strict=True)):
-            _, (bare, known) = laws(Cell("square", lam, l_h, Layer(1.0, n, bonded=True)))
-            found[i, j] = known[0] / bare[0] - 1
+            _, (on_half_space, on_layer) = laws(Cell("square", lam, l_h, Layer(1.0, n, bonded=True)))
+            changes[i, j] = on_layer[0] / on_half_space[0] - 1
     return xr.Dataset(
-        {"change": (("n", "lam"), found), "pitch_over_h": ("lam", pitch)}, {"n": list(STIFF), "lam": list(SPARSE)}
+        {"change": (("n", "lam"), changes), "pitch_over_h": ("lam", pitch)}, {"n": list(STIFF), "lam": list(SPARSE)}
     )

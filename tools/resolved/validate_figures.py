@@ -41,13 +41,13 @@ def draw_means(half_space: xr.Dataset, layer: xr.Dataset, path: Path) -> None:
         figure.savefig(path)
 
 
-def _means(one: xr.Dataset, top, below) -> None:
-    a, p0 = float(one["a0"]), float(one["p0"])
-    touched = np.isfinite(one["r"].values)
-    r, mean = one["r"].values[touched], one["mean"].values[touched]
+def _means(case: xr.Dataset, top, below) -> None:
+    a, p0 = float(case["a0"]), float(case["p0"])
+    touched = np.isfinite(case["r"].values)
+    r, mean = case["r"].values[touched], case["mean"].values[touched]
     for law in LAWS["base"]:
         colour, dashes = LOOKS[law]
-        x, p = one["profile_r"].sel(law=law).values, one["profile"].sel(law=law).values
+        x, p = case["profile_r"].sel(law=law).values, case["profile"].sel(law=law).values
         top.plot(x / a, 100 * p, color=colour, linestyle=dashes, label=WORDS[law], linewidth=1)
         off = 100 * (np.interp(r, x, p, right=0) - mean) / p0
         below.plot(r / a, off, color=colour, marker="o", linestyle="", markersize=1.5)
@@ -93,10 +93,12 @@ def _thinner(found: xr.Dataset, panel) -> None:
 def _films(found: xr.Dataset, panel) -> None:
     some = found.sel(lam=SHOWN)
     for i, material in enumerate(found["material"].values):
-        one = some.sel(material=material)
+        of_material = some.sel(material=material)
         look = {"color": COLOURS[i], "linewidth": 1}
-        panel.plot(one["fine"].values, 100 * abs(one["law"].values), linestyle="-", label=material, **look)
-        at, change = one["pitch_over_h"].values, one["change"].sel(quantity="A").values
+        panel.plot(
+            of_material["fine"].values, 100 * abs(of_material["law"].values), linestyle="-", label=material, **look
+        )
+        at, change = of_material["pitch_over_h"].values, of_material["change"].sel(quantity="A").values
         panel.plot(at, 100 * abs(change), color=COLOURS[i], linestyle="", marker="o", markersize=3)
     panel.set(xscale="log", yscale="log", ylim=(3e-3, 3e4), xlim=(0.95, 17), xlabel="pitch/$h$")
     panel.set_ylabel("change of $A$ by the coated body (%)")
@@ -114,10 +116,10 @@ def draw_cells(found: xr.Dataset, path: Path) -> None:
         stiff = sorted({*found["n"].values.tolist()})
         for panel, name, symbol in zip(panels, ("A", "p_max"), ("$A$", "$p_{\\max}$"), strict=True):
             for n, colour in zip(stiff, COLOURS[::-1], strict=True):
-                own = found.isel(cell=found["n"].values == n)
-                error = 100 * abs(own["error"].sel(quantity=name)).clip(LEAST)
+                of_stiffness = found.isel(cell=found["n"].values == n)
+                error = 100 * abs(of_stiffness["error"].sel(quantity=name)).clip(LEAST)
                 at, look = (
-                    own["pitch_over_h"].values,
+                    of_stiffness["pitch_over_h"].values,
                     {"color": colour, "linestyle": "", "marker": "o", "markersize": 4},
                 )
                 panel.plot(at, error.sel(on="layer").values, label=f"$n$ = {n:g}", **look)
@@ -141,9 +143,9 @@ def _plain(panel, ticks: list[float]) -> None:
 
 def _spheres(found: xr.Dataset, panel) -> None:
     for i, name in enumerate(found["case"].values):
-        one = found.sel(case=name)
-        r, law = 1e3 * one["r"].values, 100 * one["law_mean"]
-        _resolved(panel, r, 100 * one["mean"].values, 200 * one["unsure"].values, f"C{i}")
+        case = found.sel(case=name)
+        r, law = 1e3 * case["r"].values, 100 * case["law_mean"]
+        _resolved(panel, r, 100 * case["mean"].values, 200 * case["unsure"].values, f"C{i}")
         panel.plot(r, law.sel(law="heights").values, color=f"C{i}", linewidth=1, label=name)
     panel.plot(r, law.sel(law="one height").values, color="0.6", linestyle="-", linewidth=1, label="one height")
     panel.set(xlabel="$1000\\,r/R$", ylabel="mean pressure, $100\\,p/E^*$", ylim=(0, None))
@@ -152,10 +154,10 @@ def _spheres(found: xr.Dataset, panel) -> None:
 
 def _cells(found: xr.Dataset, panel) -> None:
     for i, spread in enumerate(found["spread"].values):
-        one, own = found.sel(spread=spread), found["A"].sel(spread=spread)
-        unsure = own.std("draw", ddof=1).values / np.sqrt(own.sizes["draw"])
-        p, law = one["p"].values, one["law_A"].values
-        _resolved(panel, p, own.mean("draw").values, 2 * unsure, f"C{i}")
+        of_spread, depth = found.sel(spread=spread), found["A"].sel(spread=spread)
+        unsure = depth.std("draw", ddof=1).values / np.sqrt(depth.sizes["draw"])
+        p, law = of_spread["p"].values, of_spread["law_A"].values
+        _resolved(panel, p, depth.mean("draw").values, 2 * unsure, f"C{i}")
         panel.plot(p, law, color=f"C{i}", linewidth=1, label=f"$\\sigma$ = {spread:g} $A^*$")
     panel.set(xscale="log", xlabel="$p\\,R_a/(E\\,$pitch$)$", ylabel="depth of the mean plane over $A^*$")
     panel.legend(fontsize=6.5, title="lines: mean field; o periodic cells", title_fontsize=6.5)

@@ -13,7 +13,7 @@ import xarray as xr
 from influence import Layer
 from rough_sphere import Punch, asperities, cell_means, real_area, resolved, touched_share, width
 from scipy.special import ndtr, ndtri
-from validate_cases import RA, TOLERANCE, given, kept, richardson
+from validate_cases import RA, TOLERANCE, parameters_of, richardson, stored
 from validate_cells import Cell, body
 
 import study
@@ -66,7 +66,7 @@ SPHERES = (
 )
 
 
-def drawn(micro: str, sigma: float, count: int, seed: list[int]) -> np.ndarray:
+def random_heights(micro: str, sigma: float, count: int, seed: list[int]) -> np.ndarray:
     """Random heights (count, count) of summits above the mean, distributed as in the law."""
     share = np.random.default_rng(seed).uniform(size=(count, count))
     if micro == "uniform_heights":
@@ -81,32 +81,33 @@ def highest(micro: str, sigma: float) -> float:
 
 def sphere(case: Sphere, draw: int) -> dict[str, np.ndarray]:
     """One draw: depth, width, area and largest pressure on each mesh, and means of the cells on the finest one."""
-    punch = Punch(case.pitch, RA, drawn(case.micro, case.sigma, case.cells, [1, draw]))
+    punch = Punch(case.pitch, RA, random_heights(case.micro, case.sigma, case.cells, [1, draw]))
     rows, start = [], None
     for count in case.counts:
         half, points = case.cells * case.pitch / 2, case.cells * count
-        one = resolved(punch, case.P, half, points, case.layer, start, TOLERANCE)
-        across = np.hypot(one.middle[:, None], one.middle[None, :])
-        rows.append([one.D, width(across, one.p, 1.0), real_area(one), one.p.max()])
-        start = np.kron(one.p, np.ones((2, 2)))
-    r, mean = cell_means(one, case.pitch)
+        solution = resolved(punch, case.P, half, points, case.layer, start, TOLERANCE)
+        across = np.hypot(solution.middle[:, None], solution.middle[None, :])
+        rows.append([solution.D, width(across, solution.p, 1.0), real_area(solution), solution.p.max()])
+        start = np.kron(solution.p, np.ones((2, 2)))
+    r, mean = cell_means(solution, case.pitch)
     return {"meshes": np.array(rows), "r": r, "mean": mean}
 
 
 def finer(folder: Path) -> np.ndarray:
     """Relative changes of depth, width, area and largest pressure (4,) in one draw, with elements half as large."""
     case = SPHERES[0]._replace(counts=(*SPHERES[0].counts, 2 * SPHERES[0].counts[-1]))
-    meshes = kept(folder, ("heights", RA, CUT, case[1:], 0), lambda: sphere(case, 0))["meshes"]
+    meshes = stored(folder, ("heights", RA, CUT, case[1:], 0), lambda: sphere(case, 0))["meshes"]
     return richardson(meshes[1], meshes[2], ORDERS) / richardson(meshes[0], meshes[1], ORDERS) - 1
 
 
 def draws(case: Sphere, folder: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Depth, width, area and largest pressure (draw, 4), extrapolated; r (cell,), and means of cells (draw, cell)."""
-    found = [
-        kept(folder, ("heights", RA, CUT, case[1:], one), lambda one=one: sphere(case, one)) for one in range(DRAWS)
+    spheres = [
+        stored(folder, ("heights", RA, CUT, case[1:], draw), lambda draw=draw: sphere(case, draw))
+        for draw in range(DRAWS)
     ]
-    values = [richardson(*one["meshes"][-2:], ORDERS) for one in found]
-    return np.array(values), found[0]["r"], np.array([one["mean"] for one in found])
+    values = [richardson(*draw["meshes"][-2:], ORDERS) for draw in spheres]
+    return np.array(values), spheres[0]["r"], np.array([draw["mean"] for draw in spheres])
 
 
 def rings(r, mean, a) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -114,18 +115,18 @@ def rings(r, mean, a) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     inside = r < a
     ring = np.arange(np.count_nonzero(inside)) * RINGS // np.count_nonzero(inside)  # r ascends
     count = np.bincount(ring)
-    own = np.array([np.bincount(ring, one[inside]) / count for one in mean])
-    return np.bincount(ring, r[inside]) / count, own.mean(axis=0), own.std(axis=0, ddof=1) / np.sqrt(len(own))
+    means = np.array([np.bincount(ring, cells_of_draw[inside]) / count for cells_of_draw in mean])
+    return np.bincount(ring, r[inside]) / count, means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(len(means))
 
 
 def compared(case: Sphere, folder: Path) -> xr.Dataset:
     """All data of a sphere, over the laws: the law of its heights, and the laws of one height, at the mean height."""
     values, r, mean = draws(case, folder)
     laws = [case.micro, "disc_cell"]
-    asked = {"P": case.P, "Nbar": case.pitch**-2, "Ra": RA, "x": 401, "rtol": 1e-5}
-    asked |= given(case.layer) | {"base": "layered" if case.layer else "half_space"}
-    own = {"sigma": case.sigma} | ({"cut": CUT} if case.micro == "normal_heights" else {})
-    two = [study.solve(**asked, micro=law, **(own if law == case.micro else {})).load() for law in laws]
+    inputs = {"P": case.P, "Nbar": case.pitch**-2, "Ra": RA, "x": 401, "rtol": 1e-5}
+    inputs |= parameters_of(case.layer) | {"base": "layered" if case.layer else "half_space"}
+    of_heights = {"sigma": case.sigma} | ({"cut": CUT} if case.micro == "normal_heights" else {})
+    two = [study.solve(**inputs, micro=law, **(of_heights if law == case.micro else {})).load() for law in laws]
     x = two[0]["x"].values
     depth = [float(two[0]["D"]) - highest(case.micro, case.sigma), float(two[1]["D"])]
     wide = [width(x, one["p"].values, x) * float(one["a"]) for one in two]
@@ -147,7 +148,7 @@ def cell(
 ) -> dict[str, np.ndarray]:
     """A of the mean plane and λ of one periodic cell of normal heights on each mesh (mesh, 2), on a half-space or on
     the layer of a :class:`.validate_cells.Cell`."""
-    heights, rows, start = drawn("normal_heights", spread / np.pi, SUMMITS, [2, draw]), [], None
+    heights, rows, start = random_heights("normal_heights", spread / np.pi, SUMMITS, [2, draw]), [], None
     around = np.pad(heights, 1, mode="wrap")
     for points in meshes:
         side = SUMMITS / points
@@ -165,17 +166,17 @@ def cell(
 def cells(folder: Path) -> xr.Dataset:
     """A of the mean plane over A*, and λ, of periodic cells and of the law, over (spread, p, draw)."""
     shape = (len(SPREADS), len(PRESSURES), CELLS_DRAWN)
-    found = np.empty((*shape, 2))
+    limits = np.empty((*shape, 2))
     for i, spread in enumerate(SPREADS):
         for j, p in enumerate(PRESSURES):
             for k in range(CELLS_DRAWN):
                 draw = k if spread else 0
                 key = ("periodic cell", CUT, SUMMITS, MESHES, spread, p, draw)
-                one = kept(folder, key, lambda spread=spread, p=p, draw=draw: cell(spread, p, draw))
-                found[i, j, k] = richardson(*one["meshes"][-2:], np.array([2, 1]))
+                one = stored(folder, key, lambda spread=spread, p=p, draw=draw: cell(spread, p, draw))
+                limits[i, j, k] = richardson(*one["meshes"][-2:], np.array([2, 1]))
     dims, where = ("spread", "p", "draw"), {"spread": list(SPREADS), "p": list(PRESSURES)}
     laws = [LAWS["normal_heights"].at(np.array(PRESSURES), 1.0, **ONES, sigma=s / np.pi, cut=CUT) for s in SPREADS]
-    data = {"A": (dims, np.pi * found[..., 0]), "lam": (dims, found[..., 1])}
+    data = {"A": (dims, np.pi * limits[..., 0]), "lam": (dims, limits[..., 1])}
     data["law_A"] = dims[:2], [np.pi * one.A - CUT * s for s, one in zip(SPREADS, laws, strict=True)]
     data["law_lam"] = dims[:2], [one.lam for one in laws]
     return xr.Dataset(data, where)
@@ -185,25 +186,25 @@ def height_cells(folder: Path) -> xr.Dataset:
     """A of the mean plane over A*, and λ, of periodic cells on LAYERS, over (layer, spread, p, draw), and those of
     the law on a half-space and on the layer."""
     shape, law = (len(LAYERS), len(LAYER_SPREADS), len(LAYER_PRESSURES)), LAWS["normal_heights"]
-    found, laws = np.empty((*shape, CELLS_DRAWN, 2)), np.empty((*shape, 2, 2))
+    limits, laws = np.empty((*shape, CELLS_DRAWN, 2)), np.empty((*shape, 2, 2))
     for (i, layer), (j, spread), (k, p) in product(
         enumerate(LAYERS.values()), enumerate(LAYER_SPREADS), enumerate(LAYER_PRESSURES)
     ):
         for draw in range(CELLS_DRAWN):
             key = ("periodic cell", CUT, SUMMITS, MESHES, spread, p, draw, layer)
-            one = kept(folder, key, lambda spread=spread, p=p, draw=draw, layer=layer: cell(spread, p, draw, layer))
-            found[i, j, k, draw] = richardson(*one["meshes"][-2:], np.array([2, 1]))
-        own = {name: np.array([value]) for name, value in (ONES | {"sigma": spread / np.pi, "cut": CUT}).items()}
+            one = stored(folder, key, lambda spread=spread, p=p, draw=draw, layer=layer: cell(spread, p, draw, layer))
+            limits[i, j, k, draw] = richardson(*one["meshes"][-2:], np.array([2, 1]))
+        parameters = {name: np.array([value]) for name, value in (ONES | {"sigma": spread / np.pi, "cut": CUT}).items()}
         n, nu1, nu2, bonded = (np.array([value]) for value in layer.layer[1:])
         on_body = law.on_body(
-            TwoLayers(n, nu1, nu2, bonded), np.zeros(1), 1 / np.array([layer.pitch]), np.ones(1), **own
+            TwoLayers(n, nu1, nu2, bonded), np.zeros(1), 1 / np.array([layer.pitch]), np.ones(1), **parameters
         )
-        for at, bound in enumerate((law.bind(np.ones(1), **own), on_body)):
+        for at, bound in enumerate((law.bind(np.ones(1), **parameters), on_body)):
             with np.errstate(invalid="ignore"):  # summits that do not touch
                 spots = bound.at(np.array([[p]]))
             laws[i, j, k, at] = np.pi * spots.A[0, 0] - CUT * spread, spots.lam[0, 0]
     dims = ("layer", "spread", "p")
-    data = {"A": ((*dims, "draw"), np.pi * found[..., 0]), "lam": ((*dims, "draw"), found[..., 1])}
+    data = {"A": ((*dims, "draw"), np.pi * limits[..., 0]), "lam": ((*dims, "draw"), limits[..., 1])}
     data |= {"law_A": ((*dims, "on"), laws[..., 0]), "law_lam": ((*dims, "on"), laws[..., 1])}
     where = {"layer": list(LAYERS), "spread": list(LAYER_SPREADS), "p": list(LAYER_PRESSURES)}
     return xr.Dataset(data, where | {"on": ["half_space", "layer"]})

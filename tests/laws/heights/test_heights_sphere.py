@@ -13,7 +13,7 @@ from solver.laws import LAWS
 def test_what_is_drawn():
     """The heights have the law's standard deviation, and keep to its cut."""
     for micro in ("normal_heights", "uniform_heights"):
-        found = heights.drawn(micro, 0.3, 200, [0])
+        found = heights.random_heights(micro, 0.3, 200, [0])
         assert abs(found.mean()) < 4 * 0.3 / 200 and abs(found.std() / 0.3 - 1) < 0.015
         assert abs(found).max() < heights.highest(micro, 0.3)
 
@@ -60,6 +60,6 @@ def test_what_is_kept_is_not_solved_again(tmp_path):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        heights.kept(tmp_path, ("sphere", 1), interrupted)
-    found = [int(heights.kept(tmp_path, ("sphere", key), solve_once)["D"]) for key in (1, 2, 1)]
+        heights.stored(tmp_path, ("sphere", 1), interrupted)
+    found = [int(heights.stored(tmp_path, ("sphere", key), solve_once)["D"]) for key in (1, 2, 1)]
     assert found == [1, 2, 1] and len(solved) == 2

@@ -31,9 +31,9 @@ def not_sticking(part, x):
     solution, tensile = _touching(part, shape, body, touching(part.control, part.value, shape, body), x)
     lost = np.flatnonzero(tensile)
     if part.control != "a" and len(lost):  # the contact may be on another branch
-        few = part.take(lost), shape.take(lost), body.take(lost)
-        response, counts = smallest(part.control, part.value[lost], *few[1:])
-        other_branch, _ = _touching(*few, (response, counts + solution.iterations[lost]), x)
+        lost_cases = part.take(lost), shape.take(lost), body.take(lost)
+        response, counts = smallest(part.control, part.value[lost], *lost_cases[1:])
+        other_branch, _ = _touching(*lost_cases, (response, counts + solution.iterations[lost]), x)
         solution = Solution.join(len(part), len(x), [(np.arange(len(part)), solution), (lost, other_branch)])
     outside = beyond_profile(part, shape, lambda index, a: State.free(respond(shape.take(index), body.take(index), a)))
     return solution.refused(outside, Status.OUTSIDE_LAW)
@@ -55,8 +55,8 @@ def sticking(part, x):
     solution = adhesive.solve(part, shape, body, x)
     if str(part.adhesion[0]) == "maugis":
 
-        def with_edge(few, index, x):
-            return adhesive.solve(few, shape.take(index), body.take(index), x)
+        def with_edge(cases, index, x):
+            return adhesive.solve(cases, shape.take(index), body.take(index), x)
 
         solution = limits.with_edges(part, body, solution, with_edge, x)
     return limits.without(part, body, solution, not_sticking, x)

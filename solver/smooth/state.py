@@ -9,7 +9,7 @@ from ..solution import Solution
 from .galerkin import Response, respond
 from .pressure import flat_pressure, pressure_changes, pressures_of
 from .radius import NEAR
-from .tension import LOOKED_AT, seen
+from .tension import PROBE_RADII, seen
 
 #: If dD/da is below this part of the shape's share in it, D has its minimum, to rounding.
 _FLAT = 1e-12
@@ -19,8 +19,8 @@ _OF_PRESSURE = 5e-13
 #: A contact whose relative distance from a corner is below _CORNER counts as that of a flat punch. At the distance
 #: _AT_CORNER the rounding of a is still a small part of it.
 _CORNER, _AT_CORNER = 1e-9, 64 * np.finfo(float).eps
-#: The error of p(0) is the largest at the first _INNER radii of LOOKED_AT, which are below 0.45 a: a single one may be
-#: small by chance. The error of the kernel is relative to the largest pressure at twice as many, below 0.87 a. Under
+#: The error of p(0) is the largest at the first _INNER radii of PROBE_RADII, which are below 0.45 a: a single one may
+#: be small by chance. The error of the kernel is relative to the largest pressure at twice as many, below 0.87 a. Under
 #: shapes with kinks or tips the series converges more slowly than its last step suggests, at most 2.9 times in
 #: tools/errors/shape_errors.py: there the error is multiplied by _SLOW.
 _INNER, _SLOW = 8, 4.0
@@ -138,14 +138,14 @@ def answer(part, shape, state, counts, x, ring=None, scales=NOT_STICKING):
     error includes those of a, P and D under the control, and that of p(0) if it is finite. ``ring(x)`` is added to
     p."""
     response, A = state.response, state.A
-    radii = np.concatenate([x, [0.0], LOOKED_AT])
+    radii = np.concatenate([x, [0.0], PROBE_RADII])
     p = pressures_of(shape, response, A, radii)
     if ring is not None:
         p = p + ring(radii)
     p_x, p0, p_probes = np.split(p, [len(x), len(x) + 1], axis=1)
     p0 = p0[:, 0]
     moved, error = _error(part.control, state, scales)
-    of_p = np.abs(pressure_changes(response, A, LOOKED_AT))
+    of_p = np.abs(pressure_changes(response, A, PROBE_RADII))
     along = np.where(moved > 0, np.abs(flat_pressure(response) * state.dD) * moved, 0.0)
     largest = np.max(np.where(np.isfinite(p_probes), np.abs(p_probes), 0.0), axis=1)
     over = np.where(state.a > shape.least(), state.a - shape.least(), state.a)

@@ -11,7 +11,7 @@ from ..status import Status
 from .pressure import pressure_changes, pressures_of
 
 #: Radii at which the pressure is evaluated, for tension and for its error; denser towards the edge.
-LOOKED_AT = np.sin(np.pi / 2 * np.arange(24) / 24)
+PROBE_RADII = np.sin(np.pi / 2 * np.arange(24) / 24)
 #: Largest stiffness of a kernel with which no layer bends so; number of functions of the basis up to which these radii
 #: are dense enough, since a thinner layer has more functions; and the number of radii for each function otherwise.
 _SOFT, _FEW, _DENSER = 2.0, 40, 3
@@ -21,18 +21,18 @@ _ROUNDING = 64 * np.finfo(float).eps
 def is_tensile(shape, body, response):
     """(B,) bool: whether there is tension in contacts of shapes on a body, at the radius of their `response`."""
     none, steep = np.zeros(len(response.a)), response.slope <= 0
-    out = steep | seen(pressures_of(shape, response, none, LOOKED_AT), pressure_changes(response, none, LOOKED_AT))
+    out = steep | seen(pressures_of(shape, response, none, PROBE_RADII), pressure_changes(response, none, PROBE_RADII))
     return out | in_a_ring(shape, body, response, ~out)[0]
 
 
 def seen(p, changes):
-    """(B,) bool: whether among the pressures (B, m) at LOOKED_AT there is tension larger than their `changes` by the
+    """(B,) bool: whether among the pressures (B, m) at PROBE_RADII there is tension larger than their `changes` by the
     last functions of the basis. On the axis, the first of the radii, any tension counts."""
     return (p[:, 0] < 0) | (p < -np.abs(changes)).any(axis=1)
 
 
 def in_a_ring(shape, body, response, wanted):
-    """(B,) bool: whether there is tension in a ring that LOOKED_AT may miss, in the contacts `wanted` (B,) bool. It
+    """(B,) bool: whether there is tension in a ring that PROBE_RADII may miss, in the contacts `wanted` (B,) bool. It
     must exceed all changes nearby by the last functions of the basis, of which a single one may be small by chance. And
     (B,) bool: whether there may be such tension."""
     there, doubtful = np.zeros((2, len(response.a)), dtype=bool)

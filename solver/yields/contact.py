@@ -46,10 +46,10 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
         scaled, ended = dimensionless_pair(problem.take(index), solution.take(index))
         a = ended.a
         sharp = corners(scaled, a)
-        for few in _some(scaled, ended, a, mu, residual[index], None if punch is None else punch[index]):
-            batches = [loaded for _, loaded in few]
+        for group in _some(scaled, ended, a, mu, residual[index], None if punch is None else punch[index]):
+            batches = [loaded for _, loaded in group]
             answers = [coarsely(loaded, names) for loaded in batches] if coarse else together(batches, names)
-            for (rows, loaded), largest in zip(few, answers, strict=True):
+            for (rows, loaded), largest in zip(group, answers, strict=True):
                 tips, here = np.isfinite(sharp[rows]) & (_touched(loaded) < 0.5), index[rows]
                 for name, values in largest.items():
                     values[0] *= problem.E2[here]
@@ -62,15 +62,15 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
 def _some(scaled, ended, a, mu, residual, punch):
     """Yield lists of pairs, indices of cases and their :class:`~.loaded.Loaded`, with about _TOGETHER cases in a
     list."""
-    few = []
+    group = []
     for rows, pressure, _ in pressures_of(scaled, ended, a, with_errors=False):
         nu = None if punch is None else punch[rows]
         for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[rows], nu):
-            few.append((rows[some], loaded))
-            if sum(len(index) for index, _ in few) >= _TOGETHER:
-                yield few
-                few = []
-    yield few
+            group.append((rows[some], loaded))
+            if sum(len(index) for index, _ in group) >= _TOGETHER:
+                yield group
+                group = []
+    yield group
 
 
 def _touched(loaded):

@@ -35,7 +35,7 @@ _NODES, _WIDEST = 32, 5.0
 _RADII = 14, 8, 3
 #: Number of radii at which the place of the peak is examined; and around each radius where a ring begins or ends, in
 #: each of _ROUNDS rounds, _SECTIONS more. That radius is then right to 1e-7.
-_LOOKED_AT, _SECTIONS, _ROUNDS = 96, 13, 5
+_EXAMINED, _SECTIONS, _ROUNDS = 96, 13, 5
 #: Number of terms of the table on each of its pieces. A piece is halved, at most _HALVINGS times, until the errors of
 #: the pressure and of r² between the nodes are below _SAME.
 _TERMS, _HALVINGS, _SAME = 14, 6, 1e-8
@@ -238,7 +238,7 @@ def _highest(values):
 
 def _table(largest_at, w):
     """:class:`Peaks` from `largest_at`, a function of ln b that returns :class:`_Largest`, between both `w`."""
-    at = np.linspace(*w, _LOOKED_AT)
+    at = np.linspace(*w, _EXAMINED)
     kind = _kind(largest_at(at))
     last = np.flatnonzero(np.diff(kind))
     ends, row = np.stack([at[last], at[last + 1]]), np.arange(len(last))

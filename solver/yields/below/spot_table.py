@@ -49,10 +49,10 @@ class Table(NamedTuple):
 
     def at(self, b):
         """The stresses (B, 4, Z, R) for radii b (B,) up to the reach, in units E = Ra = l = 1."""
-        few, b = b <= self.limit, np.minimum(b, self.reach)
+        small, b = b <= self.limit, np.minimum(b, self.reach)
         out = np.empty((len(b), *self.small.shape[1:]))
         along = 2 * np.log(b / self.limit) / np.log(max(self.reach / self.limit, 1 + _SAME)) - 1
-        for some, x, series in ((few, 2 * b / self.limit - 1, self.small), (~few, along, self.large)):
+        for some, x, series in ((small, 2 * b / self.limit - 1, self.small), (~small, along, self.large)):
             if some.any():
                 out[some] = np.tensordot(chebvander(x[some], len(series) - 1), series, 1)
         return out * (2 * b / np.pi)[:, None, None, None]
@@ -83,7 +83,7 @@ def table_of(felt):
     if member.alone:
         rho, z = _places(member.cell, felt.b[0])
         return One(felt.stresses(felt.b[0], felt.b[0] * rho, z, 0, ROUGH))
-    return _kept.get(member.key, lambda: _made(member.cell, felt.layers, member.reach))
+    return _kept.get(member.key, lambda: _table(member.cell, felt.layers, member.reach))
 
 
 def _places(cell, b):
@@ -93,7 +93,7 @@ def _places(cell, b):
     return rho, deepest(b, 1 / cell.pitch) * (1 + chebyshev_nodes(_DEPTHS)) / 2
 
 
-def _made(cell, layers, reach):
+def _table(cell, layers, reach):
     limit, N = min(_SMALL / cell.pitch, reach), pieces(cell, reach)
     count = int(np.polynomial.polynomial.polyval(np.log(reach / limit), _MORE)) if reach > limit else 1
     nodes = [-np.cos(np.pi * (np.arange(terms) + 0.5) / terms) for terms in (_FEW, count)]

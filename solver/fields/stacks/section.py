@@ -21,6 +21,11 @@ from ..pressure import Pressure
 SUBLAYERS, _OCTAVES = 8, 4
 
 
+#: A depth over that of an interface, up to which it lies in the upper layer: places of extremes may exceed h by their
+#: last bits.
+INTERFACE = 1 + 1e-14
+
+
 class Section(NamedTuple):
     """The layers below one contact, N layers that are given; lengths are in a, stresses in the unit of the problem.
 
@@ -62,7 +67,7 @@ class Section(NamedTuple):
     def numbers(self, z, lower=False):
         """In which layer depths z (Z,) are, from 0, or N, in the body; one at an interface in the upper, or the lower
         one."""
-        return np.searchsorted(self.ends, z, side="right" if lower else "left")
+        return np.searchsorted(self.ends * (1.0 if lower else INTERFACE), z, side="right" if lower else "left")
 
     def field(self, r, z, number, displacements=True, roughly=False):
         """Name -> (Z, R), at radii r (R,) and depths z (Z,) in the layers `number` (Z,), counted from 0, or N, in the

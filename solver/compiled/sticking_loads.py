@@ -21,7 +21,8 @@ def loads_in_c(rows: np.ndarray, depth: np.ndarray, step: float) -> tuple[Any, A
     shape, others = depth.shape, len(rows) - 1
     rows, depth = (np.ascontiguousarray(array, float) for array in (rows, depth))
     loads = [
-        (np.empty(shape), np.empty(shape), np.empty((others, *shape)), np.empty((4, *shape))) for _ in ("sticks", "free")
+        (np.empty(shape), np.empty(shape), np.empty((others, *shape)), np.empty((4, *shape)))
+        for _ in ("sticks", "free")
     ]
     ends = np.empty((2, len(depth)))
     sticks, free = (CLoads(*map(pointer, arrays)) for arrays in loads)

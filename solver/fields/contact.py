@@ -23,7 +23,7 @@ from . import normal, sliding
 from .field import integrals
 from .pressure import Pressure
 from .shaped import corners, shaped_pressures
-from .stacks.section import SUBLAYERS, Section
+from .stacks.section import INTERFACE, SUBLAYERS, Section
 from .waves import MISSED, THINNEST
 
 #: Largest rtol with which the pressure is solved for again, whatever that of the contact was.
@@ -34,9 +34,6 @@ _LEAST = 1e-10
 #: With the number of sublayers of a graded layer, the relative change of the stresses is at most this times that of the
 #: load (tests/stacks/test_stresses_of_stacks.py).
 _OF_GRADED = 3.0
-#: Depths up to this times that of an interface lie in the upper layer: places of extremes may exceed h by their last
-#: bits.
-_INTERFACE = 1 + 1e-14
 #: Largest number of entries of an array of integrals of several cases.
 _AT_ONCE = 4_000_000
 
@@ -194,7 +191,7 @@ def _of_layers(scaled, a, pressure, r, z, mu):
     bare = is_bare(scaled.base)
     h = np.where(bare, 1.0, scaled.h / a)
     depths = np.concatenate([np.tile(z, (len(h), 1)), h[:, None], h[:, None]], axis=1)
-    body = (depths > h[:, None] * _INTERFACE) & ~bare[:, None]
+    body = (depths > h[:, None] * INTERFACE) & ~bare[:, None]
     body[:, -1] = ~bare
     kinds = np.stack([bare, np.floor(np.log2(h)), *body.T], axis=1)
     _, kind = np.unique(kinds, axis=0, return_inverse=True)

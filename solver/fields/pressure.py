@@ -27,6 +27,8 @@ _LONG, _WINDOW, _WIDE = 500.0, 120.0, 8.0
 _NARROW = 40.0
 #: Matrices of at most this many entries are cached for other cases and other points.
 _KEPT = 250_000
+#: Numbers in an array of basis functions.
+_AT_ONCE = 2_000_000
 #: An edge pressure below this part of the largest is rounding. It would make stresses infinite at the edge.
 _ROUNDING = 1e-12
 
@@ -66,6 +68,25 @@ class Pressure(NamedTuple):
 
     def mean(self, r):
         """∫₀^r p r' dr'/r² (B, R) at radii r (R,): p(0)/2 in the centre, and P/(2 pi r²) outside."""
+        mean = self.values @ self._means(r)
+        s = np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
+        return mean if self.A is None else mean + self.A[:, None] / (1 + s) / np.maximum(r, 1.0) ** 2
+
+    def of_each(self, case, r):
+        """p and its :meth:`mean` (P,) each at radii r (P,) of the cases `case` (P,)."""
+        s = np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
+        p, mean = np.empty((2, len(r)))
+        of_a_radius = self.mesh.n * (self.mesh.order // 2 + 2) * (len(self.mesh.breaks) - 1)
+        for some in np.array_split(np.arange(len(r)), 1 + len(r) * of_a_radius // _AT_ONCE):
+            values = self.values[case[some]]
+            p[some] = np.einsum("pn,pn->p", values, self.mesh.basis(s[some]))
+            mean[some] = np.einsum("pn,np->p", values, self._means(r[some]))
+        if self.A is not None:
+            p, mean = p + self.A[case] / s, mean + self.A[case] / (1 + s) / np.maximum(r, 1.0) ** 2
+        return np.where(r <= 1, p, 0.0), mean
+
+    def _means(self, r):
+        """From values at the nodes to the :meth:`mean` at radii r (R,), without that of A: (n, R)."""
         breaks, order = np.array(self.mesh.breaks), self.mesh.order
         s = np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
         # s' = s + (1 - s) t; panels end at these t. If s = 1 there is only the last panel
@@ -76,8 +97,7 @@ class Pressure(NamedTuple):
         points = s[:, None, None] + (1 - s)[:, None, None] * (ends[:, :-1, None] + width * t)
         weights = width * weight * points / (1 + s)[:, None, None] / np.maximum(r, 1.0)[:, None, None] ** 2
         basis = self.mesh.basis(np.minimum(points, 1.0).ravel()).reshape(len(r), -1, self.mesh.n)
-        mean = self.values @ np.einsum("rgn,rg->nr", basis, weights.reshape(len(r), -1))
-        return mean if self.A is None else mean + self.A[:, None] / (1 + s) / np.maximum(r, 1.0) ** 2
+        return np.einsum("rgn,rg->nr", basis, weights.reshape(len(r), -1))
 
     def density(self, s):
         """φ/t (B, ...) of Abel's φ(t) at s = sqrt(1 - t²) (...), without the parts of :meth:`at_edge` and of A."""

@@ -104,15 +104,15 @@ def together(batches, names=EXTREMES):
         values, wanted, grids, coarse = _on_coarse_grids(loaded, names)
         made.append(values)
         largest = np.abs(loaded.pressure.values).max(axis=1)
-        for i in np.flatnonzero(np.isfinite(loaded.pressure.values).all(axis=1)):
-            for name, kinds in wanted.items():
-                function, here = EXTREMES[name][0], [kind for kind in kinds if kind in grids]
-                for at in _starts(i, VALUES[function], here, coarse, grids, largest[i]):
-                    task = Climb(function, number, i, *at)
-                    if task not in tasks:
-                        tasks[task] = []
-                        boxes.append(box_of(grids[task.region], task))
-                    tasks[task].append(name)
+        there = np.isfinite(loaded.pressure.values).all(axis=1)
+        for name, kinds in wanted.items():
+            function, here = EXTREMES[name][0], [kind for kind in kinds if kind in grids]
+            for i, *at in _starts(VALUES[function], here, coarse, grids, np.where(there, largest, np.nan)):
+                task = Climb(function, number, i, *at)
+                if task not in tasks:
+                    tasks[task] = []
+                    boxes.append(box_of(grids[task.region], task))
+                tasks[task].append(name)
     scales = [np.abs(loaded.pressure.values).max(axis=1) for loaded in batches]
     jets = [Jets(loaded) for loaded in batches]
     for task, value, place in zip(tasks, *climbed(jets, list(tasks), boxes, scales, batches[0].signs), strict=True):
@@ -218,21 +218,34 @@ def _lengths(octave, bending):
     return np.geomspace(least, bending, 2 + int(np.log(bending / least) / np.log(_APART)))
 
 
-def _starts(i, value, kinds, coarse, grids, largest):
-    """(region, side, row, column) of the points of the coarse grids of a case whose value exceeds those of their
-    neighbours, and is not much smaller than the largest."""
-    starts = []
+def _starts(value, kinds, coarse, grids, largest):
+    """(case, region, side, row, column) of the coarse points of each case that are larger than their neighbours, and
+    not much smaller than the largest.
+
+    coarse : region -> stresses (B, 4, S, V, U); largest : (B,), of the pressure, NaN of cases that are left out
+    """
+    best, peaks = np.full(len(largest), np.nan), {}
     for region in kinds:
-        values = value(*coarse[region][i])
-        inside = grids[region].v[i] <= grids[region].v_bounds[i, 1]
-        values = np.where(inside[:, None], values, -np.inf)
-        padded = np.pad(values, ((0, 0), (1, 1), (1, 1)), constant_values=-np.inf)
-        rows, columns = values.shape[1:]
-        around = [padded[:, a : a + rows, b : b + columns] for a in range(3) for b in range(3)]
-        peaks = (values >= np.max(around, axis=0)) & np.isfinite(values)
-        starts += [(values[at], (region, *at)) for at in map(tuple, np.argwhere(peaks))]
-    best = max((value for value, _ in starts), default=np.nan)
-    return [start for value, start in starts if value >= best - (1 - _RIVAL) * abs(best) - _ROUGH * largest]
+        grid, values = grids[region], value(*coarse[region].swapaxes(0, 1))
+        inside = grid.v <= grid.v_bounds[:, 1:]
+        values = np.where(inside[:, None, :, None], values, -np.inf)
+        peaks[region] = values, are_peaks(values) & np.isfinite(values)
+        best = np.fmax(best, np.where(peaks[region][1], values, -np.inf).max(axis=(1, 2, 3)))
+    least = best - (1 - _RIVAL) * np.abs(best) - _ROUGH * largest
+    starts = []
+    for region, (values, where) in peaks.items():
+        where = where & (values >= least[:, None, None, None])
+        starts += [(case, region, *at) for case, *at in np.argwhere(where).tolist()]
+    return starts
+
+
+def are_peaks(values):
+    """bool: which values (..., V, U) are at least as large as their neighbours."""
+    sides = [(0, 0)] * (values.ndim - 2)
+    padded = np.pad(values, (*sides, (1, 1), (1, 1)), constant_values=-np.inf)
+    rows, columns = values.shape[-2:]
+    around = [padded[..., a : a + rows, b : b + columns] for a in range(3) for b in range(3)]
+    return values >= np.max(around, axis=0)
 
 
 def climbed(jets, tasks, boxes, scales, signs):

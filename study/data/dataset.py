@@ -187,9 +187,7 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     coordinates = {name: Labelled(*pair, attributes_of.get(name, {})) for name, pair in values.items()}
     coordinates["micro"].encoding = encoding_of(grid.lexicon, {name: array for name, (_, array) in grid.values.items()})
     coordinates["x"] = Labelled(("x",), definition.x, attributes("x"))
-    for name, (dim, *labels) in numbered(definition.layers, "layer", "interface").items() if definition.layers else ():
-        name, dim = (LAYER_NUMBER if word == "layer" else word for word in (name, dim))
-        coordinates[name] = Labelled((dim,), *labels)
+    coordinates |= _numbers_of_layers(definition) if definition.layers else {}
     dims = tuple(grid.sizes)
     flats = {name: flat.astype(bool) if name in TRUTHS else flat for name, flat in arrays.items()}
     variables = {
@@ -203,6 +201,15 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     if "shape" in grid.values:  # the length that is 1
         about["scale"] = (definition.scene.scale or "R") if definition.scene else "1"
     return DatasetParts(variables, coordinates, about, by_input)
+
+
+def _numbers_of_layers(definition: Definition) -> dict[str, Labelled]:
+    """The coordinates of layers and interfaces, while `layer` may still be an axis of materials."""
+    made = {}
+    for name, (_, numbers, words_of) in numbered(definition.layers, "layer", "interface").items():
+        dim = LAYER_NUMBER if name == "layer" else name
+        made[dim] = Labelled((dim,), numbers, words_of)
+    return made
 
 
 def _about(definition: Definition, name: str, rigid: bool) -> dict:

@@ -19,6 +19,7 @@ import numpy as np
 from solver import Problem, solve
 from solver.yields.contact import of_contacts
 from solver.yields.first import first_yield
+from solver.yields.stacked.largest import of_contacts as of_stacks
 
 E1, E2 = 450e9 / (1 - 0.25**2), 210e9 / (1 - 0.3**2)  # TiN on steel, 3 um below a ball of alumina of 5 mm
 film = {"h": 6e-4, "n": E1 / E2, "nu1": 0.25, "nu2": 0.3, "bonding": "bonded", "micro": "smooth", "m": 0.6}
@@ -43,6 +44,10 @@ random = np.random.default_rng(1)
 a, n = 0.03, np.exp(random.uniform(np.log(0.05), np.log(20), 100))
 rough = {"Nbar": 2.5e7, "Ra": 0.004, "bonding": "bonded", "nu1": 0.25}
 told("100_rough_layers", extremes(a=a, h=a * np.exp(random.uniform(np.log(0.05), np.log(3), 100)), n=n, **rough))
+stack = [{"h": 4e-4, "n": 200 / 230, "nu": 0.25}, {"h": 2e-4, "n": 290 / 230, "nu": 0.21}]  # DLC on chromium
+on_stack = {"layers": [layer | {"bonding": "bonded"} for layer in stack], "nu2": 0.3, "micro": "smooth"}
+problem = Problem.of(P=np.geomspace(1e-7, 1e-5, 5), **on_stack)
+told("5_on_two_layers", lambda solution=solve(problem): of_stacks(problem, solution))
 for body, strength in (("layer", 5e9), ("body", 2e9)):
     told(f"first_yield_{body}", lambda: first_yield(Problem.of(P=1e-6, **film), body, np.array([strength / E2])))
 """

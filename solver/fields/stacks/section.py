@@ -22,6 +22,11 @@ from ..pressure import Pressure
 SUBLAYERS, _OCTAVES = 8, 4
 
 
+#: A depth over that of an interface, up to which it lies in the upper layer: places of extremes may exceed h by their
+#: last bits.
+INTERFACE = 1 + 1e-14
+
+
 class Section(NamedTuple):
     """The N layers below one contact; lengths are in a, stresses in the unit of the problem.
 
@@ -64,7 +69,7 @@ class Section(NamedTuple):
     def numbers(self, z, lower=False):
         """The layer of the depths z (Z,), counted from 0, or N for the body. A depth at an interface belongs to the
         upper layer, or to the lower one if `lower`."""
-        return np.searchsorted(self.ends, z, side="right" if lower else "left")
+        return np.searchsorted(self.ends * (1.0 if lower else INTERFACE), z, side="right" if lower else "left")
 
     def field(self, r, z, number, displacements=True, roughly=False):
         """Name -> (Z, R), at radii r (R,) and depths z (Z,) in the layers `number` (Z,), counted from 0, or N for the

@@ -168,18 +168,15 @@ def _on_surface(load, pressure, nu, case, u, root, outside):
     """The integrals (fields, P) of half-spaces at the surface; at the edge, the limit from inside, or from
     `outside`."""
     r = np.where(root, np.sqrt(np.maximum(1 - u * np.abs(u), 0.0)), np.abs(u))
-    nu = nu[case]
-    p, second, third = np.empty((3, len(r)))
-    for i in np.unique(case):
-        here, one = np.flatnonzero(case == i), pressure.take([i])
-        p[here] = 0.0 if outside else one.at(r[here])[0]
-        if load is _LOADS[0]:
-            second[here] = one.mean(r[here])[0]
-        else:
-            second[here], third[here] = on_surface(one, r[here])[:, 0]
+    nu, (p, mean) = nu[case], pressure.of_each(case, r)
+    p = 0.0 * p if outside else p
     if load is _LOADS[0]:
-        return np.stack([-(1 + 2 * nu) * p, (1 - 2 * nu) * (2 * second - p), -p, 0 * p])
-    parts = -2 * (1 + nu) * second, -2 * (2 - nu) * second, -2 * nu * third, 0 * p, 2 * p, 0 * p
+        return np.stack([-(1 + 2 * nu) * p, (1 - 2 * nu) * (2 * mean - p), -p, 0 * p])
+    first, third = np.empty((2, len(r)))
+    for i in np.unique(case):
+        here = np.flatnonzero(case == i)
+        first[here], third[here] = on_surface(pressure.take([i]), r[here])[:, 0]
+    parts = -2 * (1 + nu) * first, -2 * (2 - nu) * first, -2 * nu * third, 0 * p, 2 * p, 0 * p
     return np.stack(parts)
 
 

@@ -16,7 +16,7 @@ from ...layers import numbers_of
 from ...numerics.threads import one_blas_thread
 from ...scaling import dimensionless_pair
 from ..contact import of_contacts as of_one_layer
-from ..extremes import VALUES, Climb, SearchGrid, box_of, climbed
+from ..extremes import VALUES, Climb, SearchGrid, are_peaks, box_of, climbed
 from .stack_jets import StackJets
 
 #: Name -> the function of the stresses whose largest value it is, and the place that is searched: each "layer", the
@@ -128,7 +128,7 @@ def _of_sections(cases, names, coarse, only):
                 made[-1][name][0, j] = top
             least = top - (1 - _RIVAL) * abs(top) - _ROUGH * np.abs(case.pressure.values).max()
             for region in values if not coarse else ():
-                for at in _peaks(values[region], least):
+                for at in np.argwhere(are_peaks(values[region]) & (values[region] >= least)).tolist():
                     task = Climb(EXTREMES[name][0], number, 0, region, *at)
                     if task not in tasks:
                         tasks[task] = []
@@ -229,12 +229,3 @@ def _unlike(values):
     """The values in ascending order, without each that exceeds the one before by less than a hundredth of itself."""
     values = np.unique(values)
     return values[np.append(True, np.diff(values) > 0.01 * np.abs(values[1:]))]
-
-
-def _peaks(values, least):
-    """(side, row, column) of the values (S, V, U) that no neighbour exceeds and that are at least `least`."""
-    padded = np.pad(values, ((0, 0), (1, 1), (1, 1)), constant_values=-np.inf)
-    rows, columns = values.shape[1:]
-    around = [padded[:, a : a + rows, b : b + columns] for a in range(3) for b in range(3)]
-    best = (values >= np.max(around, axis=0)) & (values >= least)
-    return list(map(tuple, np.argwhere(best)))

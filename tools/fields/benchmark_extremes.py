@@ -43,8 +43,16 @@ random = np.random.default_rng(1)
 a, n = 0.03, np.exp(random.uniform(np.log(0.05), np.log(20), 100))
 rough = {"Nbar": 2.5e7, "Ra": 0.004, "bonding": "bonded", "nu1": 0.25}
 told("100_rough_layers", extremes(a=a, h=a * np.exp(random.uniform(np.log(0.05), np.log(3), 100)), n=n, **rough))
+def loads(body, strength, **other):
+    problem = Problem.of(P=1e-6, **film | other)
+    return lambda: first_yield(problem, body, np.broadcast_to(strength / E2, len(problem)))
+
 for body, strength in (("layer", 5e9), ("body", 2e9)):
-    told(f"first_yield_{body}", lambda: first_yield(Problem.of(P=1e-6, **film), body, np.array([strength / E2])))
+    told(f"first_yield_{body}", loads(body, strength))
+spots = {"micro": "disc_cell", "Nbar": 2.5e7, "Ra": 0.004}
+told("first_yield_rough_layer", loads("layer", 5e9, **spots))
+thicknesses = np.exp(random.uniform(np.log(1e-3), np.log(0.05), 200))
+told("first_yield_200_of_one_pair", loads("body", random.uniform(5e8, 5e9, 200), h=thicknesses))
 """
 
 

@@ -141,7 +141,10 @@ def _smooth(shares):
 
 
 def _closer(made, table, line, cases, shares):
-    """Put the places into `made`. cases : index, first node over the strength, and way there (b,) each; shares : (b, 4)
+    """Put the places into `made`.
+
+    cases : index, first node over the strength, and way there, (b,) each
+    shares : (b, 4), at the nodes of the polynomial
     """
     index, node, way = cases
     terms = shares @ _POLYNOMIAL

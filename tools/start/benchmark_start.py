@@ -13,12 +13,14 @@ import sys
 
 SOLVE = "import study; study.solve({})"
 UNITS = ("R=5 mm", "E2=210 GPa", "P=10 N", "micro=smooth")
+NAMED = ("R=5 mm", "punch=alumina", "layer=TiN", "body=steel 52100", "h=3 um", "P=10 N", "micro=smooth")
 CALLS = {
     "import xarray": ("-c", "import xarray"),
     "point, smooth on a half-space": ("-m", "study", "point", "P=1e-5", "micro=smooth", "base=half_space"),
     "the same with units, with strengths": ("-m", "study", "point", *UNITS, "base=half_space"),
     "point, smooth on a layer": ("-m", "study", "point", "P=1e-5", "h=0.1", "n=2", "bonding=bonded", "micro=smooth"),
     "the same with units, with strengths ": ("-m", "study", "point", *UNITS, "h=2 um", "E1=200 GPa", "bonding=bonded"),
+    "the same of named materials": ("-m", "study", "point", *NAMED, "bonding=bonded"),
     "study.solve, smooth on a half-space": ("-c", SOLVE.format("P=1e-5, micro='smooth', base='half_space'")),
     "study.solve, rough on a layer": ("-c", SOLVE.format("P=1e-5, h=0.1, n=2.0, Nbar=1e4, Ra=1e-3")),
 }

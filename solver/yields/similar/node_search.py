@@ -141,7 +141,11 @@ def _smooth(shares):
 
 
 def _closer(made, table, line, cases, shares):
-    """Put the places into `made`. cases : index, first node over the strength, and way there (b,) each; shares : (b, 4)"""
+    """Put the places into `made`.
+
+    cases : index, first node over the strength, and way there, (b,) each
+    shares : (b, 4), at the nodes of the polynomial
+    """
     index, node, way = cases
     terms = shares @ _POLYNOMIAL
     low, high = np.full(len(index), -1.0), np.zeros(len(index))

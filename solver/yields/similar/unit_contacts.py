@@ -5,6 +5,7 @@ They are solved in the basis of :mod:`~solver.smooth.galerkin`, of kernels that 
 that a process has not met takes some ten milliseconds, where tables of the mesh take .7 of a second.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,8 @@ from ...bases import is_exact, is_stack
 from ...body import BODIES
 from ...fields.pressure import Pressure
 from ...numerics import batch
-from ...numerics.mesh import mesh_of
+from ...numerics.mesh import WHOLE, Mesh, on_panels
+from ...numerics.quadrature import radau_nodes
 from ...numerics.threads import one_blas_thread
 from ...problem import Problem
 from ...scaling import dimensionless, refused
@@ -25,9 +27,9 @@ from ...smooth.tension import is_tensile
 from ..contact import alike
 from ..extremes import coarsely, together
 
-#: Nodes of the polynomial that is the pressure, where the coarse grid is enough and elsewhere
-#: (tests/yields/similar/test_unit_contacts.py).
-_ROUGHLY, _NODES = 22, 64
+#: Nodes of the polynomial that is the pressure, where the coarse grid is enough and elsewhere: the most that tables of
+#: 16 and of 48 polynomials serve (tests/yields/similar/test_unit_contacts.py).
+_ROUGHLY, _NODES = 16, 48
 #: Contacts that are in memory together.
 _TOGETHER = 64
 #: Films thinner than this part of the radius at which a search ends are left to the mesh: the basis does not resolve
@@ -87,7 +89,8 @@ def unit_contacts(scaled, t, sought=None, punch=None, coarse=False):
     coarse : the stress is that of the coarse grid, up to 10 % too small, without its place
     """
     made = UnitContacts(*np.full((7, len(t)), np.nan))
-    for some in np.array_split(np.arange(len(t)), -(-len(t) // _TOGETHER)):
+    for first in range(0, len(t), _TOGETHER):
+        some = np.arange(first, min(first + _TOGETHER, len(t)))
         contact = Solved.of(scaled.take(some).but(h=t[some]))
         for values, column in zip(made, contact.numbers(), strict=False):
             values[some] = column
@@ -126,7 +129,7 @@ class Solved(NamedTuple):
     def largest(self, names, mu=0.0, punch=None, coarse=False):
         """Name of :data:`~..extremes.EXTREMES` -> the largest value and its place, (3, B)."""
         size = len(self.problem)
-        none, mesh = np.zeros(size), mesh_of(_ROUGHLY if coarse else _NODES)
+        none, mesh = np.zeros(size), _mesh(_ROUGHLY if coarse else _NODES)
         pressure = Pressure(mesh, without_edge(shape_of(self.problem), self.response, none, mesh.x))
         groups = [*alike(self.problem, none + 1, pressure, mu, none, punch)]
         batches = [loaded for _, loaded in groups]
@@ -136,3 +139,11 @@ class Solved(NamedTuple):
             for name in names:
                 made[name][:, rows] = answer[name]
         return made
+
+
+@lru_cache(maxsize=4)
+def _mesh(n):
+    """The mesh of one panel with n nodes, without its operator, which takes the most time and no pressure needs."""
+    s, none = on_panels(radau_nodes(n), WHOLE), np.zeros(0)
+    s[-1] = 1.0
+    return Mesh(n, WHOLE, s, np.sqrt((1 - s) * (1 + s)), none, none, none)

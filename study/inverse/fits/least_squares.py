@@ -76,7 +76,7 @@ def minimise(
             break
         # Curves that are done leave the batch, which stays a multiple of AT_LEAST: the order of a sum, and with it
         # the last digit, may depend on the size of the batch
-        rows = left if len(left) % AT_LEAST == 0 else np.resize(left, -(-len(left) // AT_LEAST) * AT_LEAST)
+        rows = filled(left)
         new, decrease = _step(data.take(rows), fit.take(rows), fixed[rows], damping[rows])
         part = curve.take(rows)
         new_model, new_J = part(new)
@@ -100,6 +100,11 @@ def minimise(
         fit.ended[left[done]] = True
         left = left[~done]
     return fit
+
+
+def filled(left: np.ndarray) -> np.ndarray:
+    """The numbers of curves, filled up with the first of them to a multiple of AT_LEAST."""
+    return left if len(left) % AT_LEAST == 0 else np.resize(left, -(-len(left) // AT_LEAST) * AT_LEAST)
 
 
 def _step(data: Data, fit: Minimum, fixed: np.ndarray, damping: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

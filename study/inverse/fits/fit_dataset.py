@@ -303,8 +303,9 @@ def words_of(question: Question, fitted: xr.Dataset) -> dict[str, str]:
     contact = unsolved("fit", question.call)
     free = [name for name in question.free if name in fitted]  # none of a plan: these are its assumed values
     for name in free:  # the assumptions depend on how soft the layer is
-        if np.isfinite(value := fitted[name].median().item()):
-            contact[name] = contact[name].copy(data=value)
+        known = fitted[name].values[np.isfinite(fitted[name].values)]
+        if len(known):
+            contact[name] = contact[name].copy(data=np.median(known))
     words = {"given": "\n".join(given(contact, free))}
     doubts = [f"Assumed: {sentence}" for sentence in assumed(contact)]
     return words | ({"assumed": "\n".join(doubts)} if doubts else {})

@@ -55,13 +55,20 @@ class Minimum(NamedTuple):
 
 
 def minimise(
-    curve: Any, data: Data, p: np.ndarray, fixed: np.ndarray | None = None, steps: int = STEPS, sure: float = SURE
+    curve: Any,
+    data: Data,
+    p: np.ndarray,
+    fixed: np.ndarray | None = None,
+    steps: int = STEPS,
+    sure: float = SURE,
+    patience: int = _IDLE,
 ) -> Minimum:
     """Minimise the sum of the squares of w (y - curve(p)), from p on, within the bounds.
 
     curve : p -> values (B, n) and derivatives (B, n, k), NaN where there is none; `take(index)` has some of the curves
     fixed : (B, k) bool, unknowns that stay
     sure : the search ends where a step would lower the cost by less than this part of the mean square
+    patience : and after so many steps with hardly a gain
     """
     fixed = np.zeros(p.shape, bool) if fixed is None else fixed
     model, J = curve(p)
@@ -90,7 +97,7 @@ def minimise(
         near = (decrease <= sure * fit.cost[rows] / count[rows])[once] & (damping[left] <= 1e-3)
         gain = np.where(better, (fit.cost[rows] - cost)[once], 0.0)
         idle[left] = np.where(gain <= little * fit.cost[left] / count[left], idle[left] + 1, 0)
-        done = small | (better & near) | (~better & (damping[left] > _STIFF)) | (idle[left] >= _IDLE)
+        done = small | (better & near) | (~better & (damping[left] > _STIFF)) | (idle[left] >= patience)
         take = left[better]
         for array, value in zip(fit[:5], (new, cost, new_model, new_J, weights), strict=True):
             array[take] = value[once][better]

@@ -1,4 +1,4 @@
-"""Contacts that stick, given by their radii: without the search for pull-off they have the numbers they have with it."""
+"""Contacts that stick, given by their radii: the search for pull-off changes none of their numbers."""
 
 import numpy as np
 import pytest

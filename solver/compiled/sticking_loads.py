@@ -20,13 +20,11 @@ def loads_in_c(rows: np.ndarray, depth: np.ndarray, step: float) -> tuple[Any, A
         return None
     shape, others = depth.shape, len(rows) - 1
     rows, depth = (np.ascontiguousarray(array, float) for array in (rows, depth))
-    loads = [
-        (np.empty(shape), np.empty(shape), np.empty((others, *shape)), np.empty((4, *shape)))
-        for _ in ("sticks", "free")
-    ]
+    sizes = shape, shape, (others, *shape), (4, *shape)
+    loads = [tuple(np.empty(size) for size in sizes) for _ in ("sticks", "free")]
     ends = np.empty((2, len(depth)))
     sticks, free = (CLoads(*map(pointer, arrays)) for arrays in loads)
-    sizes = {"curves": shape[0], "points": shape[1], "length": rows.shape[3], "others": others, "step": step}
+    numbers = {"curves": shape[0], "points": shape[1], "length": rows.shape[3], "others": others, "step": step}
     arrays = {"rows": pointer(rows), "depth": pointer(depth), "D_off": pointer(ends, 0), "D_least": pointer(ends, 1)}
-    function(byref(CSticking(**sizes, **arrays, sticks=sticks, free=free)))
+    function(byref(CSticking(**numbers, **arrays, sticks=sticks, free=free)))
     return *loads, *ends

@@ -49,11 +49,11 @@ def _touching(part, shape, body, at_radius, x):
     return solution, tensile
 
 
-def sticking(part, x):
-    """As :func:`not_sticking`, for cases with adhesion, w > 0."""
+def sticking(part, x, ends=True):
+    """As :func:`not_sticking`, for cases with adhesion, w > 0. `ends` as of :func:`~.adhesion.adhesive.solve`."""
     shape, body = shape_of(part), Tabulated.of(BODIES[str(part.base[0])](part))
-    solution = adhesive.solve(part, shape, body, x)
-    if str(part.adhesion[0]) == "maugis":
+    solution = adhesive.solve(part, shape, body, x, ends)
+    if str(part.adhesion[0]) == "maugis" and ends:
 
         def with_edge(cases, index, x):
             return adhesive.solve(cases, shape.take(index), body.take(index), x)

@@ -26,7 +26,7 @@ from .fits.model import HERTZ, CurveModel
 from .fits.question import Question, inside, read_question, region
 from .fits.tables.branch import planned
 from .fits.tasks import Task, fit_task, forget
-from .no_pull import OF_ADHESION, joined, without
+from .no_pull import OF_ADHESION, joined, without, without_pull
 
 #: Number of curves in a block, and the multiple to which the number of their points is padded.
 _BLOCK, _PART = 64, 64
@@ -162,8 +162,10 @@ def _with_and_without(fitted: xr.Dataset, arrays: tuple, call: tuple, low: float
     """The fits; for curves without a pull, those of the same call without adhesion."""
     (X, Y, S), (free, options, parameters) = arrays, call
     rest, bare = without(free, parameters)
-    plain = fit({"D": (X, "m"), "P": (Y, "N")}, free=rest, **options | {"sigma": S}, **bare)
-    return joined(fitted, plain, low)
+    points, options = {"D": (X, "m"), "P": (Y, "N")}, options | {"sigma": S}
+    flags = without_pull(fitted, fit(points, free=rest, **options | {"intervals": None}, **bare), low)
+    plain = fit(points, free=rest, **options, **bare) if flags[0].any() else fitted
+    return joined(fitted, plain, *flags)
 
 
 def _fits_of_curves(

@@ -47,25 +47,30 @@ def _is_quiet(plain: xr.Dataset) -> bool:
     return bool(means.min(initial=0.0) > -_PULL * noise)
 
 
-def joined(fitted: xr.Dataset, plain: xr.Dataset, low: float) -> xr.Dataset:
-    """Fits with adhesion, except that curves without a pull have the fits without adhesion; `no_pull` marks them.
+def without_pull(fitted: xr.Dataset, plain: xr.Dataset, low: float) -> tuple[np.ndarray, np.ndarray]:
+    """Which curves (curve,) have no pull: adhesion is at its low bound, or lowers the sum of squares by no more than
+    chance would; and for which of all curves it lowers it.
 
-    plain : fits without adhesion
-    low : the low bound of w_adhesion
-
-    A curve has no pull only if w_adhesion is at its low bound, or reduces the sum of squares by no more than chance
-    would.
+    plain : the fits without adhesion; low : the low bound of w_adhesion
     """
-    fitted, no_pull = fitted.copy(deep=True), np.zeros(fitted.sizes["curve"], bool)
+    no_pull, betters = np.zeros((2, fitted.sizes["curve"]), bool)
     for i in np.flatnonzero(~plain["fit_status"].isin(_LOST).values & ~fitted["fit_status"].isin(_LOST).values):
-        with_pull, without_pull = fitted.isel(curve=i), plain.isel(curve=i)
-        sums = [float((part["residual"] ** 2).sum()) for part in (with_pull, without_pull)]
+        with_pull, bare = fitted.isel(curve=i), plain.isel(curve=i)
+        sums = [float((part["residual"] ** 2).sum()) for part in (with_pull, bare)]
         freedom = max(float(with_pull["effective_points"]) - with_pull.sizes["cov_i"], 1.0)
         gain = (sums[1] - sums[0]) / max(sums[0], 1e-300) * freedom
-        better = gain > 0 and float(with_pull["w_adhesion"]) > low * (1 + 1e-6)
-        no_pull[i] = (not better or special.fdtr(_MORE, freedom, gain / _MORE) < _SURE) and _is_quiet(without_pull)
-        if no_pull[i]:
-            _put(fitted, plain, i, better)
+        betters[i] = gain > 0 and float(with_pull["w_adhesion"]) > low * (1 + 1e-6)
+        by_chance = not betters[i] or special.fdtr(_MORE, freedom, gain / _MORE) < _SURE
+        no_pull[i] = by_chance and _is_quiet(bare)
+    return no_pull, betters
+
+
+def joined(fitted: xr.Dataset, plain: xr.Dataset, no_pull: np.ndarray, betters: np.ndarray) -> xr.Dataset:
+    """Fits with adhesion, and in place of those of curves without a pull those without it, `plain`. `no_pull` says
+    where; both arrays are those of :func:`without_pull`."""
+    fitted = fitted.copy(deep=True)
+    for i in np.flatnonzero(no_pull).tolist():
+        _put(fitted, plain, i, betters[i])
     return fitted.assign(no_pull=("curve", no_pull, {"long_name": "whether the curve has no pull: w_adhesion is 0"}))
 
 

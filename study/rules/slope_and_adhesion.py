@@ -2,11 +2,12 @@
 
 import numpy as np
 
+from solver.at_radii import solve_at_radii
 from solver.bases import is_bare
 from solver.shapes import PARABOLOID
 
 from .rule import rule
-from .strength import solved
+from .strength import problem_of
 
 SLOPE = 0.4
 """Largest slope f'(a) of a shape other than the paraboloid: Tabor's representative strain 0.2 f'(a) is then 8 %. A
@@ -56,8 +57,7 @@ def interior_tension(v, times):
     index = np.flatnonzero(np.broadcast_to((v["w_adhesion"] > 0) & (v["status"] == 0), shape))
     has_tension = np.zeros(shape, bool)
     if len(index):
-        _, solution = solved(v, index, _RADII)
-        has_tension.flat[index] = rises_from_tension(solution.p)
+        has_tension.flat[index] = rises_from_tension(solve_at_radii(problem_of(v, index), _RADII).p)
     return has_tension
 
 

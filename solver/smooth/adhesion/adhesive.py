@@ -26,9 +26,13 @@ _UNKNOWN = 0.1
 _LEAST = 0.1
 
 
-def solve(part, shape, body, x):
+def solve(part, shape, body, x, ends=True):
     """:class:`~...solution.Solution` of cases with w > 0 of one base, one shape and one law of adhesion, in units R =
-    E2* = 1, with profiles at the radii x (m,)."""
+    E2* = 1, with profiles at the radii x (m,).
+
+    ends : whether pull-off and pull-in are searched; else the contacts are given by their radii, and the numbers of
+        both are 0
+    """
     if str(part.adhesion[0]) == "dmt":
         return dmt.solve(part, shape, body, machine(part), x)
     law, every, ring = Jkr(shape, body, part.w_adhesion), np.arange(len(part)), None
@@ -36,6 +40,8 @@ def solve(part, shape, body, x):
         law = Maugis(shape, body, part.w_adhesion, ring_stress(part))
     if has_radius(shape).all():
         return _flat(part, law, x)
+    if not ends:
+        return _at_radii(part, law, x)
     curve, at_turn = States(law), np.zeros(len(part), dtype=bool)
     search, counts = pulled(part, law)
     turn, jumped = search.turn, search.jumped
@@ -47,14 +53,29 @@ def solve(part, shape, body, x):
     pulls = {"P_off": turn.state.P, "D_off": turn.state.D, "a_off": np.where(turn.at_axis, 0.0, turn.state.a)}
     pulls |= {"P_in": np.where(search.holder.load, 0.0, jumped.P), "a_in": jumped.a}
     off, scales = _off(turn.state), _scales(law, turn.state, state)
-    outside = beyond_profile(part, shape, lambda index, a: law.take(index).at(a))
     if isinstance(law, Maugis):
         ring = partial(ring_pressure, part, state.zone)
     exact = _at_minimum(part, state, at_turn)
     solution = _answered(part, shape, exact, (pulls, off, scales), curve.counts + counts, x, ring)
     steep = at_turn & (part.control == "D") & ~turn.corner
     solution = replace(solution, dP_dD=np.where(steep, np.inf, np.where(at_turn, state.stiffness, solution.dP_dD)))
-    return solution.refused(outside, Status.OUTSIDE_LAW)
+    return solution.refused(_outside(part, law), Status.OUTSIDE_LAW)
+
+
+def _outside(part, law):
+    """(B,) bool: the contact is larger than the profile."""
+    return beyond_profile(part, law.shape, lambda index, a: law.take(index).at(a))
+
+
+def _at_radii(part, law, x):
+    """The solution of contacts given by their radii, without pull-off and pull-in. Errors of load and depth are
+    relative to what adhesion takes of them at least."""
+    state = law.at(part.value)
+    ring = partial(ring_pressure, part, state.zone) if isinstance(law, Maugis) else None
+    scales = Scales(*law.taken(state))
+    solution, _ = answer(part, law.shape, state, np.ones(len(part), dtype=np.int32), x, ring, scales)
+    solution = solution.refused(~np.isfinite(state.P), Status.DIVERGED)
+    return solution.refused(_outside(part, law), Status.OUTSIDE_LAW)
 
 
 @batch.of_cases

@@ -43,6 +43,12 @@ def curve_terms(problem, x):
     return CurveTerms(*extrapolated(few, many))
 
 
+def radii_of(problem, x):
+    """The radii (B, m) at x (B, m) of :class:`~..radius.Radii` of B contacts, in units R = E2* = 1."""
+    shape, index = shape_of(dimensionless(with_rigid_punch(problem))), np.repeat(np.arange(len(x)), x.shape[1])
+    return Radii(shape).at(x.ravel(), index)[0].reshape(x.shape)
+
+
 def extrapolated(few, many):
     """The arrays of graded layers, extrapolated from those with few and with many sublayers, :data:`SUBLAYERS`."""
     return ((4 * more - less) / 3 for less, more in zip(few, many, strict=True))

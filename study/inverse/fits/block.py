@@ -15,6 +15,7 @@ from .least_squares import SURE, Data, Minimum, inverse, minimise, normal
 from .question import Question
 from .residuals import Worth, parts_of, worth_of
 from .starts import best_of, starts_of
+from .tables.branch import radii
 from .tables.ratio_table import RatioTable
 from .tables.sticking_points import StickingPoints
 from .tables.term_table import TermTable
@@ -23,6 +24,8 @@ from .tables.term_table import TermTable
 _ROUGHLY = 1e-4
 #: Logarithms of works of adhesion at which searches for a retraction begin, relative to the best one.
 _ABOUT = np.linspace(-0.3, 0.3, 8)
+#: The contacts at so many equal parts of the depth are judged by the assumptions of the model.
+JUDGED = 16
 _SURE = 0.999  # level of the F test that there is a contact
 _SAME = 1e-3  # minima whose unknowns differ by less than this share of a spread are one
 
@@ -106,7 +109,8 @@ def fit_block(
     Returns the unknowns p (B, k), the ends low and high of their intervals, their covariance (B, k, k) and the
     covariance from the spreads of other inputs (`propagated`), Student's t (B, k), status (B,), the fit of y (B, n),
     the units of x and y (wide and top, (B,)) for D0, P0 and tilt, the fields of :class:`.residuals.Worth`, and the
-    first unknown by parts of the contact (`parts`, (B, PARTS)).
+    first unknown by parts of the contact (`parts`, (B, PARTS)); of contacts that stick their radii in m at
+    parts of the depth (`radii`, (B, JUDGED)), else NaN.
     """
     problem = _problem(question, table, x, y, sigma)
     minima = _minima(problem)
@@ -127,7 +131,18 @@ def fit_block(
         "parts": parts_of(curve, data, best, spread.share, spread.worth),
         **spread.worth._asdict(),
         "fit": np.where(is_point, best.model * curve.high[:, None], np.nan),
+        "radii": _radii(curve, best),
     }
+
+
+def _radii(curve: MeasuredCurves, best: Minimum) -> np.ndarray:
+    """The radii (B, JUDGED) of contacts that stick; NaN where a machine, which the table does not know, holds them."""
+    table, parts = curve.table, np.arange(1, JUDGED + 1) / JUDGED
+    if not isinstance(table, TermTable) or "k_machine" in table.model.scene.values:
+        return np.full((len(best.p), JUDGED), np.nan)
+    begin = best.p[:, curve.names.index("D0")] * curve.wide if "D0" in curve.shifts else 0.0
+    deepest = curve.x.max(axis=1) - begin
+    return radii(table, curve.values(best.p), np.maximum(deepest, 1e-3 * curve.wide)[:, None] * parts)
 
 
 def _problem(

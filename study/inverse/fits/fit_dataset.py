@@ -1,21 +1,25 @@
 """The Dataset of a fit: inputs in SI with their intervals, validity, and words for its summary."""
 
-import warnings
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from solver import Status
+from solver import Problem, Solution, Status, solve
+from solver.at_radii import solve_at_radii
 
+from ...arrays.labelled import Labelled
+from ...data.dataset import validity_of_rows
 from ...in_words.fits import NAMES_OF_SHIFTS
 from ...in_words.sentences import assumed
 from ...in_words.stated_inputs import given
-from ...inputs.scene.stacks import moduli_of
+from ...inputs.punch.laws import results_of
+from ...inputs.scene.scales import with_unit
 from ...inputs.vocabulary import NOT_RUN, ROWS
 from ...rules.rule import RULES
-from ...solving import solve, unsolved
-from .block import FitStatus
+from ...solving import unsolved
+from ...work.cases import arrays_of
+from .block import JUDGED, FitStatus
 from .model import CurveModel
 from .question import Question
 from .residuals import PARTS
@@ -23,7 +27,6 @@ from .residuals import PARTS
 _WITHOUT_FIT = (FitStatus.INVALID_INPUT, FitStatus.NO_CONTACT)
 #: For at most so many curves all depths are solved at once: a call costs more than some hundred contacts.
 _FEW = 8
-_HALVINGS = 4  # the depth at which the first assumption fails is found to 1/2**4 of the deepest
 #: Bodies of at least this modulus, in Pa, flow below a sharp tip, whatever their material: the mean pressure of the
 #: elastic contact, E* cot(half_angle)/2, is 0.18 E* under a Berkovich tip, but their hardness is at most some 0.1 E*.
 #: Rubbers and gels, which do not flow, are softer than 0.1 GPa.
@@ -81,7 +84,7 @@ def fit_dataset(
         variables[model.y] = (("curve", "point"), Y, about)
     attributes = {"level": question.level, "x": model.x, "y": model.y, "free": " ".join(question.free)}
     fitted = xr.Dataset(variables, coordinates, attributes)
-    return fitted.merge(_validity(question, fitted, numbers.value, X, there))
+    return fitted.merge(_validity(question, fitted, numbers.value, X, there, _radii(fits, len(X))))
 
 
 def _in_si(question: Question, names: tuple, fits: dict, X: np.ndarray, there: np.ndarray) -> _Numbers:
@@ -174,8 +177,16 @@ def _end(p: float, end: float, more: float) -> float:
     return p + np.sign(end - p) * np.hypot(end - p, more)
 
 
+def _radii(fits: dict, count: int) -> np.ndarray:
+    """The radii (curve, JUDGED) of the contacts that are judged, NaN where they are not known."""
+    radii = np.full((count, JUDGED), np.nan)
+    for curve, (block, i) in fits.items():
+        radii[curve] = block["radii"][i]
+    return radii
+
+
 def _validity(
-    question: Question, fitted: xr.Dataset, value: np.ndarray, X: np.ndarray, there: np.ndarray
+    question: Question, fitted: xr.Dataset, value: np.ndarray, X: np.ndarray, there: np.ndarray, radii: np.ndarray
 ) -> xr.Dataset:
     """Variables over `curve`: the assumptions of the model that the deepest contact of a fit violates, and the x up to
     which no contact violates any."""
@@ -185,33 +196,22 @@ def _validity(
     good = np.isfinite(value).all(axis=1) & (deepest > D0)
     flags, valid, about = np.zeros(len(X), np.int64), np.where(good, deepest, np.nan), {}
     plastic, outside = np.zeros((2, len(X)), bool)
+
+    def judged(curves: np.ndarray, part: np.ndarray) -> _Judged:
+        """The contacts of some of the curves at a part of the depth, 1 to JUDGED, each."""
+        x = part / JUDGED * (deepest - D0)[curves]
+        return _judged(question, value[curves], x, radii[curves, part - 1])
+
     if good.any():
-        few, depths = good.sum() <= _FEW, (deepest - D0)[good]
-        every = _at_all_parts(question, value[good], depths) if few else None
-        last = slice(2**_HALVINGS - 1, None, 2**_HALVINGS)
-        contacts = _contacts(question, value[good], depths) if every is None else every.isel(curve=last)
-        flags[good], about = contacts["validity"].values, contacts["validity"].attrs
-        outside[good] = contacts["status"].values == Status.OUTSIDE_LAW
+        index = np.flatnonzero(good)
+        contacts = judged(index, np.full(len(index), JUDGED))
+        flags[good], about = contacts.validity.values, contacts.validity.attrs
+        outside[good] = contacts.outside
         touched = value[good, model.unknowns.index(model.modulus)] if model.modulus in model.unknowns else None
         touched = np.full(good.sum(), model.value(model.modulus)) if touched is None else touched
         plastic[good] = flows(model, touched, contacts)
         broken = np.flatnonzero((flags != 0) | outside)
-        holds, fails = np.zeros(len(broken), int), np.full(len(broken), 2**_HALVINGS)  # in parts of the depth
-        at_once = None
-        if every is not None:
-            at_once = _hold(every).reshape(len(depths), -1)[np.isin(np.flatnonzero(good), broken)]
-        elif 0 < len(broken) <= _FEW:
-            at_once = _hold(_at_all_parts(question, value[broken], (deepest - D0)[broken])).reshape(len(broken), -1)
-        for _ in range(_HALVINGS if len(broken) else 0):
-            part = (holds + fails) // 2
-            x = part / 2**_HALVINGS * (deepest - D0)[broken]
-            if at_once is None:
-                good_there = _hold(_contacts(question, value[broken], x))
-            else:
-                good_there = at_once[np.arange(len(broken)), part - 1]
-            holds, fails = np.where(good_there, part, holds), np.where(good_there, fails, part)
-        x = holds / 2**_HALVINGS * (deepest - D0)[broken]
-        valid[broken] = np.where(holds > 0, D0[broken] + x, -np.inf)
+        valid[broken] = _valid_to(judged, broken, D0, deepest)
     flags, valid = np.where(plastic, flags | RULES["body_yields"].mask, flags), np.where(plastic, -np.inf, valid)
     variables = {
         "validity": ("curve", flags, about),
@@ -224,56 +224,64 @@ def _validity(
     return xr.Dataset(variables)
 
 
-def _hold(contacts: xr.Dataset) -> np.ndarray:
-    """(M,) bool: contacts that violate no assumption, and are in the range of the law of their asperities."""
-    return (contacts["validity"].values == 0) & (contacts["status"].values != Status.OUTSIDE_LAW)
+def _valid_to(judged: Any, broken: np.ndarray, D0: np.ndarray, deepest: np.ndarray) -> np.ndarray:
+    """The x up to which no assumption is violated, of the curves `broken` (M,), whose deepest contact violates some;
+    -inf where there is none. By bisection of the parts of the depth; of few curves all parts are solved at once."""
+    holds, fails = np.zeros(len(broken), int), np.full(len(broken), JUDGED)
+    at_once = None
+    if 0 < len(broken) <= _FEW:
+        every = judged(np.repeat(broken, JUDGED), np.tile(np.arange(1, JUDGED + 1), len(broken)))
+        at_once = every.hold.reshape(len(broken), -1)
+    while len(broken) and (fails - holds > 1).any():
+        part = (holds + fails) // 2
+        good = judged(broken, part).hold if at_once is None else at_once[np.arange(len(broken)), part - 1]
+        holds, fails = np.where(good, part, holds), np.where(good, fails, part)
+    x = holds / JUDGED * (deepest - D0)[broken]
+    return np.where(holds > 0, D0[broken] + x, -np.inf)
 
 
-def _at_all_parts(question: Question, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
-    """Contacts over `curve` at 1, 2 ... 2**_HALVINGS parts of the depths x (M,), one depth after the other."""
-    parts = np.arange(1, 2**_HALVINGS + 1)
-    every = np.repeat(value, len(parts), axis=0), (x[:, None] * parts / 2**_HALVINGS).ravel()
-    return _contacts(question, *every)
+class _Judged(NamedTuple):
+    """Contacts (M,): which assumptions they violate, whether they are outside of the law of their asperities, their
+    radii in m, and their parameters."""
+
+    validity: Labelled
+    outside: np.ndarray
+    a: np.ndarray
+    parameters: dict[str, np.ndarray]
+
+    @property
+    def hold(self) -> np.ndarray:
+        """(M,) bool: they violate no assumption, and are in the range of the law of their asperities."""
+        return (self.validity.values == 0) & ~self.outside
 
 
-def _contacts(question: Question, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
-    """Contacts of the unknown inputs `value` (M, k) at x (M,), over `curve`."""
-    model, scene = question.model, question.model.scene
-    values = model.within({name: value[:, i] for i, name in enumerate(model.unknowns)})
-    by_name = scene.lexicon.all_rows
-    columns: dict[str, tuple] = {name: (values[name], by_name[name].unit) for name in model.unknowns}
-    others = [name for name in scene.values if name not in columns and name != model.x]
-    columns |= {name: (float(scene.values[name]), by_name[name].unit) for name in others}
-    columns[model.x] = (x, ROWS[model.x].unit)
-    arrays = {
-        name: xr.DataArray(v, dims=("curve",) if np.ndim(v) else (), attrs={"units": unit})
-        for name, (v, unit) in columns.items()
-    }
-    arrays |= {"E2": "rigid"} if np.isinf(np.asarray(columns.get("E2", (0.0,))[0])).all() else {}
-    # inputs without units; ratios follow from moduli
-    others = {*scene.parameters} - {
-        *arrays,
-        "n",
-        "m",
-        "P",
-        "a",
-        "D",
-        *(ratio for _, _, ratio in moduli_of(scene.values)),
-    }
-    arrays |= {name: scene.parameters[name] for name in others if by_name[name].unit == "1"}
-    arrays["micro"] = scene.lexicon.law_or_name(arrays.get("micro", "disc_cell"))
-    if "R1" in arrays:
-        del arrays["R"]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return solve(**arrays, x=2, profiles=False, progress=False)
+def _judged(question: Question, value: np.ndarray, x: np.ndarray, radii: np.ndarray) -> _Judged:
+    """The contacts of the unknown inputs `value` (M, k) at x (M,); where they stick, by their `radii` (M,) in m, if
+    these are known."""
+    model = question.model
+    scene = model.scene_of(model.within({name: value[:, i] for i, name in enumerate(model.unknowns)}))
+
+    def problem(control: str, at: np.ndarray) -> Problem:
+        numbers = with_unit(at, tuple(-power for power in ROWS[control].powers), scene.unit, scene.R)
+        return scene.lexicon.problem(scene.parameters, **{control: numbers})
+
+    by_x, known = problem(model.x, x), np.isfinite(radii)
+    pieces = [(np.flatnonzero(~known), solve(by_x.take(~known)))] if not known.all() else []
+    if known.any():
+        pieces.append((np.flatnonzero(known), solve_at_radii(problem("a", radii).take(known), np.array([0.0, 1.0]))))
+    solution = Solution.join(len(x), 2, pieces)
+    results = results_of(by_x.known.laws, by_x.micro, felt=bool(by_x.feels_layer().any()))
+    of_two = {name: scene.values[name] / scene.R + 0 * x for name in ("R1", "R2") if name in scene.values}
+    numbers = by_x.parameters | of_two | arrays_of(solution, results, ())
+    validity, outside = validity_of_rows(numbers, by_x.known), solution.status == Status.OUTSIDE_LAW
+    return _Judged(validity, outside, solution.a * scene.R, by_x.parameters)
 
 
-def flows(model: CurveModel, modulus: np.ndarray, contacts: xr.Dataset) -> np.ndarray:
+def flows(model: CurveModel, modulus: np.ndarray, contacts: _Judged) -> np.ndarray:
     """Whether each contact (M,) of a fit has a sharp tip, and a body that flows below it.
 
     modulus : (M,) in Pa, of the touched body
-    contacts : the contacts at the deepest points, of `solve`
+    contacts : the contacts at the deepest points
     """
     numbers = model.scene.parameters
     shape = numbers.get("shape", "paraboloid")
@@ -282,10 +290,10 @@ def flows(model: CurveModel, modulus: np.ndarray, contacts: xr.Dataset) -> np.nd
     hard = modulus >= HARD
     if shape in _POINTED:
         return hard
-    angle = contacts["half_angle"].values if "half_angle" in contacts else numbers["half_angle"]
+    angle = contacts.parameters["half_angle"]
     slope = 1 / np.tan(np.radians(np.asarray(angle, float)))
     if shape == "blunt_cone":
-        hard &= contacts["a"].values > _TANGENT * model.scene.values["tip_radius"] * slope
+        hard &= contacts.a > _TANGENT * model.scene.values["tip_radius"] * slope
     return hard & (slope / 2 > _BLUNT)
 
 
@@ -295,8 +303,9 @@ def words_of(question: Question, fitted: xr.Dataset) -> dict[str, str]:
     contact = unsolved("fit", question.call)
     free = [name for name in question.free if name in fitted]  # none of a plan: these are its assumed values
     for name in free:  # the assumptions depend on how soft the layer is
-        if np.isfinite(value := fitted[name].median().item()):
-            contact[name] = contact[name].copy(data=value)
+        known = fitted[name].values[np.isfinite(fitted[name].values)]
+        if len(known):
+            contact[name] = contact[name].copy(data=np.median(known))
     words = {"given": "\n".join(given(contact, free))}
     doubts = [f"Assumed: {sentence}" for sentence in assumed(contact)]
     return words | ({"assumed": "\n".join(doubts)} if doubts else {})

@@ -7,6 +7,8 @@ import numpy as np
 from .least_squares import HUBER, Data, Minimum, inverse, minimise, normal, scale
 
 _INNER, _INNER_SURE = 30, 1e-4  # number of steps of an inner fit, and its precision over the mean square
+#: Steps with hardly a gain that end an inner fit: the root of the cost, which counts, is then right to a hundredth.
+_PATIENCE = 8
 _OUTWARD, _BETWEEN = 24, 8  # number of steps of the walk to the limit, and between its last two places
 _PRECISE = 2e-3  # precision of an end, over the width of the interval
 
@@ -131,6 +133,6 @@ def _inner(
     p[rows, which[rows]] = value[rows]
     fixed = np.zeros((len(rows), p.shape[1]), bool)
     fixed[np.arange(len(rows)), which[rows]] = True
-    fit = minimise(of[0].take(rows), of[1].take(rows), p[rows], fixed, _INNER, _INNER_SURE)
+    fit = minimise(of[0].take(rows), of[1].take(rows), p[rows], fixed, _INNER, _INNER_SURE, _PATIENCE)
     p[rows], height[rows] = fit.p, np.sqrt(np.maximum(fit.cost - start[rows], 0.0))
     return p, height

@@ -55,13 +55,20 @@ class Minimum(NamedTuple):
 
 
 def minimise(
-    curve: Any, data: Data, p: np.ndarray, fixed: np.ndarray | None = None, steps: int = STEPS, sure: float = SURE
+    curve: Any,
+    data: Data,
+    p: np.ndarray,
+    fixed: np.ndarray | None = None,
+    steps: int = STEPS,
+    sure: float = SURE,
+    patience: int = _IDLE,
 ) -> Minimum:
     """Minimise the sum of the squares of w (y - curve(p)), from p on, within the bounds.
 
     curve : p -> values (B, n) and derivatives (B, n, k), NaN where there are none; `take(index)` selects curves
     fixed : (B, k) bool, unknowns that stay
     sure : the search ends when a step would lower the cost by less than this share of the mean square
+    patience : and after so many steps with hardly a gain
     """
     fixed = np.zeros(p.shape, bool) if fixed is None else fixed
     model, J = curve(p)
@@ -76,7 +83,7 @@ def minimise(
             break
         # Curves that are done leave the batch, which stays a multiple of AT_LEAST: the order of a sum, and with it
         # the last digit, may depend on the size of the batch
-        rows = left if len(left) % AT_LEAST == 0 else np.resize(left, -(-len(left) // AT_LEAST) * AT_LEAST)
+        rows = filled(left)
         new, decrease = _step(data.take(rows), fit.take(rows), fixed[rows], damping[rows])
         part = curve.take(rows)
         new_model, new_J = part(new)
@@ -90,7 +97,7 @@ def minimise(
         near = (decrease <= sure * fit.cost[rows] / count[rows])[once] & (damping[left] <= 1e-3)
         gain = np.where(better, (fit.cost[rows] - cost)[once], 0.0)
         idle[left] = np.where(gain <= little * fit.cost[left] / count[left], idle[left] + 1, 0)
-        done = small | (better & near) | (~better & (damping[left] > _STIFF)) | (idle[left] >= _IDLE)
+        done = small | (better & near) | (~better & (damping[left] > _STIFF)) | (idle[left] >= patience)
         take = left[better]
         for array, value in zip(fit[:5], (new, cost, new_model, new_J, weights), strict=True):
             array[take] = value[once][better]
@@ -100,6 +107,11 @@ def minimise(
         fit.ended[left[done]] = True
         left = left[~done]
     return fit
+
+
+def filled(left: np.ndarray) -> np.ndarray:
+    """The numbers of curves, filled up with the first of them to a multiple of AT_LEAST."""
+    return left if len(left) % AT_LEAST == 0 else np.resize(left, -(-len(left) // AT_LEAST) * AT_LEAST)
 
 
 def _step(data: Data, fit: Minimum, fixed: np.ndarray, damping: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

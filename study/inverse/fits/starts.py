@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from .curve import MeasuredCurves
-from .least_squares import Data, weighed
+from .least_squares import Data, filled, weighed
 from .model import HERTZ, is_ratio
 from .question import DECADE, Question
 
@@ -16,6 +16,8 @@ _STARTS = 6  # number of starts across the bounds of a second unknown input
 #: begin from the _BEST starts, and from twice as many where more than two inputs are unknown. With three starts 3 of 36
 #: paraboloids with free thickness converged far from the truth, with six none (`python tools/fit/sticking.py 210 h`).
 _WORKS, _OTHERS, _WAYS, _BEST = 6, 5, (0.02, 0.06, 0.15, 0.3, 0.6, 1.0), 6
+#: Most steps to the modulus with which a search begins, and how near, in its logarithm, ends them.
+_STEPS, _CLOSE = 12, 1e-3
 #: y = _HERTZ x^q E^e R^r for a rigid ball on a half-space.
 _HERTZ = {("D", "P"): 4 / 3, ("P", "a"): 0.75 ** (1 / 3), ("a", "dP_dD"): 2.0}
 
@@ -113,16 +115,20 @@ def _with_modulus(question, curve, p, low, high, x, load):
     wanted = np.log(np.maximum(load / curve.high, 1e-300))
     p = p.copy()
     p[:, i] = np.clip(p[:, i], low[:, i], high[:, i])
-    for _ in range(12):
-        F, by, _ = alone.contact(p)
+    left = np.arange(len(p))
+    for _ in range(_STEPS):
+        rows = filled(left)  # of a whole batch, so that the bits of a curve do not depend on its company
+        F, by, _ = alone.take(rows).contact(p[rows])
         with np.errstate(divide="ignore", invalid="ignore"):
-            step = (wanted - np.log(F[:, 0])) / np.maximum(np.abs(by[model.modulus][:, 0] / F[:, 0]), 0.03)
+            step = (wanted[rows] - np.log(F[:, 0])) / np.maximum(np.abs(by[model.modulus][:, 0] / F[:, 0]), 0.03)
         if model.sticks:  # too soft a layer pulls
             step = np.where(F[:, 0] <= 0, 1.5, step)
         step *= np.sign(HERTZ[model.x, model.y][0][1])
-        before = p[:, i].copy()
-        p[:, i] = np.clip(before + np.clip(np.nan_to_num(step), -2.0, 2.0), low[:, i], high[:, i])
-        if np.array_equal(p[:, i], before):  # further steps would be the same
+        before = p[left, i]
+        step = np.clip(np.nan_to_num(step), -2.0, 2.0)[: len(left)]
+        p[left, i] = np.clip(before + step, low[left, i], high[left, i])
+        left = left[np.abs(p[left, i] - before) > _CLOSE]
+        if not len(left):
             break
     return p
 

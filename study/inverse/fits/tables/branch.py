@@ -42,6 +42,17 @@ class Branch(NamedTuple):
     D_least: np.ndarray
 
 
+class _End(NamedTuple):
+    """The end of the branch of B curves: its cell (B,) and place t (B, 1) in it; depth, load, and the depth that
+    adhesion takes there, (B,)."""
+
+    turn: np.ndarray
+    t: np.ndarray
+    D: np.ndarray
+    P: np.ndarray
+    pull: np.ndarray
+
+
 class _Cells:
     """Cubics in 0 <= t <= 1 in the cells (B, n) of rows (B, 8, LENGTH) of logarithms and slopes."""
 
@@ -84,21 +95,38 @@ def branch(rows: np.ndarray, depth: np.ndarray) -> Branch:
 
 def _branch(rows: np.ndarray, depth: np.ndarray) -> Branch:
     """The same by numpy."""
-    parts = rows[0]
     with np.errstate(all="ignore"):
-        f = np.exp(parts[:, :4])
-        D, slope = f[:, 1] - f[:, 3], f[:, 1] * parts[:, 5] - f[:, 3] * parts[:, 7]
-        turns = (slope[:, :-1] < 0) & (slope[:, 1:] >= 0)
-        turn = np.where(turns.any(axis=1), LENGTH - 2 - turns[:, ::-1].argmax(axis=1), 0)
-        cells = _Cells(turn[:, None])
-        t_off = np.where(turns.any(axis=1)[:, None], _turn([cells.of(parts, i) for i in (1, 3)]), 0.0)
-        ends = [_pair([cells.of(parts, i), cells.of(parts, i + 2)], t_off) for i in (0, 1)]
-        (P_off, D_off), pull = (end[0][:, 0] for end in ends), ends[1][3][:, 0]
-        rising = np.where(np.isnan(D), np.inf, D)
-        rising[np.arange(LENGTH) <= turn[:, None]] = -np.inf
-        cell = np.clip((rising[:, None, :] <= depth[:, :, None]).sum(axis=2) - 1, turn[:, None], LENGTH - 2)
-        loads = _loads(rows, depth, cell, (turn, t_off, D_off, P_off, pull))
-        return Branch(loads, _free(rows, depth), D_off, np.maximum(D_off, _least(parts, f)))
+        end, cell = _placed(rows[0], depth)
+        loads, least = _loads(rows, depth, cell, end), _least(rows[0], np.exp(rows[0][:, :4]))
+        return Branch(loads, _free(rows, depth), end.D, np.maximum(end.D, least))
+
+
+def radii(table: TermTable, values: dict[str, np.ndarray], depth: np.ndarray) -> np.ndarray:
+    """The contact radii (B, n) in m at depths (B, n) on the branch, NaN beyond its end; for values (B, 1) of the
+    unknown inputs."""
+    deepest = depth.max(axis=1)
+    parts = table.rows(values, deepest)[0]
+    with np.errstate(all="ignore"):
+        end, cell = _placed(parts, depth)
+        cells = _Cells(cell)
+        t, beyond = _place_in_cells([cells.of(parts, 1), cells.of(parts, 3)], depth, cell, end)
+        x = table.begin(values, deepest)[:, None] + STEP * np.where(beyond, np.nan, cell + t)
+        return table.terms.radii({name: value[:, 0] for name, value in values.items()}, x)
+
+
+def _placed(parts: np.ndarray, depth: np.ndarray) -> tuple[_End, np.ndarray]:
+    """The end of the branch of the first of the rows, and the cells (B, n) in which depths lie."""
+    f = np.exp(parts[:, :4])
+    D, slope = f[:, 1] - f[:, 3], f[:, 1] * parts[:, 5] - f[:, 3] * parts[:, 7]
+    turns = (slope[:, :-1] < 0) & (slope[:, 1:] >= 0)
+    turn = np.where(turns.any(axis=1), LENGTH - 2 - turns[:, ::-1].argmax(axis=1), 0)
+    cells = _Cells(turn[:, None])
+    t_off = np.where(turns.any(axis=1)[:, None], _turn([cells.of(parts, i) for i in (1, 3)]), 0.0)
+    ends = [_pair([cells.of(parts, i), cells.of(parts, i + 2)], t_off) for i in (0, 1)]
+    rising = np.where(np.isnan(D), np.inf, D)
+    rising[np.arange(LENGTH) <= turn[:, None]] = -np.inf
+    cell = np.clip((rising[:, None, :] <= depth[:, :, None]).sum(axis=2) - 1, turn[:, None], LENGTH - 2)
+    return _End(turn, t_off, ends[1][0][:, 0], ends[0][0][:, 0], ends[1][3][:, 0]), cell
 
 
 def _least(parts: np.ndarray, f: np.ndarray) -> np.ndarray:
@@ -152,14 +180,12 @@ def _by_rows(rows: np.ndarray, cells: _Cells, t: np.ndarray, of_parts: np.ndarra
     return derivatives
 
 
-def _loads(rows: np.ndarray, depth: np.ndarray, cell: np.ndarray, off: tuple) -> Loads:
-    """Loads on the branch at depths in the cells (B, n); depths past its end, `off`, count as the end."""
-    turn, t_off, D_off, P_off, pull = off
-    cells = _Cells(cell)
-    of_load, of_depth = ([cells.of(rows[0], i), cells.of(rows[0], i + 2)] for i in (0, 1))
-    least = np.where(cell == turn[:, None], t_off, 0.0)
-    is_past_end = depth < D_off[:, None]
-    low, high = (_pair(of_depth, end)[0] for end in (least, np.ones_like(least)))
+def _place_in_cells(of_depth: list, depth: np.ndarray, cell: np.ndarray, end: _End) -> tuple[np.ndarray, np.ndarray]:
+    """t (B, n) in the cells at which the depth is reached, and which depths are past the end of the branch: these are
+    at the end."""
+    least = np.where(cell == end.turn[:, None], end.t, 0.0)
+    is_past_end = depth < end.D[:, None]
+    low, high = (_pair(of_depth, place)[0] for place in (least, np.ones_like(least)))
     share = np.clip((depth - low) / (high - low), 0.0, 1.0)
     # the depth is a parabola at its minimum
     t = least + (1 - least) * np.where(least > 0, np.sqrt(share), share)
@@ -167,13 +193,20 @@ def _loads(rows: np.ndarray, depth: np.ndarray, cell: np.ndarray, off: tuple) ->
         value, slope, _, _ = _pair(of_depth, t)
         step = (value - depth) / (np.maximum(slope, 1e-300) * STEP)
         t = np.clip(t - np.where(np.isfinite(step), step, 0.0), least, 1.0)
-    t = np.where(is_past_end, least, t)
+    return np.where(is_past_end, least, t), is_past_end
+
+
+def _loads(rows: np.ndarray, depth: np.ndarray, cell: np.ndarray, end: _End) -> Loads:
+    """Loads on the branch at depths in the cells (B, n); those past its end count as the end."""
+    cells = _Cells(cell)
+    of_load, of_depth = ([cells.of(rows[0], i), cells.of(rows[0], i + 2)] for i in (0, 1))
+    t, is_past_end = _place_in_cells(of_depth, depth, cell, end)
     D, D_x, *of_D = _pair(of_depth, t)
     P, P_x, *of_P = _pair(of_load, t)
     slope = P_x / np.maximum(D_x, _STEEP * of_D[1] + 1e-300)
-    ramp = np.maximum.reduce([_RAMP * pull, _LEAST_RAMP * np.abs(D_off), _LEAST_RAMP * depth.max(axis=1)])
-    part = np.clip(1 - (D_off[:, None] - depth) / ramp[:, None], 0.0, 1.0)
-    falls = np.where(part > 0, (P_off / ramp)[:, None], 0.0)
+    ramp = np.maximum.reduce([_RAMP * end.pull, _LEAST_RAMP * np.abs(end.D), _LEAST_RAMP * depth.max(axis=1)])
+    part = np.clip(1 - (end.D[:, None] - depth) / ramp[:, None], 0.0, 1.0)
+    falls = np.where(part > 0, (end.P / ramp)[:, None], 0.0)
     slope, part = np.where(is_past_end, falls, slope), np.where(is_past_end, part, 1.0)
     of_parts = np.stack([part * of_P[0], -slope * of_D[0], -part * of_P[1], slope * of_D[1]])
     return Loads(np.where(np.isfinite(D), part * P, np.nan), slope, _by_rows(rows, cells, t, of_parts), of_parts)

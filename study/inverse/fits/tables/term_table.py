@@ -100,12 +100,25 @@ class TermTable:
         alone = {name: value[first] for name, value in values.items()}
         return self._rows(alone, deepest[first], moved)[:, same.ravel()]
 
+    def begin(self, values: dict, deepest: np.ndarray) -> np.ndarray:
+        """x (B,) at the first point of the lattice of each curve of :meth:`rows`."""
+        last = self._last(self._position(values), self._factors(values), deepest)
+        return WIDE * (last - _TILES + 1 - _BELOW)
+
+    def _position(self, values: dict) -> Position:
+        """The position of B curves among the tiles."""
+        B = len(next(iter(values.values())))
+        c = np.array([self.model.coordinate(name, values[name])[:, 0] for name in self.axes]).reshape(-1, B).T
+        return self.lattice.position(c)
+
+    def _factors(self, values: dict) -> np.ndarray:
+        """The logarithms (B, 4) of the factors of B curves."""
+        B = len(next(iter(values.values())))
+        return np.broadcast_to(self.terms.factors(values).reshape(4, -1), (4, B)).T
+
     def _rows(self, values: dict, deepest: np.ndarray, moved: bool) -> np.ndarray:
         """`rows` for curves that all differ."""
-        B = len(deepest)
-        c = np.array([self.model.coordinate(name, values[name])[:, 0] for name in self.axes]).reshape(-1, B).T
-        position = self.lattice.position(c)
-        factors = np.broadcast_to(self.terms.factors(values).reshape(4, -1), (4, B)).T
+        position, factors = self._position(values), self._factors(values)
         last = self._last(position, factors, deepest)
         count = len(self.model.moved) if moved else 0
         whole = self.lattice.read(self.tile, last - _TILES + 1, position, _TILES, count)

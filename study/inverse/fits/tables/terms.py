@@ -13,7 +13,7 @@ import numpy as np
 
 from solver.bases import named
 from solver.shapes import PARABOLOID
-from solver.smooth.adhesion.curve_terms import curve_terms
+from solver.smooth.adhesion.curve_terms import curve_terms, radii_of
 
 from ....inputs.scene.scene import Scene, with_unit
 from ..model import CurveModel, is_ratio
@@ -127,6 +127,13 @@ class Terms(NamedTuple):
             out[i] = np.where(nothing, _NOTHING, np.log(positive) + (np.log(unit) - factors[i])[:, None])
             out[4 + i] = np.where(nothing, 0.0, terms.slopes[i] / positive)
         return out
+
+    def radii(self, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:
+        """The radii (C, m) in m at x (C, m), as of :meth:`logarithms`."""
+        changed, names = self.numbers(values)
+        problem = changed.lexicon.problem(names, a=np.full(len(x), 0.01))
+        shift = np.reshape(np.log(names["h"]) if self.length == "h" else 0.0, (-1, 1))
+        return radii_of(problem, x + shift) * np.reshape(changed.R, (-1, 1))
 
     def moved(self, name: str, values: dict[str, np.ndarray], x: np.ndarray, still: np.ndarray) -> np.ndarray:
         """Derivatives of `logarithms` by the logarithm of an input that is not unknown (by a Poisson ratio itself).

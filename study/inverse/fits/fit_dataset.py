@@ -1,20 +1,25 @@
 """The Dataset of a fit: inputs in SI with their intervals, validity, and words for its summary."""
 
-import warnings
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from solver import Status
+from solver import Problem, Solution, Status, solve
 
+from ...arrays.labelled import Labelled
+from ...data.dataset import validity_of_rows
 from ...in_words.fits import NAMES_OF_SHIFTS
 from ...in_words.sentences import assumed
 from ...in_words.stated_inputs import given
-from ...inputs.scene.stacks import moduli_of
+from ...inputs.checks import OWNER
+from ...inputs.punch.micro_laws import results_of
+from ...inputs.scene.scene import Scene
 from ...inputs.vocabulary import NOT_RUN, ROWS
 from ...rules.rule import RULES
-from ...solving import solve, unsolved
+from ...solving import unsolved
+from ...work.cases import arrays_of
 from .block import FitStatus
 from .model import CurveModel
 from .question import Question
@@ -47,6 +52,25 @@ class _Numbers(NamedTuple):
     spread: np.ndarray
     covariance: np.ndarray
     fit: np.ndarray
+
+
+class FittedContacts(NamedTuple):
+    """M contacts of a fit.
+
+    scene : their inputs in SI; problem, solution : in its units
+    validity : over "case"
+    """
+
+    scene: Scene
+    problem: Problem
+    solution: Solution
+    validity: Labelled
+
+    def take(self, some: slice) -> "FittedContacts":
+        """Some of the contacts; their scene stays that of all, as far as it has one value."""
+        flags = Labelled("case", self.validity.values[some], self.validity.attrs)
+        R = self.scene.R[some] if np.ndim(self.scene.R) else self.scene.R
+        return FittedContacts(replace(self.scene, R=R), self.problem.take(some), self.solution.take(some), flags)
 
 
 def fit_dataset(
@@ -189,9 +213,9 @@ def _validity(
         few, depths = good.sum() <= _FEW, (deepest - D0)[good]
         every = _at_all_parts(question, value[good], depths) if few else None
         last = slice(2**_HALVINGS - 1, None, 2**_HALVINGS)
-        contacts = _contacts(question, value[good], depths) if every is None else every.isel(curve=last)
-        flags[good], about = contacts["validity"].values, contacts["validity"].attrs
-        outside[good] = contacts["status"].values == Status.OUTSIDE_LAW
+        contacts = _contacts(question, value[good], depths) if every is None else every.take(last)
+        flags[good], about = contacts.validity.values, contacts.validity.attrs
+        outside[good] = contacts.solution.status == Status.OUTSIDE_LAW
         touched = value[good, model.unknowns.index(model.modulus)] if model.modulus in model.unknowns else None
         touched = np.full(good.sum(), model.value(model.modulus)) if touched is None else touched
         plastic[good] = flows(model, touched, contacts)
@@ -224,68 +248,58 @@ def _validity(
     return xr.Dataset(variables)
 
 
-def _hold(contacts: xr.Dataset) -> np.ndarray:
+def _hold(contacts: FittedContacts) -> np.ndarray:
     """(M,) bool: contacts that violate no assumption, and are in the range of the law of their asperities."""
-    return (contacts["validity"].values == 0) & (contacts["status"].values != Status.OUTSIDE_LAW)
+    return (contacts.validity.values == 0) & (contacts.solution.status != Status.OUTSIDE_LAW)
 
 
-def _at_all_parts(question: Question, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
-    """Contacts over `curve` at 1, 2 ... 2**_HALVINGS parts of the depths x (M,), one depth after the other."""
+def _at_all_parts(question: Question, value: np.ndarray, x: np.ndarray) -> FittedContacts:
+    """Contacts at 1, 2 ... 2**_HALVINGS parts of the depths x (M,), one depth after the other."""
     parts = np.arange(1, 2**_HALVINGS + 1)
     every = np.repeat(value, len(parts), axis=0), (x[:, None] * parts / 2**_HALVINGS).ravel()
     return _contacts(question, *every)
 
 
-def _contacts(question: Question, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
-    """Contacts of the unknown inputs `value` (M, k) at x (M,), over `curve`."""
-    model, scene = question.model, question.model.scene
+def _contacts(question: Question, value: np.ndarray, x: np.ndarray) -> FittedContacts:
+    """Contacts of the unknown inputs `value` (M, k) at x (M,)."""
+    model = question.model
     values = model.within({name: value[:, i] for i, name in enumerate(model.unknowns)})
-    by_name = scene.lexicon.all_rows
-    columns: dict[str, tuple] = {name: (values[name], by_name[name].unit) for name in model.unknowns}
-    others = [name for name in scene.values if name not in columns and name != model.x]
-    columns |= {name: (float(scene.values[name]), by_name[name].unit) for name in others}
-    columns[model.x] = (x, ROWS[model.x].unit)
-    arrays = {
-        name: xr.DataArray(v, dims=("curve",) if np.ndim(v) else (), attrs={"units": unit})
-        for name, (v, unit) in columns.items()
-    }
-    arrays |= {"E2": "rigid"} if np.isinf(np.asarray(columns.get("E2", (0.0,))[0])).all() else {}
-    # those without units; ratios follow from moduli
-    others = {*scene.parameters} - {
-        *arrays,
-        "n",
-        "m",
-        "P",
-        "a",
-        "D",
-        *(ratio for _, _, ratio in moduli_of(scene.values)),
-    }
-    arrays |= {name: scene.parameters[name] for name in others if by_name[name].unit == "1"}
-    arrays["micro"] = scene.lexicon.law_or_name(arrays.get("micro", "disc_cell"))
-    if "R1" in arrays:
-        del arrays["R"]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return solve(**arrays, x=2, profiles=False, progress=False)
+    scene, problem = model.contacts_at(values, x)
+    solution = solve(problem)
+    sticks, felt = bool((problem.w_adhesion > 0).any()), bool(problem.feels_layer().any())
+    results = results_of(problem.known.laws, problem.micro, sticks, felt)
+    numbers = _stated(problem, scene) | arrays_of(solution, results, ())
+    numbers |= {name: np.broadcast_to(radius.values, len(x)) for name, radius in scene.radii().items()}
+    return FittedContacts(scene, problem, solution, validity_of_rows(numbers, problem.known))
 
 
-def flows(model: CurveModel, modulus: np.ndarray, contacts: xr.Dataset) -> np.ndarray:
+def _stated(problem: Problem, scene: Scene) -> dict[str, np.ndarray]:
+    """The parameters of a problem that results of the scene have: none without a value, and none of a shape or of
+    adhesion where the scene has no shape, or no work of adhesion."""
+    rows, stated = scene.lexicon.rows, {}
+    for name, column in problem.parameters.items():
+        owner = OWNER.get(rows[name].role) if name in rows else None
+        is_stated = owner is None or owner in scene.parameters
+        if is_stated and not (column.dtype.kind == "f" and np.isnan(column).all()):
+            stated[name] = column
+    return stated
+
+
+def flows(model: CurveModel, modulus: np.ndarray, contacts: FittedContacts) -> np.ndarray:
     """Which contacts (M,) of a fit are those of a sharp tip in a body that flows below it.
 
     modulus : (M,) in Pa, of the touched body
-    contacts : the contacts at the deepest points, of `solve`
+    contacts : the contacts at the deepest points
     """
-    numbers = model.scene.parameters
-    shape = numbers.get("shape", "paraboloid")
+    shape = model.scene.parameters.get("shape", "paraboloid")
     if (model.x, model.y) != ("D", "P") or shape not in (*_POINTED, "cone", "blunt_cone"):
         return np.zeros(len(modulus), bool)
     hard = modulus >= HARD
     if shape in _POINTED:
         return hard
-    angle = contacts["half_angle"].values if "half_angle" in contacts else numbers["half_angle"]
-    slope = 1 / np.tan(np.radians(np.asarray(angle, float)))
+    slope = 1 / np.tan(np.radians(contacts.problem.half_angle))
     if shape == "blunt_cone":
-        hard &= contacts["a"].values > _TANGENT * model.scene.values["tip_radius"] * slope
+        hard &= contacts.solution.a * contacts.scene.R > _TANGENT * model.scene.values["tip_radius"] * slope
     return hard & (slope / 2 > _BLUNT)
 
 

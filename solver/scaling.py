@@ -125,8 +125,10 @@ def as_cases(part):
 def kinds_of_laws(problem):
     """(B,) int8: what the asperities of each case press on. _HALF_SPACE; _BODY, the body as it is; a body whose first
     layer is graded, _GRADED and the number of octaves in which that is cut."""
-    kinds, graded = np.where(problem.feels_layer(), _BODY, _HALF_SPACE).astype(np.int8), graded_first(problem)
-    if np.any(cut := graded & (kinds == _BODY)):
+    kinds = np.where(problem.feels_layer(), _BODY, _HALF_SPACE).astype(np.int8)
+    if not kinds.any():
+        return kinds
+    if np.any(cut := graded_first(problem) & (kinds == _BODY)):
         part = problem.take(cut)
         finest = _WIDEST * np.sqrt(part.Nbar) * part.h / _SUBLAYERS
         kinds[cut] = _GRADED + np.clip(np.floor(np.log2(finest)), 0, _MOST_OCTAVES)

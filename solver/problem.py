@@ -372,7 +372,10 @@ def feels(
     numpy.ndarray of bool : they can, and `asperities_on` is "layer", or it is "auto" and their pitch is above h
     """
     words = np.asarray(asperities_on)
-    return can_feel(base, micro, laws) & ((words == "layer") | (words == "auto") & far_apart(Nbar, h))
+    where = (words == "layer") | (words == "auto") & far_apart(Nbar, h)
+    if not where.any():  # the usual case, of which one contact asks seven times
+        return np.zeros(np.broadcast_shapes(where.shape, np.shape(base), np.shape(micro)), dtype=bool)
+    return can_feel(base, micro, laws) & where
 
 
 def _array(name, value, table):

@@ -126,8 +126,10 @@ def as_cases(part):
 def kinds_of_laws(problem):
     """(B,) int8: the body on which the asperities of each case press. _HALF_SPACE; _BODY, the coated body; or, if its
     first layer is graded, _GRADED plus the number of octaves into which that layer is cut."""
-    kinds, graded = np.where(problem.feels_layer(), _BODY, _HALF_SPACE).astype(np.int8), graded_first(problem)
-    if np.any(cut := graded & (kinds == _BODY)):
+    kinds = np.where(problem.feels_layer(), _BODY, _HALF_SPACE).astype(np.int8)
+    if not kinds.any():
+        return kinds
+    if np.any(cut := graded_first(problem) & (kinds == _BODY)):
         part = problem.take(cut)
         finest = _WIDEST * np.sqrt(part.Nbar) * part.h / _SUBLAYERS
         kinds[cut] = _GRADED + np.clip(np.floor(np.log2(finest)), 0, _MOST_OCTAVES)

@@ -98,6 +98,11 @@ def stresses(
     z = _axis("z", _DEPTHS if z is None else z, False)
     contacts = Contacts.of(contact, "stresses")
     contacts.refuse_without_stresses("stresses", largest=False)
+    return stress_fields(contacts, r, z, mu, sigma_res)
+
+
+def stress_fields(contacts: Contacts, r: np.ndarray, z: np.ndarray, mu: float, sigma_res: Any) -> xr.Dataset:
+    """What :func:`stresses` returns, of contacts that have stresses, at radii and depths (R,), (Z,) in a."""
     unit, size = contacts.units
     solution = _solved(contacts)
     _refuse_far_away(r, contacts, solution)
@@ -138,7 +143,7 @@ def stresses(
         for name, axis in (("r", r), ("z", z)):
             about = {"long_name": "radius" if name == "r" else "depth", "units": "m"}
             coords[f"{name}_length"] = _labelled(contacts, lengths * axis, (name,), about)
-    return carried(contact, variables).assign_coords(coords)
+    return carried(contacts.dataset, variables).assign_coords(coords)
 
 
 def _ends(contacts: Contacts) -> np.ndarray:
@@ -222,6 +227,11 @@ def extremes(
     contact = contact_of("extremes", contact, parameters)
     contacts = Contacts.of(contact, "extremes")
     contacts.refuse_without_stresses("extremes")
+    return stress_extremes(contacts, mu, sigma_res)
+
+
+def stress_extremes(contacts: Contacts, mu: float, sigma_res: Any) -> xr.Dataset:
+    """What :func:`extremes` returns, of contacts that have largest stresses."""
     unit, _ = contacts.units
     residual = residual_stresses(sigma_res, contacts)
     solution = _solved(contacts)

@@ -190,7 +190,7 @@ def definition_of(
     if type(block) is not int or not 1 <= block <= 1_000_000:
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
     some_feel = not errors and bool(micro_laws.felt(grid).any())
-    micro = grid.values["micro"][1] if "micro" in grid.values else ()
+    micro = grid.values["micro"][1] if "micro" in grid.values else np.array([])
     results = micro_laws.results_of(grid.lexicon.known.laws, micro, "w_adhesion" in grid.values, some_feel)
     definition = Definition(
         *(name, title, text, grid, x, profiles, dtype, block, ""),

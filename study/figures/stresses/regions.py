@@ -11,7 +11,7 @@ from solver.layers import full_name, numbers_of
 from ...data.body_strengths import strengths
 from ...data.contacts import Contacts
 from ...data.dataset import decode
-from ...fields import extremes, stresses
+from ...fields import friction, stress_extremes, stress_fields
 from ...in_words.stated_inputs import is_rigid
 from ...inputs.definition import StudyError
 
@@ -70,7 +70,8 @@ def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tu
     contacts = Contacts.of(contact, "plot_stresses")
     contacts.refuse_without_stresses("plot_stresses")
     ends, number = _ends(contacts), 0
-    largest = extremes(contact, mu, sigma_res)
+    mu = friction(mu)
+    largest = stress_extremes(contacts, mu, sigma_res)
     if len(ends) > 1:
         largest, number = _of_several_layers(largest)
     bare, rigid = is_bare(str(contact["base"].values)), is_rigid(contact, "base")
@@ -82,7 +83,7 @@ def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tu
     within = np.unique([*within, *inner, *(end * (1 + _BESIDE) for end in inner)])
     below = (h or 0.0) + np.linspace(0, DEPTH, _BODY) if not h or whole and not rigid else np.zeros(0)
     inside = within[:-1] if whole else within  # stresses at the interface are read from each side
-    fields = stresses(contact, r, np.concatenate([inside, below[1:] if h else below]), mu, sigma_res)
+    fields = stress_fields(contacts, r, np.concatenate([inside, below[1:] if h else below]), mu, sigma_res)
     if len(ends) > 1:
         deepest, fields = fields.isel(interface=-1), fields.sel(interface=number)
         fields = fields.assign({name: deepest[name] for name in ("mises_above", "mises_below")})
@@ -99,7 +100,7 @@ def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tu
     return contact, Stresses(
         Region(r, within, layer) if h else None,
         Region(r, below, body) if len(below) else None,
-        *(surface, interface, r, largest, yield_strengths(contact), h, 1.0, inner, number),
+        *(surface, interface, r, largest, yield_strengths(contacts), h, 1.0, inner, number),
     )
 
 
@@ -126,9 +127,8 @@ def _of_several_layers(largest: xr.Dataset) -> tuple[dict[str, float], int]:
     return extremes_of_layer, interface + 1
 
 
-def yield_strengths(contact: xr.Dataset) -> dict[str, float]:
-    """Yield strengths of layer and body, in Pa or in units of the solver; NaN where they are not known."""
-    contacts = Contacts.of(contact, "plot_stresses")
+def yield_strengths(contacts: Contacts) -> dict[str, float]:
+    """Yield strengths of layer and body of one contact, in Pa or in units of the solver; NaN: not known."""
     (unit,), strengths_of_bodies = contacts.units[0].tolist(), strengths(contacts, {})
     if numbers_of(contacts.problem.parameters) > 1:  # each layer has another
         strengths_of_bodies["layer"] = np.full(1, np.nan)

@@ -54,5 +54,5 @@ def of_central_spot(contact: xr.Dataset, sigma_res: float | str) -> tuple[xr.Dat
         if region:
             i, j = np.unravel_index(region.mises.argmax(), region.mises.shape)
             largest |= {name: region.mises[i, j], f"{name}_r": abs(around[j]), f"{name}_z": region.z[i]}
-    strengths = yield_strengths(contact)
+    strengths = yield_strengths(contacts)
     return contact, Stresses(*regions, surface, interface, around, largest, strengths, h, b)

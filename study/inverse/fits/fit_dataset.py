@@ -13,8 +13,9 @@ from ...data.dataset import validity_of_rows
 from ...in_words.fits import NAMES_OF_SHIFTS
 from ...in_words.sentences import assumed
 from ...in_words.stated_inputs import given
-from ...inputs.punch.laws import results_of
-from ...inputs.scene.scales import with_unit
+from ...inputs.checks import OWNER
+from ...inputs.punch.micro_laws import results_of
+from ...inputs.scene.scene import Scene, with_unit
 from ...inputs.vocabulary import NOT_RUN, ROWS
 from ...rules.rule import RULES
 from ...solving import unsolved
@@ -272,9 +273,21 @@ def _judged(question: Question, value: np.ndarray, x: np.ndarray, radii: np.ndar
     solution = Solution.join(len(x), 2, pieces)
     results = results_of(by_x.known.laws, by_x.micro, felt=bool(by_x.feels_layer().any()))
     of_two = {name: scene.values[name] / scene.R + 0 * x for name in ("R1", "R2") if name in scene.values}
-    numbers = by_x.parameters | of_two | arrays_of(solution, results, ())
+    numbers = _stated(by_x, scene) | of_two | arrays_of(solution, results, ())
     validity, outside = validity_of_rows(numbers, by_x.known), solution.status == Status.OUTSIDE_LAW
     return _Judged(validity, outside, solution.a * scene.R, by_x.parameters)
+
+
+def _stated(problem: Problem, scene: Scene) -> dict[str, np.ndarray]:
+    """The parameters of a problem that results of the scene have: none without a value, and none of a shape or of
+    adhesion where the scene has no shape, or no work of adhesion."""
+    rows, stated = scene.lexicon.rows, {}
+    for name, column in problem.parameters.items():
+        owner = OWNER.get(rows[name].role) if name in rows else None
+        is_stated = owner is None or owner in scene.parameters
+        if is_stated and not (column.dtype.kind == "f" and np.isnan(column).all()):
+            stated[name] = column
+    return stated
 
 
 def flows(model: CurveModel, modulus: np.ndarray, contacts: _Judged) -> np.ndarray:
@@ -283,8 +296,7 @@ def flows(model: CurveModel, modulus: np.ndarray, contacts: _Judged) -> np.ndarr
     modulus : (M,) in Pa, of the touched body
     contacts : the contacts at the deepest points
     """
-    numbers = model.scene.parameters
-    shape = numbers.get("shape", "paraboloid")
+    shape = model.scene.parameters.get("shape", "paraboloid")
     if (model.x, model.y) != ("D", "P") or shape not in (*_POINTED, "cone", "blunt_cone"):
         return np.zeros(len(modulus), bool)
     hard = modulus >= HARD

@@ -5,14 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from solver import solve
+from solver import Problem, solve
 from solver.parameters import COMMON as LIMITS
 from solver.parameters import ends
 from solver.shapes import PARABOLOID
 
 from ...inputs.definition import Definition, StudyError
 from ...inputs.punch.shapes import ANGLES
-from ...inputs.scene.scene import Scene, make_dimensionless, with_unit
+from ...inputs.scene.scene import Scene, make_dimensionless, with_unit, without_unit
 from ...inputs.vocabulary import VOCABULARY
 
 #: Two rows of exponents for each pair (x, y). The first has q, e, r of Hertz's contact on a half-space of the layer's
@@ -160,15 +160,21 @@ class CurveModel:
         make_dimensionless(changed)
         return changed
 
+    def contacts_at(self, values: dict[str, np.ndarray], x: np.ndarray, **numerics: float) -> tuple[Scene, Problem]:
+        """The scene with other values of inputs, and the problem of its contacts at x (M,) in SI.
+
+        numerics : parameters of the numerical solution that are not those of the scene
+        """
+        scene = self.scene_of(values)
+        control = without_unit(x, VOCABULARY[self.x].powers, scene.unit, scene.R)
+        return scene, self.scene.lexicon.problem(scene.parameters, **numerics, **{self.x: control})
+
     def solved(self, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:
         """y (M,) at x (M,), both in SI, for values (M,) of inputs; NaN where a contact has no solution.
 
         A tile of a table may extend past the end of a law of asperities: only the fitted contacts are judged.
         """
-        changed = self.scene_of(values)
-        unit, R = changed.unit, changed.R
-        control = with_unit(x, tuple(-power for power in VOCABULARY[self.x].powers), unit, R)
-        problem = self.scene.lexicon.problem(changed.parameters, rtol=_RTOL, **{self.x: control})
+        scene, problem = self.contacts_at(values, x, rtol=_RTOL)
         solution = solve(problem, np.array([0.0]), extrapolate=True)
-        y = with_unit(getattr(solution, self.y), VOCABULARY[self.y].powers, unit, R)
+        y = with_unit(getattr(solution, self.y), VOCABULARY[self.y].powers, scene.unit, scene.R)
         return np.where(solution.status == 0, y, np.nan)

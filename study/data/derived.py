@@ -287,9 +287,9 @@ def _at_bodies(lexicon: Lexicon, names: list[str], p: np.ndarray, *values: np.nd
 
 @quantity("D_body")
 def depth_of_the_body(dataset: xr.Dataset) -> xr.DataArray:
-    """Depth by which the coated body alone is pressed in, in R: D less what the punch yields.
+    """Depth by which the coated body alone is pressed in, in R: D less the deformation of the punch.
 
-    D is the approach of distant points of both bodies. The punch, a half-space of E3* = E1*/m, gives way in the centre
+    D is the approach of distant points of both bodies. The punch, a half-space of E3* = E1*/m, deforms in the centre
     by (2/E3*) ∫ p dr, and by the part m/(1 + m) of the asperities' A[p(0)]. The coated body gives way by the rest. A
     rigid punch does not give way. The integral is that of a cubic spline through the profile p, in arcsin(r/a). NaN
     where that spline misses the load by more than LOAD_MISSED. Needs what `peak_pressure` needs, and p at 5 points.

@@ -1,6 +1,6 @@
 """
-A bead that sticks to a gel
-===========================
+A bead that adheres to a gel
+============================
 
 A bead jumps into contact with a gel and comes off elsewhere. How hard it holds depends on the glass below the gel.
 """

@@ -289,7 +289,7 @@ def _at_bodies(lexicon: Lexicon, names: list[str], p: np.ndarray, *values: np.nd
 def depth_of_the_body(dataset: xr.Dataset) -> xr.DataArray:
     """Depth by which the coated body alone is pressed in, in R: D less the deformation of the punch.
 
-    D is the approach of distant points of both bodies. The punch, a half-space of E3* = E1*/m, gives way in the centre
+    D is the approach of distant points of both bodies. The punch, a half-space of E3* = E1*/m, deforms in the centre
     by (2/E3*) ∫ p dr, and by the share m/(1 + m) of the asperities' A[p(0)]. The coated body gives way by the rest. A
     rigid punch does not give way. The integrand is a cubic spline through the profile p, in arcsin(r/a). The depth is
     NaN where that spline misses the load by more than LOAD_MISSED. It needs all that `peak_pressure` needs, and p at 5

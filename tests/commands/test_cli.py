@@ -206,7 +206,7 @@ def test_dry_run_retry_and_parts(capsys):
     assert main(["run", "good", "--dry-run"]) == 0
     assert capsys.readouterr().out.startswith("good: 3 cases, 0 of them computed; the others: about 0 s, at most 0.")
     assert main(["run", "good", "--part", "1/2"]) == 0
-    assert capsys.readouterr().out == "good: 2 cases computed now, 1 of 3 are missing: other parts\n"
+    assert capsys.readouterr().out == "good: 2 cases computed now, 1 of 3 are left to other parts\n"
     assert main(["status", "good"]) == 0
     assert capsys.readouterr().out.split("\n")[1:3] == ["    converged: 2", "    not_run: 1"]
     assert main(["run", "good", "--part", "2/2"]) == 0

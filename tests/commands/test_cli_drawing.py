@@ -112,12 +112,12 @@ def test_a_figure_does_not_take_the_name_of_another(monkeypatch):
     def other(*_):
         """Another function."""
 
-    with pytest.raises(ValueError, match='"fig03" is that of test_cli_drawing.<lambda> already: take another name'):
+    with pytest.raises(ValueError, match='"fig03" is already the name of test_cli_drawing.<lambda>: take another name'):
         registry.figure("fig03", "main_case")(other)
-    with pytest.raises(ValueError, match='"table1" is that of test_cli_drawing.* already: take another name'):
+    with pytest.raises(ValueError, match='"table1" is already the name of test_cli_drawing.*: take another name'):
         registry.table("table1", "main_case", columns="a")(other)
     other.__name__, other.__module__ = "<lambda>", "elsewhere"
-    with pytest.raises(ValueError, match='"fig03" is that of test_cli_drawing.<lambda> already: take another name'):
+    with pytest.raises(ValueError, match='"fig03" is already the name of test_cli_drawing.<lambda>: take another name'):
         registry.figure("fig03", "main_case")(other)
     other.__module__ = __name__
     registry.figure("fig03", "main_case")(other)

@@ -90,7 +90,7 @@ def test_very_many_tables_are_refused_before_they_are_read(cases, tmp_path, monk
     """Reading 600,000 equal ones took half a minute."""
     monkeypatch.setattr("tomllib.loads", lambda _: pytest.fail("they are read"))
     (found,) = refused(f'model = {{ micro = "smooth" }}\n{cases}', tmp_path)
-    assert "[[cases]] and those in braces: at most 100000; [axes] and [sample] say" in found
+    assert "[[cases]] and those in braces: at most 100000; [axes] and [sample] describe" in found
     monkeypatch.undo()
     monkeypatch.setattr(reading, "MOST_TABLES", 3)
     text = '[model]\nbase = "half_space"\nmicro = "smooth"\n'
@@ -145,7 +145,7 @@ def test_home(studies, monkeypatch, tmp_path, capsys):  # noqa: F811
         main(["run", "good", "--results=~nobody-here/there"])
     assert caught.value.code == 2
     said = capsys.readouterr().err
-    assert '"~nobody-here/there": must be a folder; ./~nobody-here/there is one that is called so' in said
+    assert '"~nobody-here/there": must be a folder; write ./~nobody-here/there if it has this name' in said
 
 
 @pytest.mark.parametrize("number", ["9" * 5000, "1234567890", "0", "-1", "1.5"])

@@ -154,7 +154,10 @@ def test_another_study_that_the_program_has_imported_is_named(python, beside):
     folder = beside({"study.py": "mine = 1\n"})
     done = run(folder, python, "-c", "import study, roughcoat")
     assert done.returncode == 1
-    assert f"ImportError: {folder / 'study.py'}: has been imported as study, which is a package of rough" in done.stderr
+    assert (
+        f"ImportError: {folder / 'study.py'}: has been imported as study, which is also a package of rough"
+        in done.stderr
+    )
 
 
 FIGURES = """

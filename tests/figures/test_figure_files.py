@@ -180,7 +180,7 @@ WRONG = {
     "ends": (HEAD + "import sys\nsys.exit(3)\n" + figure("radius"),
              "radius: something that it needs calls sys.exit(3)", 1),
     "is not reached": (HEAD + "if False:\n" + figure("radius").strip().replace("\n", "\n    ").replace("@", "    @", 1),
-                       "studies/figures.py: registers no figure radius, though the name stands there", 1),
+                       "studies/figures.py: does not register the figure radius, although it names it", 1),
 }  # fmt: skip
 
 

@@ -53,7 +53,7 @@ def test_what_study_readable_made_is_stated_with_its_units(found):
 def test_an_array_is_no_dataset_and_a_stacked_one_is_to_be_unstacked(found):
     with pytest.raises(study.StudyError, match=r'z is several axes in one: give dataset.unstack\("z"\)'):
         study.plot(found.stack(z=("P", "nu2")), "P", "a")
-    with pytest.raises(study.StudyError, match="a figure is of a dataset of contacts, not of a DataArray"):
+    with pytest.raises(study.StudyError, match="plot takes a dataset of contacts, not a DataArray"):
         study.plot(found.a, "P", "a")
 
 
@@ -102,7 +102,9 @@ def test_a_long_legend_is_below_what_is_stated():
     figure.canvas.draw()
     assert "not valid" in [text.get_text() for text in figure.legends[0].get_texts()]
     assert figure.legends[0].get_window_extent().y1 < figure._suptitle.get_window_extent().y0
-    with pytest.raises(study.StudyError, match="^h = 23.4 um is not there; there are 2.3e-05, 2.4e-05, 2.2e-05"):
+    with pytest.raises(
+        study.StudyError, match="^h = 23.4 um is not among these results; there are 2.3e-05, 2.4e-05, 2.2e-05"
+    ):
         study.plot(found, "P", "a", h="23.4 um")
 
 

@@ -153,8 +153,8 @@ def test_what_is_not_there(found, wanted, message):
 @pytest.mark.parametrize(
     ("where", "message"),
     [
-        ({"n": 0.3}, "n = 0.3 is not there; there are 0.2, 0.5"),
-        ({"bonding": "glued"}, "bonding = glued is not there; there are frictionless, bonded"),
+        ({"n": 0.3}, "n = 0.3 is not among these results; there are 0.2, 0.5"),
+        ({"bonding": "glued"}, "bonding = glued is not among these results; there are frictionless, bonded"),
         ({"hh": 1}, "hh is not an axis of these results; known: "),
         ({"n": "thick"}, 'n = "thick": must be a number'),
     ],
@@ -166,7 +166,7 @@ def test_values_that_are_not_there(found, where, message):
 
 
 def test_values_that_are_not_there_have_their_unit(physical):
-    with pytest.raises(StudyError, match="^h = 3 um is not there; there are 2e-06, 5e-06 m$"):
+    with pytest.raises(StudyError, match="^h = 3 um is not among these results; there are 2e-06, 5e-06 m$"):
         shown(physical, "P", "a", h="3 um")
 
 

@@ -96,10 +96,10 @@ def test_study_files_take_the_values_and_if_wanted_the_spreads(tmp_path):
             '^solve: punch: "Sphere" is not a material, such as "steel 52100"; the punch is a ball[^?]*$',
         ),
         ({"layer": "rigid"}, 'layer: "rigid" is not a material'),
-        ({"body": 5.0}, "body: 5.0 is no name of a material"),
+        ({"body": 5.0}, "body: 5.0 is not the name of a material"),
         (
             {"punch": ["steel", 1 << 20_000]},
-            "^solve: punch: a number of more than 4300 digits is no name of a material",
+            "^solve: punch: a number of more than 4300 digits is not the name of a material",
         ),
         ({"E1": "1 GPa"}, "layer and E1 are both given: E1 follows from layer"),
         ({"nu2": 0.3}, "body and nu2 are both given"),

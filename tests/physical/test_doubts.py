@@ -71,17 +71,17 @@ STEEL = {"R": "5 mm", "punch": "steel 52100", "body": "steel 52100", "micro": "s
     [
         (
             {"layer": "DLC a-C:H", "h": "2 um", "P": ["10 N", "10 kN"]},
-            "1 of 2 cases: The pressure on the layer comes to 0.05 of",
+            "1 of 2 cases: The pressure on the layer reaches 0.05 of",
         ),
-        ({"base": "half_space", "punch": "PEEK", "P": "10 MN"}, "on the body comes to 0.055 of"),
-        ({"base": "half_space", "body": "alumina", "R": "0.1 mm", "P": "10 N"}, "on the punch comes to 0.078 of"),
+        ({"base": "half_space", "punch": "PEEK", "P": "10 MN"}, "on the body reaches 0.055 of"),
+        ({"base": "half_space", "body": "alumina", "R": "0.1 mm", "P": "10 N"}, "on the punch reaches 0.078 of"),
         (
             {"layer": "diamond", "h": "1 um", "R": "0.1 mm", "P": "10 N", "punch": "rigid"},
-            "on the body comes to 0.1 of",
+            "on the body reaches 0.1 of",
         ),
         (
             {"base": "half_space", "micro": "disc_cell", "Nbar": "0.1 1/um^2", "Ra": "2 um", "P": "10 N"},
-            "comes to 0.087 of",
+            "reaches 0.087 of",
         ),
         ({"layer": "diamond", "h": "1 mm", "R": "0.1 mm", "P": "0.1 N", "punch": "rigid"}, ""),
         ({"layer": "DLC a-C:H", "h": "2 um", "P": "100 N"}, ""),

@@ -89,7 +89,7 @@ def test_a_flat_body_has_an_infinite_radius(flat, tmp_path):
 def test_a_cup_that_fits_closely_is_beyond_the_model():
     """a = 4.1 mm of a ball of 10 mm, though only 0.004 of the effective radius: mask 32 does not see it."""
     given = {"R1": "10 mm", "E2": "1 GPa", "base": "half_space", "micro": "smooth", "P": "100 N"}
-    with pytest.warns(UserWarning, match=r"wide against the smaller body \(a > 0.2 of its radius\), as in a cup"):
+    with pytest.warns(UserWarning, match=r"wide compared with the smaller body \(a > 0.2 of its radius\), as in a cup"):
         found = study.solve(**given, R2=["-20 mm", "-10.1 mm"], x=2)
     np.testing.assert_allclose(found.a[1], np.cbrt(0.75 * 100 * 1.01 * 0.91e-9), rtol=1e-6)  # Hertz
     with warnings.catch_warnings():

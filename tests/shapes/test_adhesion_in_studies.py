@@ -41,7 +41,7 @@ def test_words_say_whether_it_is_stable_and_when_it_comes_off():
         "under depth control the punch comes off at P = " in text and "Not checked" in text and "adhesion." not in text
     )
     soft = study.summary(study.solve(**STICKY, P="0 nN", k_machine="0.02 N/m"))
-    assert "on a machine of 20 mN/m it comes off" in soft
+    assert "on a machine of stiffness 20 mN/m the punch comes off" in soft
     off = study.summary(study.solve(**STICKY, P="-50 nN"))
     assert "NOT SOLVED (pulled_off)" in off and "comes off at P = -23.562 nN" in off
     open_ = study.summary(study.solve(**STICKY, a="0.5 um"))
@@ -76,7 +76,7 @@ def test_tension_inside():
     [
         (
             {"w_adhesion": 1e-6, "micro": "disc_cell", "Nbar": 250000, "Ra": 0.004},
-            r"needs micro = .smooth. written out",
+            r"needs micro = .smooth. among the inputs",
         ),
         ({"adhesion": "dmt"}, "adhesion is given without w_adhesion"),
         ({"k_machine": 1}, "k_machine is given without w_adhesion"),

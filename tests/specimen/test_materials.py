@@ -108,7 +108,7 @@ def test_incompressible_is_allowed(mine):
         ("teflonn", 'did you mean "PTFE"?'),
         ("xyzzy", "known: steel 52100, "),
         ("", "known: steel 52100, "),
-        ("\x1b[2J" + "x" * 100, r'"\\x1b\[2Jx+\.\.\. is no material'),
+        ("\x1b[2J" + "x" * 100, r'"\\x1b\[2Jx+\.\.\. is not a material'),
     ],
 )
 def test_an_unknown_name_is_answered_with_those_near(name, message):
@@ -153,7 +153,11 @@ def test_a_file_of_ones_own(mine):
         ("nu = 0.3", 'nu = 0.3\nalso = "x"', 'also = "x": must be a list of texts'),
         ("nu = 0.3", "nu = 0.3\nalso = [1]", "also = [1]: must be a list of texts"),
         ("nu = 0.3", "nu = 0.3\nchecked = 1", "checked = 1: must be true or false"),
-        ("nu = 0.3", "nu = 0.3\npoisson = 0.3", '"poisson" is no key; known: E, nu, E_spread, nu_spread, condition, '),
+        (
+            "nu = 0.3",
+            "nu = 0.3\npoisson = 0.3",
+            '"poisson" is not a key; known: E, nu, E_spread, nu_spread, condition, ',
+        ),
     ],
 )
 def test_a_bad_value_is_named_with_what_is_allowed(mine, old, new, message):

@@ -36,7 +36,7 @@ def test_a_run_with_nothing_to_do_or_only_a_part_says_so():
     done = Report(Path("results/a.nc"), 9, 0, {}, {}, complete=True)
     assert report_line(done, "a") == "results/a.nc is up to date (9 cases), nothing to do"
     part = Report(Path("results/a.nc"), 9, 4, {}, {0: 6, 127: 3}, complete=False)
-    assert report_line(part, "a") == "a: 4 cases computed now, 3 of 9 are missing: other parts"
+    assert report_line(part, "a") == "a: 4 cases computed now, 3 of 9 are left to other parts"
 
 
 def test_one_case_and_one_block_are_one():

@@ -107,7 +107,7 @@ def test_what_is_no_strength_of_a_contact_is_told(strength, loads):
 def test_answers_have_summaries(loads):
     yielding = study.summary(study.first_yield(loads, Y2=0.005, Y1=50.0)).splitlines()
     assert yielding[0] == "First to yield, as far as strengths are known: the body."
-    assert yielding[1].startswith("No load is found at which the layer yields: not up to a = 0.2 R")
+    assert yielding[1].startswith("No load up to a = 0.2 R was found at which the layer yields")
     assert yielding[2].startswith("The body first yields at P = 9.317e-06 E2* R^2, a = 0.01163 R, D = ")
     assert yielding[2].endswith("on the axis, 1.72 a deep.")
     assert yielding[3:] == ["The punch is smooth: there are no asperities.", "The strength of the punch is not known."]

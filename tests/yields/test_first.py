@@ -117,7 +117,7 @@ def test_what_does_not_yield_says_so():
     codes = {end: found[f"found_{end}"].item() for end in ("Y1", "Y2", "Ya", "Y_punch")}
     assert codes == {"Y1": 1, "Y2": 0, "Ya": 3, "Y_punch": 2} and found.first_yield.item() == 2
     assert np.isnan([found[f"{name}_Y1"].item() for name in ("P", "a", "D", "p0", "r", "z")]).all()
-    assert found.P_Y1.attrs["message"].endswith("the layer does not yield up to a = 0.2 R, or is rigid or not there")
+    assert found.P_Y1.attrs["message"].endswith("the layer does not yield up to a = 0.2 R, or is rigid or absent")
     assert found.P_Y_punch.attrs["message"].endswith("is not known: give Y_punch")
     assert found.P_Ya.attrs["message"].endswith("the punch is smooth and has no asperities")
     assert study.decode(found.found_Ya).item() == "no_asperities" and "no_asp" not in str(found.found_Y1.attrs)

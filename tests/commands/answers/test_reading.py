@@ -107,9 +107,9 @@ def test_what_a_scan_prints_is_what_point_takes(scan, capsys):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["unit=um", "speed=3"], 'scan: "speed" is nothing that `scan` takes; it takes unit, height_unit, '),
-        (["unit=um", "spacing=3"], 'scan: "spacing" is nothing that `scan` takes; did you mean dx?'),
-        (["units=um", "dx=1"], 'scan: "units" is nothing that `scan` takes; did you mean unit?'),
+        (["unit=um", "speed=3"], 'scan: `scan` does not take "speed"; it takes unit, height_unit, '),
+        (["unit=um", "spacing=3"], 'scan: `scan` does not take "spacing"; did you mean dx?'),
+        (["units=um", "dx=1"], 'scan: `scan` does not take "units"; did you mean unit?'),
         (["unit"], 'scan: "unit": must be NAME=VALUE'),
         (["unit=um", "unit=nm"], "scan: unit is given twice"),
         (["unit=um", "dx=one"], 'scan: dx = "one": must be a number, in `unit`'),

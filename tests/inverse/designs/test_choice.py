@@ -95,7 +95,7 @@ def test_equal_contacts_do_not_beat_each_other():
         ({"D": "< 6 ± 1 um"}, "a limit has no ±"),
         ({"validity": "none"}, 'validity = "none": must be a whole number, such as validity=0'),
         ({"validity": True}, "must be a whole number"),
-        ({"bonding": "< 1"}, "bonding is no number"),
+        ({"bonding": "< 1"}, "bonding is not a number"),
     ],
 )
 def test_limits_that_are_refused(physical, limits, message):

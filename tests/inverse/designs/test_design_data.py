@@ -12,7 +12,7 @@ import study
 from study.inverse import design_cases, design_search
 
 # Of steel and DLC, whose asperities would yield in some of these contacts.
-pytestmark = pytest.mark.filterwarnings("ignore:a contact found is beyond")
+pytestmark = pytest.mark.filterwarnings("ignore:a contact of the answer is beyond")
 
 
 def test_lists_of_cases_and_arrays():

@@ -12,7 +12,7 @@ from study.commands.point import parameters_of
 
 # Of steel and DLC, whose asperities would yield in some of these contacts.
 pytestmark = [
-    pytest.mark.filterwarnings("ignore:a contact found is beyond"),
+    pytest.mark.filterwarnings("ignore:a contact of the answer is beyond"),
     pytest.mark.filterwarnings("ignore:this contact is beyond"),
 ]
 

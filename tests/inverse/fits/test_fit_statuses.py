@@ -66,7 +66,7 @@ def test_gaps_equal_depths_and_disorder_change_nothing_and_are_said():
     D, P = (np.append(column[order], np.nan) for column in (D, P))  # the last one fills up
     odd = fit(D, P)
     text = str(study.summary(odd))
-    assert "2 of 64 points have no numbers and are left out. 2 points stand at the D of another; each counts." in text
+    assert "2 of 64 points have no numbers and are left out. 2 points have the same D as another; each counts." in text
     assert "The points are not in the order of D, which does not matter." in text
     np.testing.assert_allclose(odd.E1, usual.E1, rtol=0.02, err_msg="two points of 60 count twice")
 

@@ -177,7 +177,7 @@ def test_text_of_instruments_and_ours(tmp_path):
     for name in ("ours.txt", "ours.csv", "ours.dat"):
         (tmp_path / name).write_text("D [nm],P [nN]\n1,2\n3,4\n", encoding="utf-8")
         assert study.curves(tmp_path / name).sizes["point"] == 2
-    assert "part is of files of instruments" in str(
+    assert "part is for files of instruments" in str(
         pytest.raises(study.StudyError, study.curves, tmp_path / "ours.txt", part="retraction").value
     )
 

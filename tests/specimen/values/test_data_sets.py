@@ -45,7 +45,7 @@ def test_several_data_sets_and_labels(tmp_path):
         ({}, every + named),
         ({"unit": "um"}, every + named),
         (LENGTHS, named),
-        (LENGTHS | {"channel": "aa_labels"}, "channel 'aa_labels' of 'aa_labels', 'image' has labels, which are no"),
+        (LENGTHS | {"channel": "aa_labels"}, "channel 'aa_labels' of 'aa_labels', 'image' has labels, which are not"),
         (LENGTHS | {"channel": "Image"}, "channel = 'Image', but the file has 'aa_labels', 'image'"),
         (LENGTHS | {"columns": (0,)}, "the format states its lengths itself; leave out columns"),
     ):

@@ -1,37 +1,19 @@
 """The coated body that a scan presses on, of the inputs of a contact."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
-from solver import Problem
 from solver.bases import is_bare, named
-from solver.body import BODIES
-from solver.parameters import LAYER
-from solver.scaling import dimensionless
 
 from ..inputs.definition import StudyError
+from ..inputs.punch.pressed_body import PressedBody, body_in
 from ..inputs.reading import from_call
+from ..inputs.scene.scales import moduli
 
 #: Inputs of a contact which do not count here, and the modulus of a body of which ratios alone are given.
 _USUAL = {"R": "1 um", "P": "1 uN", "micro": "smooth"}
 _MODULUS = "1 GPa"
-
-
-@dataclass(frozen=True)
-class PressedBody:
-    """What a scan presses on.
-
-    Attributes
-    ----------
-    kernel : function of k (W,) in 1/m that gives (L + m)/(1 + m); None: 1
-    m : E1*/E_punch*; the modulus that is felt is E1*/(1 + m)
-    inputs : parameter -> number or word, lengths in m: what tells it from other bodies; None of a half-space
-    """
-
-    kernel: Callable | None = None
-    m: float = 0.0
-    inputs: dict[str, Any] | None = None
 
 
 def body_of(on: Mapping[str, Any] | None, caller: str) -> PressedBody:
@@ -43,11 +25,10 @@ def body_of(on: Mapping[str, Any] | None, caller: str) -> PressedBody:
     wrong = sorted({*on} & {"R", "P", "a", "D", "micro", "w_adhesion", "shape"})
     if wrong:
         raise StudyError([f"{caller}: on has {wrong[0]}: it must have the body alone"])
-    moduli = {} if any(name in on for name in ("E2", "body", "rigid_base")) else {"E2": _MODULUS}
-    inputs = _USUAL | moduli | {name: value for name, value in on.items() if value is not None}
+    has_moduli = any(name in on for name in ("E2", "body", "rigid_base"))
+    inputs = _USUAL | ({} if has_moduli else {"E2": _MODULUS})
+    inputs |= {name: value for name, value in on.items() if value is not None}
     inputs.setdefault("base", "stack" if "layers" in on else "layered")
-    if is_bare(inputs["base"]):
-        return PressedBody()
     inputs["base"] = named(inputs["base"]).item()
     try:
         definition = from_call(inputs, [], False, {"output": {"profiles": False}})
@@ -57,20 +38,17 @@ def body_of(on: Mapping[str, Any] | None, caller: str) -> PressedBody:
     assert scene is not None  # R has a unit, so all have
     if definition.grid.sizes:
         raise StudyError([f"{caller}: on: {', '.join(definition.grid.sizes)} has several values: one body at a time"])
-    numbers = {name: value for name, value in scene.parameters.items() if name in scene.lexicon.parameters}
-    problem = dimensionless(Problem.of(known=scene.lexicon.known, **numbers))
-    solid = BODIES[str(problem.base[0])](problem)
-    if solid.kernel is None:
-        raise StudyError([f'{caller}: on: base = "{problem.base[0]}" has no kernel: take "layered" or "stack"'])
-    h, m = float(solid.h[0]) * float(scene.R), float(solid.m[0])
-    grid = {name: array.item() for name, (_, array) in definition.grid.values.items()}
-    told = {name: grid[name] for name in grid if _tells(name)}
-    lengths = [name for name in told if scene.lexicon.rows[name].powers == (0, 1)]
-    told |= {name: told[name] * float(scene.R) for name in lengths}
-    return PressedBody(lambda k: (solid.kernel.whole((k * h)[None])[0] + m) / (1 + m), m, told)
+    case = {name: array.item() for name, (_, array) in definition.grid.values.items()}
+    try:
+        body = body_in(case, 1 / float(scene.R), scene.lexicon)
+    except ValueError as error:
+        raise StudyError([f"{caller}: on: {error}"]) from None
+    return replace(body, E1=_surface_modulus(scene, case) if has_moduli else None)
 
 
-def _tells(name: str) -> bool:
-    """Whether a parameter says what a body is."""
-    of_layers = name.startswith("layers.") and name.rpartition(".")[2] in LAYER
-    return of_layers or name in ("h", "n", "m", "nu1", "nu2", "bonding")
+def _surface_modulus(scene: Any, case: Mapping[str, Any]) -> float:
+    """E1* of what lies at the surface, Pa."""
+    unit, layer, body = moduli(scene.values, scene.parameters)
+    if "layers.1.n" in case:
+        return float(unit) * case["layers.1.n"]
+    return float(body if is_bare(case["base"]) else layer)

@@ -14,11 +14,13 @@ from .inputs.definition import Definition
 from .inputs.lexicon import with_known
 from .inputs.places import study_file
 from .inputs.reading import read
+from .scan_laws.words import with_rows
 from .store.clean import clean
 from .store.window_files import glance, verified
 from .store.windows import Store
 from .work.cost import Estimate
 from .work.plan import Report
+from .work.progress import screen_of
 from .work.run import dry_run, run
 
 if TYPE_CHECKING:
@@ -72,7 +74,13 @@ class Study:
         --------
         `rc.load("studies/mine.toml").run(workers=4)`: docs/studies.md.
         """
-        return run(self.definition, self._folder, command=command_line(), **options)
+        return run(self._ready(options), self._folder, command=command_line(), **options)
+
+    def _ready(self, options: dict[str, Any]) -> Definition:
+        """The definition, with the laws of its scans where a case may have to be computed."""
+        if not self.definition.scans or (not options.get("retry") and self.status()["state"] == "done"):
+            return self.definition
+        return with_rows(self.definition, options.get("stream") or screen_of(options.get("progress")))
 
     def dry_run(self, workers: int | None = None, yes: bool = False, force: bool = False) -> Estimate:
         """What `run` would cost, how many cases it would find computed, and with which error it would end, if any.
@@ -88,7 +96,7 @@ class Study:
         -------
         Estimate : cases, seconds, bytes in memory and on disk
         """
-        return dry_run(self.definition, self._folder, workers=workers, force=force)
+        return dry_run(with_rows(self.definition), self._folder, workers=workers, force=force)
 
     def status(self, yes: bool = False) -> dict:
         """What has been computed.

@@ -112,7 +112,7 @@ class Known:
         if self.laws.get(law.name) is law:
             return self
         taken = self.laws.get(law.name, law) in laws.BUILT_IN
-        if taken or not re.fullmatch(rf"[A-Za-z]\w*|{own_table.PREFIX}.+", law.name):
+        if taken or not re.fullmatch(rf"[A-Za-z]\w*|({'|'.join(own_table.OF_FILES)}).+", law.name):
             raise ValueError(f'micro law "{law.name}": must have a name of its own, of letters, digits and _')
         if not (law.version and isinstance(law.version, str)):
             raise ValueError(f"micro law {law.name}: version must be a text, which changes whenever its numbers may")

@@ -32,7 +32,7 @@ def identity(law):
 
 def name_in(identity):
     """The name in a text of :func:`identity`. The path of a table may have blanks, the version of another law too."""
-    return identity.rpartition(" ")[0] if identity.startswith(own_table.PREFIX) else identity.partition(" ")[0]
+    return identity.rpartition(" ")[0] if identity.startswith(own_table.OF_FILES) else identity.partition(" ")[0]
 
 
 BUILT_IN = (

@@ -85,20 +85,21 @@ class LawTable(NamedTuple):
         return t, y * power, power * (1 + self.s * (1 - t))
 
 
-def fitted(t, q, X, degree, guides=((), (), 0.0), first=None, **form):
+def fitted(t, q, X, degree, guides=((), (), 0.0), first=None, trust=1.0, **form):
     """:class:`TableCurve` near the rows X (n,) at t and q (n,), and its relative error at each row (n,): how far the
     row is from the curve fitted to the other rows alone. Where rows are far apart, both this and the curve err much.
 
     degree : of the polynomial
     guides : t and V (k,) of guiding points where there are no rows, and their weight, small beside the rows' weights
     first : X/t^power for t -> 0, if it is known; met exactly
+    trust : how much each row counts, (n,) or 1
     form : power, and rate, limit and span of the TableCurve
     """
     quantity = TableCurve(**{"rate": 0.0, "limit": np.inf} | form, V=np.zeros(1))
     share = 1 - X / quantity.limit  # dX/X = (1 - X/limit) dV
     V = -quantity.rate * q - np.log((1 / X - 1 / quantity.limit) * t**quantity.power)
     points, values = np.append(t, guides[0]), np.append(V, guides[1])
-    weights = np.append(share, np.full(len(guides[0]), guides[2]))[:, None]
+    weights = np.append(share * trust, np.full(len(guides[0]), guides[2]))[:, None]
     lowest, factor = (0.0, np.ones_like(points)) if first is None else (np.log(first), points)
     basis = factor[:, None] * chebyshev.chebvander(2 * points - 1, degree)
     Q, R = np.linalg.qr(basis * weights)

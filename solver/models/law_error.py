@@ -33,6 +33,8 @@ _FEW = 4
 #: Ar/An by at most _GUESSED (p1/p(0))^_STEEPNESS. Random tables (`python tools/errors/own_tables.py`) need at most
 #: 0.205 for _GUESSED; a table of random heights needs more than 0.25 (tests/laws/test_own_table_range.py).
 _GUESSED, _STEEPNESS = 0.4, 1.2
+#: A law that errs more at low pressures has the error at this part of p(0): on three quarters of a contact p is larger.
+_MIDDLE = 0.5
 #: The mean over the angle errs by this part, times 2 λ to a power, in A, λ or p_max of resolved cells
 #: (tests/models/test_errors_on_layers.py): of a square lattice, and of a hexagonal one, whose waves the disc cell has.
 _SQUARE, _HEX = (0.03, 3.5), (1e-3, 4.0)
@@ -97,11 +99,14 @@ def beyond_end(problem, solution):
 
 
 def edge_error(problem, solution):
-    """(B,): relative error of contacts because their law begins at a pressure > 0; 0 where it does not."""
+    """(B,): relative error of contacts because their law begins at a pressure > 0, or is less exact at low pressures;
+    0 where it is not."""
     error = np.zeros(len(problem))
     for law in _laws(problem):
         index, p0, E = _of_law(problem, solution, law)
         error[index] = _GUESSED * (law.least * E / p0) ** _STEEPNESS
+        if law.error_at is not None:
+            error[index] = np.maximum(error[index], law.error_at(_MIDDLE * p0 / E))
     return error
 
 

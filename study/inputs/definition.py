@@ -1,6 +1,7 @@
 """Study files: TOML text -> a checked, frozen Definition with the digest of what determines its numbers."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from ..specimen.foreign import plain
 from ..terminal import counted, shown
 from .grid import Grid, along
 from .punch.asperities import many_bodies
+from .punch.scan_words import ScanWord
 from .request import MOST_MESSAGES
 from .vocabulary import finite, names
 
@@ -38,6 +40,18 @@ class StudyError(ValueError):
         super().__init__("\n".join(self.messages))
 
 
+def refuse_scans(definition: "Definition", who: str) -> "Definition":
+    """The definition itself. Raises StudyError where a law of a scan would have to be computed, on many bodies perhaps.
+
+    who : the name of the public function, for messages
+    """
+    if not definition.scans:
+        return definition
+    word, file = definition.scans[0].name, definition.scans[0].file
+    way_out = f"compute the law first, roughcoat scan {file} --law law.csv: micro = \"table:law.csv\""
+    raise StudyError([f"{who}: micro = {shown(word)} is for contacts that are given: {way_out}"])
+
+
 @dataclass(frozen=True, eq=False)
 class Definition:
     """What a study computes.
@@ -54,6 +68,8 @@ class Definition:
     inputs : names of those inputs of the solver that change with some spread; results have derivatives by them
     stresses : names of the largest stresses and their places, if the study wants them
     says_what_is_felt : whether the results have `asperities_used`
+    scans : laws of scans that must be computed before the contacts: `scan_laws.words.with_rows`
+    tables : name -> text of each law of a scan that has been
     """
 
     name: str
@@ -71,6 +87,8 @@ class Definition:
     inputs: tuple[str, ...] = ()
     stresses: tuple[str, ...] = ()
     says_what_is_felt: bool = False
+    scans: tuple[ScanWord, ...] = ()
+    tables: Mapping[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f'Definition("{self.name}", {self.cases})'

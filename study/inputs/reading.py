@@ -22,6 +22,7 @@ from .draft import Draft
 from .identity import digest_of, law_versions
 from .punch import asperities, sticking
 from .punch.laws import results_of
+from .punch.scan_words import with_bodies
 from .punch.stresses import none_in
 from .request import MOST_MESSAGES, Request
 from .scene.stacks import axes_in, in_layers
@@ -102,6 +103,7 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
         draft.check({})
     draft.put_dimensions()
     grid = draft.finish()
+    grid, scans = (grid, ()) if errors else with_bodies(grid, scene, errors)
     errors += [] if errors else sticking.rough_and_sticking(grid, scene and scene.unit)
     inputs = () if errors or scene is None or not scene.spreads else inputs_of(scene, grid)
     title, x, profiles, dtype, stresses = settings(tables, errors)
@@ -121,6 +123,7 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
         inputs=inputs,
         stresses=stresses,
         says_what_is_felt=not errors and asperities.is_said(grid),
+        scans=scans,
     )
     if (numbers := definition.numbers) > most:
         limit = f"at most {most:.0e} (fewer points, or profiles = false)"

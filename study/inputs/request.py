@@ -9,6 +9,7 @@ from ..specimen.quantities import Quantity, has_unit
 from ..terminal import shown
 from .grid import LONGEST_AXIS, equal_values
 from .lexicon import Lexicon, default, lexicon_for, lexicon_of
+from .punch.scan_words import with_scans
 from .punch.shapes import ANGLES, in_degrees
 from .sample import LIMITS
 from .scene.stacks import in_call, in_tables
@@ -212,9 +213,9 @@ class Request:
             self.sections[name], self.inputs[name] = section, entry
 
     def learn(self, micro: list) -> None:
-        """Add to the lexicon what the values of `micro` stand for: laws as objects, tables, laws of installed packages.
-        Raises ValueError for a law that cannot be used."""
-        self.lexicon = lexicon_of(self.lexicon.known.with_laws_of(micro))
+        """Add to the lexicon what the values of `micro` stand for: laws as objects, tables, scans, laws of installed
+        packages. Raises ValueError for a law that cannot be used."""
+        self.lexicon = lexicon_of(with_scans(self.lexicon.known, micro).with_laws_of(micro))
 
     def _learn_profiles(self, entry: Input) -> None:
         if entry.name.endswith(".profile") and not entry.is_wrong:

@@ -8,7 +8,7 @@ import numpy as np
 
 from solver.bases import FELT, is_chosen, is_exact, is_stack, on_springs
 from solver.laws import Law
-from solver.laws.own_table import PREFIX
+from solver.laws.own_table import OF_FILES
 from solver.parameters import one_of
 from solver.problem import can_feel, far_apart, feels
 
@@ -89,6 +89,6 @@ def _with(words: np.ndarray, name: str, values: np.ndarray) -> str:
 def _why(law: Law) -> str:
     if not law.rough:
         return "which has no asperities"
-    if law.name == "power_law" or law.name.startswith(PREFIX):
+    if law.name == "power_law" or law.name.startswith(OF_FILES):
         return "whose A[p] is given, whatever asperities press on"
     return "a law that takes no kernel of the body"

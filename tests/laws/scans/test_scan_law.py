@@ -6,8 +6,10 @@ from numpy.testing import assert_allclose
 
 import study
 from solver.laws import lattice
-from study import StudyError, roughness
-from study.scan_laws.patch import patch_of
+from solver.laws.cell.periodic import waves_times
+from study import StudyError, roughness, samples
+from study.scan_laws.bodies import body_of
+from study.scan_laws.patch import Pressing, patch_of
 
 pytestmark = pytest.mark.filterwarnings("ignore:this contact is beyond what the model")
 #: A wavy surface of 32 × 32 µm, 64 × 64 points: enough for what is compared with itself.
@@ -62,7 +64,8 @@ def test_at_small_lambda_the_area_of_fine_points_is_between_them_too():
 
 def test_the_pressures_cover_the_range():
     of_scan = roughness.law(SURFACE, periodic="given", progress=False)
-    assert 0.0028 < of_scan.lam[0] < 0.0055  # 16 points and 0.6 <= of_scan.lam[-1] < 0.8
+    assert 0.7e-3 < of_scan.lam[0] < 1.4e-3  # four points, or about
+    assert 0.6 <= of_scan.lam[-1] < 0.8
     assert 10 < len(of_scan.p) < 30 and all(np.diff(values).min() >= 0 for values in (of_scan.p, of_scan.lam))
     assert of_scan.error == max(of_scan.errors.values()) and {"pixel", "patch"} == {*of_scan.errors}
     contact = study.solve(**BALL, base="half_space", micro=of_scan)
@@ -117,6 +120,19 @@ def test_spots_of_few_points_are_said():
     of_scan = roughness.law(fine, pressures=FEW, progress=False)
     assert any("fewer than 4 points" in note for note in of_scan.notes)
     assert of_scan.errors["pixel"] > 0.05
+
+
+def test_a_stack_comes_to_rest():
+    """A stiff layer on a soft one, where a half of the points touches: a third of them came and went for ever."""
+    layers = [{"h": "1 um", "E1": "50 GPa", "nu": 0.2, "bonding": "bonded"}, {"h": "3 um", "E1": "2 GPa", "nu": 0.4}]
+    body = body_of({"layers": layers, "nu2": 0.3, "E2": "5 GPa"}, "law")
+    scan = roughness.read(samples.scan())
+    pressing = Pressing(patch_of(scan, "plane", None, "mirror", 1, "law").quarters()[1], body.kernel)
+    for p in (1e-3, 4e-3, 0.0122):
+        A, lam, _ = pressing.at(p)
+    assert 0.45 < lam < 0.7 and pressing.pressures.mean() == pytest.approx(0.0122)
+    gap = waves_times(pressing.pressures, pressing.response, True) + pressing.depths - A
+    assert_allclose(gap[pressing.pressures > 0], 0, atol=1e-14)
 
 
 def test_what_makes_a_period():

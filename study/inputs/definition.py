@@ -48,7 +48,7 @@ def refuse_scans(definition: "Definition", who: str) -> "Definition":
     if not definition.scans:
         return definition
     word, file = definition.scans[0].name, definition.scans[0].file
-    way_out = f"compute the law first, roughcoat scan {file} --law law.csv: micro = \"table:law.csv\""
+    way_out = f'compute the law first, roughcoat scan {file} --law law.csv: micro = "table:law.csv"'
     raise StudyError([f"{who}: micro = {shown(word)} is for contacts that are given: {way_out}"])
 
 

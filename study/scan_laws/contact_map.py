@@ -73,9 +73,13 @@ def contact_map(
         {"pressure": (("y", "x"), pressing.pressures * felt, pressure), "gap": (("y", "x"), pressing.gap(A), of_gap)},
         {"y": ("y", y, {"units": "m"}), "x": ("x", x, {"units": "m"})},
         {
-            "A": A, "A_units": "m", "lam": lam,
-            "p_max": p_max * felt, "p_max_units": "Pa" if modulus else "E1*",
-            "scan": scan.name, "treatment": patch.treatment,
+            "A": A,
+            "A_units": "m",
+            "lam": lam,
+            "p_max": p_max * felt,
+            "p_max_units": "Pa" if modulus else "E1*",
+            "scan": scan.name,
+            "treatment": patch.treatment,
         },
     )
 

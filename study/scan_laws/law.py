@@ -25,6 +25,8 @@ __all__ = ["ScanLaw", "law"]
 _LEAST, _MOST, _FACTOR, _FEWEST, _FULL = 1e-3, 0.6, 1.38, 8, 0.95
 #: λ over p/(E* h') where few points touch; the first row is sought in at most so many steps, to this factor.
 _STIFF, _SEARCH, _NEAR = 2.0, 6, 1.3
+#: The contact fraction at which the law is compared with theories for small ones, and λ h'E*/p of Persson's, √(8/π).
+_SMALL, _PERSSON = 0.05, math.sqrt(8 / math.pi)
 #: Most rows.
 _ROWS = 40
 #: Rows at which the patch is compared with its quarters and with points of half the distance, and the λ from which the
@@ -226,6 +228,7 @@ def _computed(scan: Any, patch: Patch, body: PressedBody, pressures: _Range, str
     counts = lam >= _COUNTS if (lam >= _COUNTS).any() else lam == lam[-1]
     errors = {name: float(values[counts].max()) for name, values in parts.items()}
     notes = (*scan.notes, _provenance(scan, patch), *_about(errors), *_coarse(lam, diameters, parts["pixel"]))
+    notes += _beside_theory(p, lam, patch.slope) if body.kernel is None else ()
     numbers = {"error": max(errors.values()), "errors": errors, "body": body.inputs, "name": scan.name}
     numbers["row_errors"] = np.max(list(parts.values()), axis=0)
     return ScanLaw(p / (1 + body.m), A, lam, p_max / (1 + body.m), **numbers, notes=notes, m=body.m)
@@ -313,6 +316,16 @@ def _coarse(lam: np.ndarray, diameters: np.ndarray, errors: np.ndarray) -> list[
         f"under-resolved: λ, A or p_max are off by up to {rounded(100 * errors[coarse].max())} % there, λ mostly too "
         "large; filter the scan with a cutoff, or take refine"
     ]
+
+
+def _beside_theory(p: np.ndarray, lam: np.ndarray, slope: float) -> tuple[str, ...]:
+    """A sentence on λ h'E*/p at a small λ on a half-space, beside two theories; none without such a row."""
+    at = int(np.argmin(np.abs(np.log(lam / _SMALL))))
+    if not _SMALL / 2 < lam[at] < 2 * _SMALL:
+        return ()
+    ratio = lam[at] * slope / p[at]
+    beside = f"{ratio / _PERSSON:.2f} times Persson's {_PERSSON:.2f}; Bush, Gibson and Thomas have 2.51"
+    return (f"λ h'E*/p is {ratio:.2f} at λ = {lam[at]:.2g}, {beside}",)
 
 
 def _on_one_line(text: str) -> str:

@@ -155,6 +155,23 @@ def test_a_map_of_the_spots():
     in_pascal = roughness.contact_map(SURFACE, "20 MPa", E1="10 GPa", periodic="given")
     assert_allclose(in_pascal.pressure, 1e10 * spots.pressure, rtol=1e-6, atol=1e-3)
     assert in_pascal.pressure.units == "Pa"
+    assert [spots.A_units, spots.p_max_units, in_pascal.p_max_units] == ["m", "E1*", "Pa"]
+
+
+def test_a_map_takes_the_modulus_of_the_body_it_is_on():
+    """n = 10 on E2* = 5 GPa/0.91; and an E1 that contradicts it is refused."""
+    E1 = 10 * 5e9 / 0.91
+    on = {"on": LAYER | {"E2": "5 GPa"}, "periodic": "given"}
+    spots = roughness.contact_map(SURFACE, "50 MPa", **on)
+    by_ratio = roughness.contact_map(SURFACE, 5e7 / E1, **on | {"on": LAYER})
+    assert_allclose(spots.pressure.mean(), 5e7, rtol=1e-12)
+    assert_allclose([spots.A, spots.lam, spots.p_max / E1], [by_ratio.A, by_ratio.lam, by_ratio.p_max], rtol=1e-6)
+    assert spots.pressure.units == "Pa" and by_ratio.p_max_units == "E1*"
+    stiff = {"E_punch": "20 GPa", "nu_punch": 0.2}
+    felt = roughness.contact_map(SURFACE, "50 MPa", **on | {"on": on["on"] | stiff})
+    assert_allclose(felt.pressure.mean(), 5e7, rtol=1e-12)
+    with pytest.raises(ValueError, match=r"E1 = '20 GPa', but `on` has E1\* = 5.49\d*e\+10 Pa: leave E1 out"):
+        roughness.contact_map(SURFACE, "50 MPa", E1="20 GPa", **on)
 
 
 @pytest.mark.parametrize(
@@ -170,6 +187,7 @@ def test_a_map_of_the_spots():
         (lambda: of_surface(on={"R": "2 mm"}), "on has R"),
         (lambda: of_surface(on="DLC"), "dictionary"),
         (lambda: roughness.contact_map(SURFACE, "2 MPa"), "give E1"),
+        (lambda: roughness.contact_map(SURFACE, "2 MPa", on=LAYER), "or moduli in `on`"),
         (lambda: roughness.contact_map(SURFACE, 0), "p = 0"),
         (lambda: roughness.self_affine((64, 64), 1e-6, hurst=2, rms=1e-8), "hurst"),
         (lambda: roughness.self_affine((64, 8), 1e-6, hurst=1, rms=1e-8), "shape"),

@@ -96,7 +96,7 @@ class Study:
         -------
         Estimate : cases, seconds, bytes in memory and on disk
         """
-        return dry_run(with_rows(self.definition), self._folder, workers=workers, force=force)
+        return dry_run(self._ready({}), self._folder, workers=workers, force=force)
 
     def status(self, yes: bool = False) -> dict:
         """What has been computed.

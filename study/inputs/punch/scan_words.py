@@ -1,7 +1,7 @@
 """The word "scan:FILE" of `micro`: a scan whose own law is computed before the contacts (study/scan_laws).
 
 Here the file is read and refused, and it is told on which bodies its contacts are, and up to which pressure. Where they
-are on several bodies each has a law of its own, and a word of its own, "scan:FILE (h = 2e-06 m)".
+are on several bodies each has a law of its own, and a word of its own, "scan:FILE (h = 2 um)".
 """
 
 from __future__ import annotations
@@ -76,6 +76,8 @@ def scan_in(word: str) -> Scan:
 
     file = word.removeprefix(OF_SCAN)
     table = f'compute the law with its arguments, roughcoat scan {file} ... --law law.csv: micro = "table:law.csv"'
+    if not file:
+        raise ValueError('names no file: "scan:wafer.sdf"')
     try:
         scan = read(Path(file).expanduser())
     except OSError as error:
@@ -119,7 +121,11 @@ def with_bodies(grid: Grid, scene: Any, errors: list[str]) -> tuple[Grid, tuple[
         if reason:
             errors.append(f"micro = {shown(name)}: {reason}")
             continue
-        for rest, cases in _named_apart(bodies):
+        if "micro" in grid.sizes and len(bodies) > 1:
+            way_out = "give one body, or each scan with its bodies in a call of its own"
+            errors.append(f"micro = {shown(name)}: several bodies need a law each, and micro is an axis: {way_out}")
+            continue
+        for rest, cases in _named_apart(bodies, grid):
             scan = _scan_word(grid, name, name + rest, flat[cases])
             known = known.with_law(awaiting_rows(scan.name, scan.version, scan.body))
             words.ravel()[flat[cases]] = scan.name
@@ -162,11 +168,16 @@ def _texts(values: np.ndarray) -> np.ndarray:
     return np.array([f"{value:.{_DIGITS}g}" for value in values.tolist()])
 
 
-def _named_apart(bodies: list[tuple[dict, np.ndarray]]) -> list[tuple[str, np.ndarray]]:
+def _named_apart(bodies: list[tuple[dict, np.ndarray]], grid: Grid) -> list[tuple[str, np.ndarray]]:
     """The end of the word of each body, "" of a lone one, and its cases."""
+
+    def said(body: dict, name: str) -> str:
+        is_length = grid.lexicon.rows[name].powers == (0, 1)
+        return f"{name} = {_text(1e6 * body[name])} um" if is_length else f"{name} = {_text(body[name])}"
+
     names = list(dict.fromkeys(name for body, _ in bodies for name in body))
     differing = [name for name in names if len({_text(body.get(name)) for body, _ in bodies}) > 1]
-    ends = [", ".join(f"{name} = {_text(body[name])}" for name in differing if name in body) for body, _ in bodies]
+    ends = [", ".join(said(body, name) for name in differing if name in body) for body, _ in bodies]
     several = len(bodies) > 1
     return [(f" ({end or 'half-space'})" * several, cases) for end, (_, cases) in zip(ends, bodies, strict=True)]
 

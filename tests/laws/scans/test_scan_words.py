@@ -77,7 +77,7 @@ def test_each_body_has_a_law_of_its_own_whatever_its_company():
     """Two thicknesses and two loads; alone each has the same numbers."""
     several = study.solve(**BALL | COATED | {"P": ["50 mN", "100 mN"], "h": ["1 um", "2 um"]}, micro=WORD)
     assert several.micro.dims == ("h",) and (several.status == 0).all()
-    assert several.micro.values.tolist() == [f"{WORD} (h = 1e-06)", f"{WORD} (h = 2e-06)"]
+    assert several.micro.values.tolist() == [f"{WORD} (h = 1 um)", f"{WORD} (h = 2 um)"]
     alone = study.solve(**BALL | COATED | {"P": ["50 mN", "100 mN"]}, micro=WORD)
     assert alone.micro.item() == WORD
     for name in ("a", "D", "p_max", "Ar_An"):
@@ -153,6 +153,7 @@ def test_a_law_without_rows_gives_no_numbers():
 
 
 def refused(**changed):
+    """The message of a contact that is refused."""
     with pytest.raises(StudyError) as error:
         study.solve(**BALL | {"base": "half_space"} | changed)
     return str(error.value)
@@ -161,6 +162,7 @@ def refused(**changed):
 def test_what_is_refused_says_why():
     """Before anything is computed, and all of it in one line each."""
     assert refused(micro="scan:none.sdf") == "solve: micro: none.sdf: cannot be read: No such file or directory"
+    assert refused(micro="scan:") == 'solve: micro: names no file: "scan:wafer.sdf"'
     np.save("map.npy", SURFACE.z)
     lacking = refused(micro="scan:map.npy")
     assert "map.npy: give unit" in lacking and "Also give dx" in lacking and "--law law.csv" in lacking
@@ -169,6 +171,9 @@ def test_what_is_refused_says_why():
     write_sdf(SURFACE.z[:1].repeat(2, 1), "profile.sdf")
     assert refused(micro="scan:profile.sdf").endswith("is a profile: the law of a scan needs a map of heights")
     assert "a layer of springs has no kernel" in refused(**COATED, base="thin_layer", micro=WORD)
+    assert "several bodies need a law each, and micro is an axis" in refused(
+        **COATED | {"h": ["1 um", "2 um"], "base": "layered"}, micro=[WORD, "smooth"]
+    )
     thicknesses = [f"{h} um" for h in range(1, 33)]
     assert "32 bodies, of which each needs a law, at most 30" in refused(
         **COATED | {"h": thicknesses}, base="layered", micro=WORD

@@ -38,8 +38,8 @@ SURFACES = {
 
 @pytest.mark.parametrize("name", SURFACES)
 def test_it_encloses_finer_points(name):
-    """From λ = 0.001 on; where it counts for the law as a whole, from 0.01, the error of the points alone does. Without
-    the points at the borders, and with what half the distance changes once, three of five are not enclosed."""
+    """From λ = 0.001 on; where it counts for the law as a whole, from 0.01, the error of the points alone does. Twice
+    what half the distance changes does not enclose the paraboloids: their tops lie midway between points."""
     scan = SURFACES[name]()
     slope = patch_of(scan, "mean", None, "given", 1, "law").slope
     pressures = np.array([0.5e-3, 2e-3, 0.01, 0.05, 0.2]) * slope

@@ -28,7 +28,7 @@ def paraboloids():
 
 
 SURFACES = {
-    "H = 0.8, 16 points a wave": lambda: self_affine("1.6 um", hurst=0.8, seed=1),
+    "H = 0.8, 8 points a wave": lambda: self_affine("0.8 um", hurst=0.8, seed=1),
     "H = 0.8, 4 points a wave": lambda: self_affine("0.4 um", hurst=0.8, seed=3),
     "H = 0.5, 2 points a wave": lambda: self_affine("0.2 um", hurst=0.5, seed=4),
     "spiked": spiked,

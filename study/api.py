@@ -14,11 +14,13 @@ from .inputs.definition import Definition
 from .inputs.lexicon import with_known
 from .inputs.places import study_file
 from .inputs.reading import read
+from .scan_laws.words import with_rows
 from .store.clean import clean
 from .store.window_files import glance, verified
 from .store.windows import Store
 from .work.cost import Estimate
 from .work.plan import Report
+from .work.progress import screen_of
 from .work.run import dry_run, run
 
 if TYPE_CHECKING:
@@ -82,7 +84,13 @@ class Study:
         >>> report.cases, report.computed
         (1, 1)
         """
-        return run(self.definition, self._folder, command=command_line(), **options)
+        return run(self._ready(options), self._folder, command=command_line(), **options)
+
+    def _ready(self, options: dict[str, Any]) -> Definition:
+        """The definition, with the laws of its scans where a case may have to be computed."""
+        if not self.definition.scans or (not options.get("retry") and self.status()["state"] == "done"):
+            return self.definition
+        return with_rows(self.definition, options.get("stream") or screen_of(options.get("progress")))
 
     def dry_run(self, workers: int | None = None, yes: bool = False, force: bool = False) -> Estimate:
         """The cost of `run`, the number of cases that it would find computed, and the error in which it would end.
@@ -105,7 +113,7 @@ class Study:
         >>> estimate.cases, estimate.present
         (6, 0)
         """
-        return dry_run(self.definition, self._folder, workers=workers, force=force)
+        return dry_run(self._ready({}), self._folder, workers=workers, force=force)
 
     def status(self, yes: bool = False) -> dict:
         """The state of the results, and how many cases have been computed.

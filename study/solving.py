@@ -21,6 +21,7 @@ from .inputs.lexicon import PACKAGE
 from .inputs.punch.stresses import none_in
 from .inputs.scene.hints import Parameters
 from .inputs.vocabulary import NOT_RUN, VOCABULARY
+from .scan_laws.words import with_rows
 from .specimen.foreign import plain
 from .terminal import shown
 from .work.engine import solved
@@ -64,7 +65,8 @@ def solve(
         written `**{"layers.2.h": [...]}`, where layers count from 1
     rigid_base : whether the body under the layers is rigid; with units E2 = "rigid" says so
     Nbar, Ra : number of asperities per unit area, and the radius of an asperity; not needed by micro = "smooth"
-    micro : law of the asperities, "table:" and the path of a CSV file (docs/model.md), or a `solver.laws.Law` itself
+    micro : law of the asperities, "table:" and the path of a CSV file (docs/model.md), "scan:" and the path of a scan
+        whose own law is computed first (docs/roughness.md), a `ScanLaw`, or a `solver.laws.Law` itself
     B, beta : for micro = "power_law", A = B Ra (p/E1*)^beta, so B is in Ra/E1*^beta. Without both the law is fitted to
         Nbar and Ra, as in the paper
     sigma, cut : for micro = "normal_heights", the standard deviation of the heights, and the largest height above the
@@ -142,7 +144,7 @@ def solve(
         table = ' (of a table of pandas: cases=table.to_dict("records"))' * hasattr(cases, "to_dict")
         raise StudyError([f"cases must be a list of dictionaries, at least one{table}"])
     tables = {"title": title, "output": {"x": x, "profiles": profiles}}
-    definition = from_call(parameters, rows, same_piece, tables, correlations)
+    definition = with_rows(from_call(parameters, rows, same_piece, tables, correlations), stream)
     for text in unloading(definition):
         warnings.warn(text, stacklevel=2)
     if far := far_outside(definition):
@@ -178,7 +180,7 @@ def unsolved(who: str, parameters: dict[str, Any]) -> xr.Dataset:
     _stream(plain(options["workers"]), options["progress"], options["chunks"], options["sensitivities"])
     _refuse_ranges(call)
     tables = {"title": options["title"], "output": {"x": 2, "profiles": False}}
-    definition = from_call(call, [], options["same_piece"], tables, options["correlations"], who)
+    definition = with_rows(from_call(call, [], options["same_piece"], tables, options["correlations"], who))
     unsolved_parts = labelled(definition, {"status": np.full(definition.grid.size, NOT_RUN, np.int8)}, "study.solve")
     unsolved_parts.variables["status"].attrs |= status_attributes()
     contacts, _ = _with_coordinates(
@@ -225,6 +227,7 @@ def solve_one(stresses: str = "", /, *, same_piece: bool = False, **parameters: 
     definition = from_call(parameters, [], same_piece, {"title": "", "output": {"x": POINTS, "profiles": True}})
     if stresses and (reason := none_in(definition.grid)):
         raise StudyError([f"{stresses}: {reason}"])
+    definition = with_rows(definition, screen_of(None))
     if far := far_outside(definition):
         warnings.warn("\n".join(far), FarOutside, stacklevel=2)
     return OneCase(_solved_parts(definition, None, screen_of(None), start))

@@ -114,7 +114,7 @@ class Known:
         if self.laws.get(law.name) is law:
             return self
         taken = self.laws.get(law.name, law) in laws.BUILT_IN
-        if taken or not re.fullmatch(rf"[A-Za-z]\w*|{own_table.PREFIX}.+", law.name):
+        if taken or not re.fullmatch(rf"[A-Za-z]\w*|({'|'.join(own_table.OF_FILES)}).+", law.name):
             raise ValueError(f'micro law "{law.name}": must have a name of its own, of letters, digits and _')
         if not (law.version and isinstance(law.version, str)):
             raise ValueError(f"micro law {law.name}: version must be a text, which changes whenever its numbers may")
@@ -323,7 +323,7 @@ def _are_one(law, other):
     if laws.identity(law) != laws.identity(other):
         return False
     same = (getattr(law, field.name) == getattr(other, field.name) for field in fields(law))
-    return law.name.startswith(own_table.PREFIX) or all(same)
+    return law.name.startswith(own_table.OF_FILES) or all(same)
 
 
 def _flat(values):

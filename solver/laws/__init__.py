@@ -33,7 +33,7 @@ def identity(law):
 def name_in(identity):
     """The name in a text of :func:`identity`. The path of a table may contain blanks, and so may the version of any
     other law."""
-    return identity.rpartition(" ")[0] if identity.startswith(own_table.PREFIX) else identity.partition(" ")[0]
+    return identity.rpartition(" ")[0] if identity.startswith(own_table.OF_FILES) else identity.partition(" ")[0]
 
 
 BUILT_IN = (

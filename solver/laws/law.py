@@ -82,6 +82,8 @@ class Law:
     version : text that changes whenever the numbers of the law may change; part of the keys of its cases
     rough : False if there are no asperities at all: A = 0, and the equation of the contact is linear in y = q
     error : largest relative error of A, λ and p_max in a law that comes from a table, else 0; part of `model_error`
+    error_at : (p/E) -> that error at a nominal pressure, (B,) each, of a law whose rows err by different amounts; None:
+        it is `error`
     least, most : smallest and largest p/E for which the law has numbers; contacts outside get none
     corners : whether λ(y) has corners, for example where the lowest summits touch; Ar/An then has its own quadrature
     smears : whether it spreads the pressure of the neighbours evenly, and so errs where the spots merge
@@ -123,6 +125,7 @@ class Law:
     version: str = ""
     rough: bool = True
     error: float = 0.0
+    error_at: Callable | None = None
     least: float = 0.0
     most: float = np.inf
     corners: bool = False

@@ -13,6 +13,7 @@ import csv
 import hashlib
 import json
 import re
+from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
 
@@ -21,10 +22,16 @@ import numpy as np
 from ..numerics.userfile import NoFile, TooLarge, content
 from ..parameters import Parameter
 from . import heights
+from .law import Law
 from .tabulated import LawTable, fitted, law_of, t_of
 
 PREFIX = "table:"
+#: A scan, whose rows `study` computes before the contacts: "scan:FILE". The laws that are named after a file.
+OF_SCAN = "scan:"
+OF_FILES = PREFIX, OF_SCAN
 COLUMNS = ("p", "A", "lam", "p_max")
+#: A column that the law of a scan has besides: the relative error of each row.
+ERROR = "error"
 #: The parameter of a law whose A is a length: the length, in the unit of R, that 1 in its column stands for.
 LAW_UNIT = "law_unit"
 _LAW_UNIT = Parameter(
@@ -44,6 +51,11 @@ HEIGHTS, _MOST = ("z", "share"), 32
 _FEWEST, _DEGREE, _NEAR, _FAR = 5, 14, 1e-4, 0.05
 #: The largest distance of a curve from the rows of a scan. They have steps where few points touch; `error` includes it.
 _OF_SCAN = 0.3
+#: The exponent of A at the edge is that of the first two rows. The first rows of a scan have a spot or two, which are
+#: springs of some points: there it is that over a decade of p, or the curves need more degrees than there are.
+_OF_FIRST_ROWS, _OF_SPOTS = 1.0, 10.0
+#: Rows of errors up to this count alike.
+_TRUSTED = 0.02
 #: The degree that is chosen is the lowest whose distance from the rows is at most this times the smallest one: higher
 #: degrees follow the noise.
 _HARDLY = 1.5
@@ -106,10 +118,14 @@ def _of_text(name, text):
     unit = next((match[1] for word in words if (match := _WITH_UNIT.fullmatch(word))), "")
     if unit and unit not in _UNITS:
         raise ValueError(f"column A: [{unit}] is not a unit of length: one of {', '.join(_UNITS)}")
-    columns = _columns(text, COLUMNS, _FEWEST)
+    columns, stated = _columns(text, COLUMNS, _FEWEST), _stated(text)
     _check(**columns)
+    if not stated:
+        _check_order(**columns)
+    if stated and ERROR in words:
+        stated["errors"] = _columns(text, (ERROR,), _FEWEST)[ERROR]
     columns["A"] = columns["A"] * _UNITS.get(unit, 1.0)
-    return fitted_law(name, **columns, metres=bool(unit), **_stated(text))
+    return fitted_law(name, **columns, metres=bool(unit), **stated)
 
 
 def _stated(text):
@@ -191,6 +207,10 @@ def _check(p, A, lam, p_max):
             raise ValueError(f"column {name}, row {row}: {value:g}: {words}")
     if np.median(np.log(A[1:] / A[0]) / np.log(p[1:] / p[0])) > _BENT:  # one wrong row is named below
         raise ValueError(f"column A, rows 1 to {len(p)}: rises faster than p, but growing spots deform less and less")
+
+
+def _check_order(p, A, lam, p_max):
+    """Raise ValueError where two columns seem to be exchanged."""
     last = max(1, int(((p <= 10 * p[0]) & (lam < _LIGHT)).sum())) - 1
     rise = {name: np.log(X[last] / X[0]) for name, X in (("p", p), ("A", A), ("lam", lam), ("p_max", p_max))}
     if rise["lam"] < 0.75 * rise["p_max"] and rise["A"] < _ROUND * rise["p"]:
@@ -203,32 +223,59 @@ def of_rows(name, text):
     return _of_text(name, text)
 
 
+def awaiting_rows(name, version, body=None):
+    """:class:`~solver.laws.law.Law` of a scan, "scan:FILE", whose rows have not been computed. It has all that a study
+    is checked by; each of its functions raises RuntimeError.
+
+    version : text that tells the rows from all others; body : as of :func:`fitted_law`
+    """
+    functions = dict.fromkeys(("scales", "curve", "area", "peak", "edge"), _without_rows)
+    return Law(name=name, version=version, parameters={LAW_UNIT: _LAW_UNIT}, body=body or None, **functions)
+
+
+def _without_rows(*_, **__):
+    raise RuntimeError("the rows of the law of a scan have not been computed")
+
+
 def in_metres(law):
     """Whether a law comes from a table whose A is a length."""
     return LAW_UNIT in law.parameters
 
 
-def fitted_law(name, p, A, lam, p_max, metres=False, error=0.0, body=None):
+def of_scan(name, text, version):
+    """:class:`~solver.laws.law.Law` of a table whose rows follow from what `version` tells; ValueError as of
+    :func:`read`."""
+    return replace(_of_text(name, text), version=version)
+
+
+def fitted_law(name, p, A, lam, p_max, metres=False, error=0.0, body=None, errors=None):
     """:class:`~solver.laws.law.Law` near the rows (n,) of a table that has been checked.
 
     metres : whether A is in m; otherwise it is in R
     error : error of the rows themselves; the curves may be as far from them
     body : the body for which they are valid, parameter -> number or word, lengths in m
+    errors : (n,), error of each row; None: `error`. Rows with larger errors than `error` count less for the curve of λ,
+        which goes in steps where few points touch
     """
-    beta = np.clip(np.log(A[1] / A[0]) / np.log(p[1] / p[0]), *_BETA)
+    trust = np.ones(len(p)) if errors is None else np.minimum(max(error, _TRUSTED) / errors, 1.0)
+    beta = _edge_exponent(p, A, _OF_FIRST_ROWS if errors is None else _OF_SPOTS)
     s, q = 2 / beta - 1, p / p[-1]
     t = t_of(q, s)
     quantities = (("A", A / A[-1], 2), ("lam", lam, 2), ("p_max", (p_max - p) / p[-1], 1))
     stated = json.dumps([error, body], sort_keys=True) * bool(error or body)
     allowed = max(_OF_SCAN, error) if stated else _FAR
-    curves = [_curve(column, t, q, X, power, allowed) for column, X, power in quantities]
+    rows = (p, A, lam, p_max, *([] if errors is None else [errors]))
+    even = np.ones(len(p))
+    hows = [(power, allowed, trust if column == "lam" else even) for column, _, power in quantities]
+    curves = [_curve(column, t, q, X, how) for (column, X, _), how in zip(quantities, hows, strict=True)]
     return law_of(
         LawTable(*(curve for curve, _ in curves), s),
         name=name,
-        version=_digest(p, A, lam, p_max) + hashlib.sha256(stated.encode()).hexdigest()[:8] * bool(stated),
+        version=_digest(*rows) + hashlib.sha256(stated.encode()).hexdigest()[:8] * bool(stated),
         scales=partial(_scales_in_metres if metres else _scales, p[-1], A[-1]),
         parameters={LAW_UNIT: _LAW_UNIT} if metres else {},
         body=body or None,
+        error_at=None if errors is None else partial(_error_at, np.log(p), errors),
         error=max(error, *(error for _, error in curves)),
         least=p[0],
         most=p[-1],
@@ -245,14 +292,30 @@ def _scales_in_metres(p_star, A_star, E, law_unit):
     return p_star * E, A_star * law_unit
 
 
-def _curve(column, t, q, X, power, allowed):
+def _edge_exponent(p, A, reach):
+    """The exponent of A in p over the first rows, up to `reach` times the first pressure, two rows at least."""
+    last = max(1, int(np.count_nonzero(p <= reach * p[0])) - 1)
+    return np.clip(np.log(A[last] / A[0]) / np.log(p[last] / p[0]), *_BETA)
+
+
+def _error_at(ln_p, errors, p):
+    """The error of the rows of a scan at the pressures p (B,), over the modulus that is felt."""
+    return np.interp(np.log(p), ln_p, errors)
+
+
+def _curve(column, t, q, X, how):
     """:class:`~solver.laws.tabulated.TableCurve` near the rows X (n,), of the lowest degree that is near enough, and
     its largest error at and between them. Raises ValueError if for every degree it is more than `allowed` away, or
-    falls."""
+    falls.
+
+    how : power of the curve, `allowed`, and how much each row counts (n,), 1 at most
+    """
+    power, allowed, trust = how
     degrees = range(min(_DEGREE, len(t) - 2) + 1)
-    fits = [fitted(t, q, X, degree, power=power, span=(t[0], t[-1])) for degree in degrees]
-    differences, fits = _differences([curve for curve, _ in fits], t), fits[1:]  # degree 1 is compared with degree 0
-    far = np.array([error[1:-1].max() for _, error in fits])  # without the ends, to which the other rows do not reach
+    fits = [fitted(t, q, X, degree, trust=trust, power=power, span=(t[0], t[-1])) for degree in degrees]
+    differences = _differences([curve for curve, _ in fits], t) * np.interp(_between(len(t)), np.arange(len(t)), trust)
+    fits = [(curve, error * trust) for curve, error in fits[1:]]  # degree 1 is compared with degree 0
+    far = np.array([error[1:-1].max() for _, error in fits])  # no curve through the others tells the ends
     if far.min() > allowed:
         row = int(np.argmax(fits[far.argmin()][1][1:-1])) + 2
         raise ValueError(
@@ -274,7 +337,9 @@ def _curve(column, t, q, X, power, allowed):
     error = max(far[best], _OF_ENDS * fits[best][1][[0, -1]].max())
     for other in range(best + 1, best + 1 + _HIGHER):
         if other < _PART * len(t) - 1 and other < len(fits) and at_rows[other] <= _HARDLY * far[best]:
-            error = max(error, _differences([fits[best][0], fits[other][0]], t).max())
+            weights = np.interp(_between(len(t)), np.arange(len(t)), trust)
+            changes = _differences([fits[best][0], fits[other][0]], t) * weights
+            error = max(error, changes.max())
     return fits[best][0], float(error)
 
 
@@ -282,9 +347,14 @@ def _differences(curves, t):
     """_MARGIN times the differences (k - 1, m) of k curves from the curve before, at _STEPS points in each gap of the
     rows t."""
     rows = np.arange(len(t))
-    points = np.exp(np.interp(np.arange(0, len(t) - 1, 1 / _STEPS), rows, np.log(t)))
+    points = np.exp(np.interp(_between(len(t)), rows, np.log(t)))
     V = np.array([curve.exponent(points)[0] for curve in curves])
     return _MARGIN * np.expm1(np.minimum(np.abs(np.diff(V, axis=0)), 9.0))  # 9 is far above _FAR, and does not overflow
+
+
+def _between(count):
+    """Places in so many rows, _STEPS a gap."""
+    return np.arange(0, count - 1, 1 / _STEPS)
 
 
 def _falls(quantity, t):

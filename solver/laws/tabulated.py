@@ -86,7 +86,7 @@ class LawTable(NamedTuple):
         return t, y * power, power * (1 + self.s * (1 - t))
 
 
-def fitted(t, q, X, degree, guides=((), (), 0.0), first=None, **form):
+def fitted(t, q, X, degree, guides=((), (), 0.0), first=None, trust=1.0, **form):
     """:class:`TableCurve` near the rows X (n,) at t and q (n,), and its relative error (n,) at each row: the distance
     of the row from the curve that is fitted to the other rows alone. Where the gaps between the rows are wide, both the
     curve and this error may be wrong.
@@ -94,13 +94,14 @@ def fitted(t, q, X, degree, guides=((), (), 0.0), first=None, **form):
     degree : degree of the polynomial
     guides : t and V (k,) at guiding points where there are no rows, and their weight, small beside those of the rows
     first : the limit of X/t^power for t -> 0, which the curve meets exactly; None: it is free
+    trust : how much each row counts, (n,) or 1
     form : power, and rate, limit and span of the TableCurve
     """
     quantity = TableCurve(**{"rate": 0.0, "limit": np.inf} | form, V=np.zeros(1))
     share = 1 - X / quantity.limit  # dX/X = (1 - X/limit) dV
     V = -quantity.rate * q - np.log((1 / X - 1 / quantity.limit) * t**quantity.power)
     points, values = np.append(t, guides[0]), np.append(V, guides[1])
-    weights = np.append(share, np.full(len(guides[0]), guides[2]))[:, None]
+    weights = np.append(share * trust, np.full(len(guides[0]), guides[2]))[:, None]
     lowest, factor = (0.0, np.ones_like(points)) if first is None else (np.log(first), points)
     basis = factor[:, None] * chebyshev.chebvander(2 * points - 1, degree)
     Q, R = np.linalg.qr(basis * weights)

@@ -10,7 +10,7 @@ import numpy as np
 from ..numerics.kept import shared_lock
 from ..parameters import Parameter, allowed, ends
 from .law import Curve, Law
-from .own_table import PREFIX
+from .own_table import OF_FILES
 
 #: The y (cases, points) of a trial: three cases at different y. At _ZERO times these y, q and g must be below _NEAR
 #: times their values at these y, since they rise as y² or faster. Numbers below _TINY may have fewer digits than
@@ -34,7 +34,7 @@ _trying = shared_lock()
 
 def untried(law):
     """Whether a law is a user's, and its functions have not been tried."""
-    if not law.version or law.name.startswith(PREFIX):
+    if not law.version or law.name.startswith(OF_FILES):
         return False
     with _trying:
         return law not in _TRIED

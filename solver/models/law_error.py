@@ -34,6 +34,8 @@ _FEW = 4
 #: need at most 0.205 for _GUESSED; a table of random heights needs more than 0.25
 #: (tests/laws/test_own_table_range.py).
 _GUESSED, _STEEPNESS = 0.4, 1.2
+#: A law that errs more at low pressures has the error at this part of p(0): on three quarters of a contact p is larger.
+_MIDDLE = 0.5
 #: (factor, power): the error by the mean over the angle is the factor times (2 λ)^power, in A, λ or p_max, compared
 #: with resolved cells (tests/models/test_errors_on_layers.py). One pair is for a square lattice, the other for a
 #: hexagonal one, whose waves the disc cell has.
@@ -100,11 +102,14 @@ def beyond_end(problem, solution):
 
 
 def edge_error(problem, solution):
-    """(B,): relative error of contacts because the range of their law begins at a pressure above 0; else 0."""
+    """(B,): relative error of contacts because the range of their law begins at a pressure above 0, or because the law
+    is less exact at low pressures; else 0."""
     error = np.zeros(len(problem))
     for law in _laws(problem):
         index, p0, E = _of_law(problem, solution, law)
         error[index] = _GUESSED * (law.least * E / p0) ** _STEEPNESS
+        if law.error_at is not None:
+            error[index] = np.maximum(error[index], law.error_at(_MIDDLE * p0 / E))
     return error
 
 

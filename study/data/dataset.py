@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ from ..arrays.labelled import Labelled, as_xarray
 from ..inputs.definition import Definition
 from ..inputs.grid import along, unflatten
 from ..inputs.identity import law_versions
-from ..inputs.lexicon import KNOWN, encoding_of
+from ..inputs.lexicon import KNOWN, TABLES, encoding_of
 from ..inputs.punch.micro_laws import COMMENT, USED, used
 from ..inputs.punch.stresses import LAYER_NUMBER, numbered, words
 from ..inputs.scene.scene import bare_variable
@@ -198,6 +199,8 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     by_input = {name.removesuffix(BY_INPUT): unflatten(grid, arrays[name]) for name in arrays if BY_INPUT in name}
     laws = law_versions(grid)
     about = provenance(definition, command) | ({"micro_laws": "\n".join(laws)} if laws else {})
+    if definition.tables:
+        about[TABLES] = json.dumps(dict(definition.tables), ensure_ascii=False)
     if "shape" in grid.values:  # the length that is 1
         about["scale"] = (definition.scene.scale or "R") if definition.scene else "1"
     return DatasetParts(variables, coordinates, about, by_input)

@@ -89,6 +89,8 @@ def far_outside(definition: Definition) -> list[str]:
     judged.
     """
     grid = definition.grid
+    if definition.scans:  # nothing can be estimated without their laws
+        return []
     slow = may_be_layered(along(grid, "base")) & have("rough", along(grid, "micro"), grid.lexicon.known)
     slow = slow & (along(grid, "n") < SOFT)
     if not (definition.scene and slow.any()):

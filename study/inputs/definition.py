@@ -6,7 +6,8 @@ spreads ("200 ± 10 GPa", materials by name). Then results have derivatives by t
 follows `NAME_spread`.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,7 @@ from .checks import (
 from .grid import Grid, along
 from .identity import digest_of, law_versions
 from .punch import micro_laws, shapes, sticking
+from .punch.scan_words import ScanWord, with_bodies
 from .punch.stresses import LAYER_NUMBER, dimension, none_in, stored
 from .request import MOST_MESSAGES, Request
 from .scene.stacks import axes_in, in_layers
@@ -66,6 +68,18 @@ class StudyError(ValueError):
         super().__init__("\n".join(self.messages))
 
 
+def refuse_scans(definition: "Definition", who: str) -> "Definition":
+    """The definition itself. Raises StudyError where a law of a scan would have to be computed, on many bodies perhaps.
+
+    who : the name of the public function, for messages
+    """
+    if not definition.scans:
+        return definition
+    word, file = definition.scans[0].name, definition.scans[0].file
+    way_out = f'compute the law first, roughcoat scan {file} --law law.csv: micro = "table:law.csv"'
+    raise StudyError([f"{who}: micro = {shown(word)} is for contacts that are given: {way_out}"])
+
+
 @dataclass(frozen=True, eq=False)
 class Definition:
     """The cases and results of a study.
@@ -82,6 +96,8 @@ class Definition:
     inputs : names of the solver's inputs that change with some spread; results have derivatives by them
     stresses : names of the largest stresses and their places, if the study wants them
     says_what_is_felt : whether the results have `asperities_used`
+    scans : laws of scans that must be computed before the contacts: `scan_laws.words.with_rows`
+    tables : name -> text of each law of a scan that has been
     """
 
     name: str
@@ -99,6 +115,8 @@ class Definition:
     inputs: tuple[str, ...] = ()
     stresses: tuple[str, ...] = ()
     says_what_is_felt: bool = False
+    scans: tuple[ScanWord, ...] = ()
+    tables: Mapping[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f'Definition("{self.name}", {self.cases})'
@@ -180,6 +198,7 @@ def definition_of(
                 request.read(entry)
         fill_in(request, {})
     grid = grid_of(request)
+    grid, scans = (grid, ()) if errors else with_bodies(grid, scene, errors)
     if "w_adhesion" in grid.values and not errors:
         errors += sticking.rough_and_sticking(grid, scene and scene.unit)
     inputs = () if errors or scene is None or not scene.spreads else inputs_of(scene, grid)
@@ -199,6 +218,7 @@ def definition_of(
         inputs=inputs,
         stresses=stored(grid, some_feel) if with_stresses and not errors else (),
         says_what_is_felt=not errors and micro_laws.is_said(grid),
+        scans=scans,
     )
     if (numbers := definition.numbers) > most:
         limit = f"at most {most:.0e} (fewer points, or profiles = false)"

@@ -16,6 +16,7 @@ import numpy as np
 
 from solver import NUMERICS_VERSION
 from solver.laws import identity as law_identity
+from solver.laws.own_table import OF_SCAN
 from solver.numerics.profiles import identity as profile_identity
 from solver.shapes.table import identity as shape_identity
 
@@ -177,6 +178,8 @@ def _identity(grid: Grid, name: str, word: str) -> str:
     if name.endswith(".profile"):
         return profile_identity(word, known.profiles)
     if name == "micro":
+        if word.startswith(OF_SCAN) and word in known.laws:  # wherever the file is, and on however many bodies
+            return f"{OF_SCAN} {known.laws[word].version}"
         return law_identity(known.laws[word]) if word in known.laws else word
     if name == "shape":
         return f"{shape_identity(known.shapes[word]) if word in known.shapes else word} {_OF_SHAPES}"

@@ -1,6 +1,7 @@
 """The meaning of the words in a call, a study or results: the vocabulary, with the additions of users' laws and
 shapes."""
 
+import json
 from collections import ChainMap
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
@@ -14,8 +15,7 @@ from solver import Problem
 from solver.known import PACKAGE as OF_SOLVER
 from solver.known import RESERVED, Known, names_of
 from solver.known import default as known_by_default
-from solver.laws import Law, name_in
-from solver.laws.own_table import PREFIX
+from solver.laws import Law, name_in, own_table
 from solver.numerics.kept import once
 from solver.parameters import CONTROL, NamedRows, Parameter, among
 
@@ -24,6 +24,8 @@ from .vocabulary import BODIES, PARAMETERS, SCENE, VOCABULARY, Entry, Names, par
 #: The key of the encoding of the coordinate `micro`, where a dataset has its laws, shapes and tables. Encodings stay
 #: with a dataset, and are not written to files.
 KNOWN = "known"
+#: The attribute of results that has the tables of the laws of scans, name -> text, in JSON.
+TABLES = "scan_laws"
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,6 +167,7 @@ def encoding_of(lexicon: Lexicon, values: Mapping[str, Any]) -> dict:
 def with_known(dataset: Any, lexicon: Lexicon, values: Mapping[str, Any]) -> Any:
     """The dataset itself, which now knows the lexicon of its solution; `values` as for :func:`encoding_of`."""
     if "micro" in dataset.variables:
+        lexicon = lexicon_of(_with_tables(lexicon.known, dataset.attrs))
         dataset.variables["micro"].encoding |= encoding_of(lexicon, values)
     return dataset
 
@@ -172,14 +175,27 @@ def with_known(dataset: Any, lexicon: Lexicon, values: Mapping[str, Any]) -> Any
 def lexicon_in(contact: Any) -> Lexicon:
     """The lexicon with which a dataset, one contact, or variables by name were solved.
 
-    Results from a file have the lexicon of the program, with the laws of installed packages that the results name. A
-    table of the user's is not read: whoever sends a results file must not choose which files are opened.
+    Results from a file have the lexicon of the program, with the laws of installed packages that the results name, and
+    with the laws of scans, whose tables the results have. A table of the user's is not read: whoever sends a results
+    file must not choose which files are opened.
     """
     if "micro" in contact and KNOWN in contact["micro"].encoding:
         return lexicon_of(contact["micro"].encoding[KNOWN])
     there, stated = known_by_default(), getattr(contact, "attrs", {}).get("micro_laws", "")
     for line in stated.splitlines() if isinstance(stated, str) else ():
-        if (name := name_in(line)) not in there.laws and not name.startswith(PREFIX):
+        if (name := name_in(line)) not in there.laws and not name.startswith(own_table.OF_FILES):
             with suppress(ValueError):  # otherwise the law stays unknown
                 there = there.with_laws_of(name)
-    return lexicon_of(there)
+    return lexicon_of(_with_tables(there, getattr(contact, "attrs", {})))
+
+
+def _with_tables(known: Known, attributes: Mapping[str, Any]) -> Known:
+    """With the laws of scans whose tables stand among the attributes of results. What is no such table counts for
+    nothing."""
+    with suppress(ValueError, TypeError, AttributeError):
+        tables, lines = json.loads(attributes.get(TABLES, "{}")), attributes.get("micro_laws", "").splitlines()
+        versions = {name_in(line): line.rpartition(" ")[2] for line in lines}
+        for name, text in tables.items():
+            if name in versions and name.startswith(own_table.OF_SCAN):
+                known = known.with_law(own_table.of_scan(name, text, versions[name]))
+    return known

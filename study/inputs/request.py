@@ -12,6 +12,7 @@ from ..specimen.quantities import Quantity, has_unit
 from ..terminal import shown
 from .grid import as_array, equal_values
 from .lexicon import Lexicon, default, lexicon_for, lexicon_of
+from .punch.scan_words import with_scans
 from .punch.shapes import ANGLES, PREFIX, WORDS, as_written, in_degrees
 from .sample import LIMITS, LONGEST_AXIS, range_values, sampled
 from .scene.scene import INFINITE
@@ -224,9 +225,9 @@ class Request:
             self.sections[name], self.inputs[name] = section, entry
 
     def learn(self, micro: list) -> None:
-        """Add the laws that the values of `micro` stand for to the lexicon: objects, tables, laws of installed
+        """Add the laws that the values of `micro` stand for to the lexicon: objects, tables, scans, laws of installed
         packages. Raises ValueError for a law that cannot be used."""
-        self.lexicon = lexicon_of(self.lexicon.known.with_laws_of(micro))
+        self.lexicon = lexicon_of(with_scans(self.lexicon.known, micro).with_laws_of(micro))
 
     def _learn_profiles(self, entry: Input) -> None:
         if entry.name.endswith(".profile") and not entry.is_wrong:

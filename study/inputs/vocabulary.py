@@ -257,7 +257,7 @@ def attributes(name: str, rigid: bool = False, rows: Mapping[str, Entry] = VOCAB
 def allowed(parameter: Parameter) -> str:
     """The condition on the values of a parameter, as the end of a message: "must be > 0"."""
     if parameter.choices:
-        words = [f'"{choice}"' for choice in parameter.choices if not choice.startswith("table:")]
+        words = [f'"{choice}"' for choice in parameter.choices if not choice.startswith(("table:", "scan:"))]
         words += ['or "table:FILE.csv"'] * bool({"paraboloid", "uniform", "disc_cell"} & {*parameter.choices})
         return "must be one of " + ", ".join(words)
     low, high = parameter.interval[1:-1].split(", ")

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from ..derivatives import QUANTITIES
-from ..inputs.definition import Definition, StudyError, from_call
+from ..inputs.definition import Definition, StudyError, from_call, refuse_scans
 from ..inputs.lexicon import lexicon_for
 from ..inputs.scene.scene import si
 from ..inputs.scene.stacks import short
@@ -75,7 +75,7 @@ def _looked_for(by: Any, tables: tuple) -> tuple[str, tuple]:
 
 def _definition(parameters: dict, rows: list[dict], same_piece: Any, correlations: Any) -> Definition:
     try:
-        return from_call(parameters, rows, same_piece, {}, correlations)
+        return refuse_scans(from_call(parameters, rows, same_piece, {}, correlations), "design")
     except StudyError as error:
         raise StudyError(text.replace("solve: ", "design: ", 1) for text in error.messages) from None
 

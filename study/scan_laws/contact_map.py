@@ -14,6 +14,9 @@ from .patch import Pressing, patch_of
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Two moduli that differ by less than this part are one.
+_SAME = 1e-3
+
 
 def contact_map(
     scan: Any,
@@ -31,15 +34,16 @@ def contact_map(
     Parameters
     ----------
     scan : a map of heights without gaps
-    p : nominal pressure, > 0: a number over E1*, or a text with a unit, "2 MPa", which needs `E1`
-    E1 : reduced modulus E1* = E/(1 - ν²) at the surface of the body, a text with its unit, for pressures in Pa; None:
-        pressures are over E1*
+    p : nominal pressure, > 0: a number over E1*, or a text with a unit, "2 MPa", which needs a modulus
+    E1 : reduced modulus E1* = E/(1 - ν²) at the surface of the body, a text with its unit; None: that of `on`, if `on`
+        has moduli
     on, periodic, refine, form, cutoff : as in `law`
 
     Returns
     -------
-    xarray.Dataset : `pressure` and `gap` (m) over y, x (m); attributes A (m), lam, and p_max in the unit of the
-        pressures. A mirrored period is given without the mirror images
+    xarray.Dataset : `pressure` and `gap` (m) over y, x (m); attributes A, lam and p_max, and A_units and p_max_units.
+        Pressures are in Pa if `E1` or `on` gives the modulus, else over E1*. A mirrored period is given without the
+        mirror images
 
     Raises
     ------
@@ -55,25 +59,46 @@ def contact_map(
     """
     import xarray as xr
 
-    unit = 1.0 if E1 is None else quantity("contact_map: E1", E1, "Pa").value
-    if has_unit(p) and E1 is None:
-        raise ValueError(f"contact_map: p = {p!r} has a unit: give E1, the modulus E1*, with its unit too")
-    load = quantity("contact_map: p", p, "Pa").value / unit if has_unit(p) else p
-    if not (isinstance(load, (int, float, np.number)) and 0 < load < np.inf):
-        raise ValueError(f"contact_map: p = {p!r}: must be a number > 0")
     body = body_of(on, "contact_map")
+    modulus, load = _modulus_and_load(E1, p, body.E1)
+    unit = modulus or 1.0
     patch = patch_of(scan, form, cutoff, periodic, refine, "contact_map")
     pressing = Pressing(patch, body.kernel)
-    A, lam, p_max = pressing.at(float(load) * (1 + body.m), scan.name)
+    A, lam, p_max = pressing.at(load * (1 + body.m), scan.name)
     modulus = unit / (1 + body.m)
     y, x = (np.arange(count) * step for count, step in zip(patch.z.shape, patch.steps, strict=True))
     pressure, of_gap = {"long_name": "pressure"}, {"long_name": "gap", "units": "m"}
-    pressure |= {"units": "Pa"} if E1 is not None else {"long_name": "pressure, p/E1*"}
+    pressure |= {"units": "Pa"} if modulus else {"long_name": "pressure, p/E1*"}
     return xr.Dataset(
         {
             "pressure": (("y", "x"), pressing.pressures * modulus, pressure),
             "gap": (("y", "x"), pressing.gap(A), of_gap),
         },
         {"y": ("y", y, {"units": "m"}), "x": ("x", x, {"units": "m"})},
-        {"A": A, "lam": lam, "p_max": p_max * modulus, "scan": scan.name, "treatment": patch.treatment},
+        {
+            "A": A,
+            "A_units": "m",
+            "lam": lam,
+            "p_max": p_max * modulus,
+            "p_max_units": "Pa" if modulus else "E1*",
+            "scan": scan.name,
+            "treatment": patch.treatment,
+        },
     )
+
+
+def _modulus_and_load(E1: Any, p: Any, of_body: float | None) -> tuple[float | None, float]:
+    """The modulus E1* in Pa, None where it is not known, and the nominal pressure over it. Raises ValueError.
+
+    of_body : the modulus of the body on which the scan is pressed, None where it is not known
+    """
+    modulus = of_body if E1 is None else quantity("contact_map: E1", E1, "Pa").value
+    if E1 is not None and of_body is not None and abs(modulus / of_body - 1) > _SAME:
+        raise ValueError(f"contact_map: E1 = {E1!r}, but `on` has E1* = {of_body:.6g} Pa: leave E1 out")
+    if has_unit(p) and modulus is None:
+        way_out = "give E1, the modulus E1*, with its unit too, or moduli in `on`"
+        raise ValueError(f"contact_map: p = {p!r} has a unit: {way_out}")
+    load = quantity("contact_map: p", p, "Pa").value / modulus if has_unit(p) else p
+    if not (isinstance(load, (int, float, np.number)) and 0 < load < np.inf):
+        raise ValueError(f"contact_map: p = {p!r}: must be a number > 0")
+    return modulus, float(load)

@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple, TextIO
 
 import numpy as np
 from scipy.ndimage import label
@@ -20,17 +20,26 @@ from .patch import Patch, Pressing, patch_of
 
 __all__ = ["ScanLaw", "law"]
 
-#: By default the law goes from the first contact fraction to the second, and p grows by this factor from row to row. It
-#: begins where at least _POINTS points touch: with fewer, λ goes in steps that no smooth curve follows.
-_LEAST, _MOST, _FACTOR, _POINTS = 1e-3, 0.6, 1.38, 16
+#: By default the law goes from the first contact fraction to the second, and p grows by this factor from row to row. Up
+#: to a given pressure it has at least so many rows, and at most so large a contact fraction: in full contact A stays.
+_LEAST, _MOST, _FACTOR, _FEWEST, _FULL = 1e-3, 0.6, 1.38, 8, 0.95
 #: λ over p/(E* h') where few points touch; largest number of steps in the search for the first row, and its precision
 #: as a factor.
 _STIFF, _SEARCH, _NEAR = 2.0, 6, 1.3
+#: The contact fraction at which the law is compared with theories for small ones, and λ h'E*/p of Persson's, √(8/π).
+_SMALL, _PERSSON = 0.05, math.sqrt(8 / math.pi)
 #: Largest number of rows.
 _ROWS = 40
 #: Number of rows at which the patch is compared with its quarters and with points at half the distance, and the least λ
-#: of these rows: below it a few spots carry the whole load, and another patch has other spots.
-_COMPARED, _COUNTS = 4, 0.01
+#: that counts in the error of the whole law: below it a few spots carry the load. The rows there have their own errors.
+_COMPARED, _COUNTS = 6, 0.01
+#: What finer points change is at most this times what half the distance changes in a part of the patch. An error that
+#: falls as the distance is twice that; where the tops of all summits lie midway between points p_max needs 2.8
+#: (tests/laws/scans/test_errors_of_scan_laws.py).
+_OF_HALVING = 3.0
+#: Spots of points are too large by this times their edges, in points: Yastrebov, Anciaux and Molinari, Tribology
+#: International 114 (2017) 161. What is left of a spot is at least this share of it.
+OUTSIDE, _SHARE = (np.pi - 1 + np.log(2)) / 24, 0.3
 #: Least number of points along a side of a quarter for the comparison, and the diameter in points below which a spot is
 #: coarse.
 _SMALLEST, _COARSE = 16, 4.0
@@ -48,13 +57,15 @@ class ScanLaw:
     p, A, lam, p_max : (n,) nominal pressure over E1*; approach over `scale`, from the highest summit; contact fraction;
         largest pressure over E1*
     scale : m, the length that 1 in A stands for
-    error : the largest relative error of λ, p_max and A that `errors` has
-    errors : "pixel": the change of the answer with points at half the distance; "patch": the difference that another
-        patch of this size may have, half of the scatter of the four quarters
+    error : the largest relative error of λ, p_max and A that `errors` has, from λ = 0.01 on
+    errors : "pixel": the change that finer points would make, thrice that of half the distance, or the excess of λ due
+        to the points at the borders of spots; "patch": the difference that another patch of this size may have, half
+        of the scatter of the four quarters
     body : parameter -> number or word (lengths in m) of the body under the scan; None: a half-space
     name : of the scan
     notes : sentences, also those of the reading
     m : E1*/E_punch* of the body
+    row_errors : (n,) error of each row, which is larger where few points touch; None: `error`
 
     Examples
     --------
@@ -76,6 +87,7 @@ class ScanLaw:
     notes: tuple[str, ...] = ()
     scale: float = 1.0
     m: float = 0.0
+    row_errors: np.ndarray | None = None
 
     @property
     def text(self) -> str:
@@ -83,9 +95,10 @@ class ScanLaw:
         punch in series."""
         stated = json.dumps({"error": self.error, "body": None if self.body is None else dict(self.body)})
         lines = [f"# Micro law of {_on_one_line(self.name)}", *(f"# {_on_one_line(note)}" for note in self.notes)]
-        lines += [f"{own_table.STATED}{stated}", "p,A [m],lam,p_max"]
-        factors = (1 + self.m, self.scale, 1.0, 1 + self.m)
-        columns = (self.p, self.A, self.lam, self.p_max)
+        lines += [f"{own_table.STATED}{stated}", "p,A [m],lam,p_max,error"]
+        factors = (1 + self.m, self.scale, 1.0, 1 + self.m, 1.0)
+        errors = np.full(len(self.p), self.error) if self.row_errors is None else self.row_errors
+        columns = (self.p, self.A, self.lam, self.p_max, errors)
         rows = zip(*(column * factor for column, factor in zip(columns, factors, strict=True)), strict=True)
         return "\n".join([*lines, *(",".join(repr(float(number)) for number in row) for row in rows), ""])
 
@@ -164,7 +177,7 @@ def law(
     Parameters
     ----------
     scan : a map of heights without gaps, made by `read`, `height_map` or `self_affine`
-    pressures : (n,), n >= 5, nominal pressures over E1*, > 0; None: those with λ from 0.001, or 16 points, to 0.6
+    pressures : (n,), n >= 5, nominal pressures over E1*, > 0; None: those with λ from 0.001, or one point, to 0.6
     on : inputs of `study.solve` for the body: h, n or E1 and E2, nu1, nu2, bonding, or `layers`; E_punch or m. Lengths
         have units. Contacts on another body are then refused. None: a half-space of E1*
     periodic : "mirror", the scan beside its mirror images; "taper", the scan with borders of an eighth that go to the
@@ -193,21 +206,56 @@ def law(
     body = body_of(on, "law")
     patch = patch_of(scan, form, cutoff, periodic, refine, "law")
     wanted = None if pressures is None else _wanted(pressures) * (1 + body.m)
-    pressing, rows, spots = Pressing(patch, body.kernel), [], []
-    with Progress("law", _ROWS if wanted is None else len(wanted), screen_of(plain(progress))) as bar:
-        p = _first(patch, body, scan.name) if wanted is None else 0.0
-        for i in range(_ROWS if wanted is None else len(wanted)):
+    return _computed(scan, patch, body, _Range(wanted), screen_of(plain(progress)))
+
+
+def law_up_to(scan: Any, body: PressedBody, top: float, stream: TextIO | None) -> ScanLaw:
+    """The law of a scan as `law` has it, from λ = 0.001 to the pressure `top`, over the modulus that is felt, or to
+    nearly full contact. ValueError as of `law`; stream : where it says how far it is."""
+    patch = patch_of(scan, "plane", None, "mirror", 1, "law")
+    return _computed(scan, patch, body, _Range(None, top, _FULL), stream)
+
+
+class _Range(NamedTuple):
+    """The pressures of a law, over the modulus that is felt: those that are wanted; or None, and all up to the pressure
+    `top` or the contact fraction `most`."""
+
+    wanted: np.ndarray | None
+    top: float = np.inf
+    most: float = _MOST
+
+    @property
+    def count(self) -> int:
+        return _ROWS if self.wanted is None else len(self.wanted)
+
+    def ends(self, rows: list) -> bool:
+        """Whether the rows suffice."""
+        p, lam = rows[-1][0], rows[-1][2]
+        return self.wanted is None and (lam >= self.most or (p >= self.top and len(rows) >= _FEWEST))
+
+
+def _computed(scan: Any, patch: Patch, body: PressedBody, pressures: _Range, stream: TextIO | None) -> ScanLaw:
+    """The law of a patch of a scan on a body."""
+    pressing, rows, spots, wanted = Pressing(patch, body.kernel), [], [], pressures.wanted
+    with Progress(f"law of {scan.name}", pressures.count, stream, passing=True) as bar:
+        p = _first(patch, body, scan.name, pressures.top) if wanted is None else 0.0
+        for i in range(pressures.count):
             p = p * (_FACTOR if i else 1.0) if wanted is None else float(wanted[i])
             rows.append((p, *pressing.at(p, scan.name)))
-            spots.append(_diameter(pressing.pressures))
+            spots.append(_spots(pressing.pressures, patch.mirrored))
             bar.update(1, 0)
-            if wanted is None and rows[-1][2] >= _MOST:
+            if pressures.ends(rows):
                 break
-        table = np.array(rows).T
-        errors = _errors(patch, body, table, scan.name)
+        table, (diameters, borders) = np.array(rows).T, np.array(spots).T
+        parts = _differences(patch, body, table, scan.name)
     p, A, lam, p_max = table
-    notes = (*scan.notes, _provenance(scan, patch), *_about(errors), *_coarse(lam, np.array(spots)))
-    numbers = {"error": max(errors.values(), default=0.0), "errors": errors, "body": body.inputs, "name": scan.name}
+    parts["pixel"] = np.maximum(parts.get("pixel", 0.0), borders)
+    counts = lam >= _COUNTS if (lam >= _COUNTS).any() else lam == lam[-1]
+    errors = {name: float(values[counts].max()) for name, values in parts.items()}
+    notes = (*scan.notes, _provenance(scan, patch), *_about(errors), *_coarse(lam, diameters, parts["pixel"]))
+    notes += _beside_theory(p, lam, patch.slope) if body.kernel is None else ()
+    numbers = {"error": max(errors.values()), "errors": errors, "body": body.inputs, "name": scan.name}
+    numbers["row_errors"] = np.max(list(parts.values()), axis=0)
     return ScanLaw(p / (1 + body.m), A, lam, p_max / (1 + body.m), **numbers, notes=notes, m=body.m)
 
 
@@ -222,41 +270,47 @@ def _wanted(pressures: Any) -> np.ndarray:
     return values
 
 
-def _first(patch: Patch, body: PressedBody, name: str) -> float:
-    """The pressure at which about _LEAST of the points touch, over the modulus of body and punch in series."""
+def _first(patch: Patch, body: PressedBody, name: str, top: float) -> float:
+    """The pressure at which about _LEAST of the points touch, over the modulus of body and punch in
+    series; a lower one if too few rows would lie below `top`."""
     pressing = Pressing(patch, body.kernel)
-    p, fewest = _LEAST * patch.slope / _STIFF, max(_LEAST, _POINTS / patch.z.size)
+    p, fewest = _LEAST * patch.slope / _STIFF, max(_LEAST, 1 / patch.z.size)
     for _ in range(_SEARCH):
         _, lam, _ = pressing.at(p, name)
         if fewest / _NEAR <= lam <= fewest * _NEAR:
             break
         p *= fewest / lam
-    return p
+    return min(p, top / _FACTOR ** (_FEWEST - 1))
 
 
-def _errors(patch: Patch, body: PressedBody, table: np.ndarray, name: str) -> dict[str, float]:
-    """The largest changes by half the pixel and by another patch, over some rows with λ from _COUNTS on."""
+def _differences(patch: Patch, body: PressedBody, table: np.ndarray, name: str) -> dict[str, np.ndarray]:
+    """What finer points and another patch would change, relative, in each row (n,): of some rows, and interpolated."""
     if min(patch.z.shape) < 2 * _SMALLEST:
         return {}
-    counting = np.flatnonzero(table[2] >= _COUNTS)
-    counting = counting if len(counting) else np.arange(len(table[0]))[-1:]
-    chosen = counting[np.unique(np.linspace(0, len(counting) - 1, _COMPARED).round().astype(int))]
+    chosen = np.unique(np.linspace(0, len(table[0]) - 1, _COMPARED).round().astype(int))
     quarters = patch.quarters()
-    pressings = [Pressing(part, body.kernel) for part in quarters]
+    pressings = [Pressing(quarter, body.kernel) for quarter in quarters]
     part = quarters[0].within(_HALVED)
-    coarse, fine, pixel, scatter = Pressing(part, body.kernel), Pressing(part.halved(), body.kernel), 0.0, 0.0
+    coarse, fine, pixel, scatter = Pressing(part, body.kernel), Pressing(part.halved(), body.kernel), [], []
     for p in table[0, chosen]:
         rows = np.array([pressing.at(p, name) for pressing in pressings])
-        pixel = max(pixel, float(np.abs(np.log(np.divide(fine.at(p, name), coarse.at(p, name)))).max()))
-        scatter = max(scatter, float(np.log(rows[:, 1:]).std(axis=0, ddof=1).max()) / 2)
-    return {"pixel": math.expm1(pixel), "patch": math.expm1(scatter)}
+        halved = np.abs(np.log(np.divide(fine.at(p, name), coarse.at(p, name)))).max()
+        pixel.append(_OF_HALVING * np.expm1(halved))
+        scatter.append(np.expm1(np.log(rows[:, 1:]).std(axis=0, ddof=1).max() / 2))
+    places = np.log(table[0])
+    return {kind: np.interp(places, places[chosen], values) for kind, values in (("pixel", pixel), ("patch", scatter))}
 
 
-def _diameter(pressures: np.ndarray | None) -> float:
-    """Mean diameter of the spots in points: 2 √(points/(π spots))."""
+def _spots(pressures: np.ndarray | None, mirrored: bool) -> tuple[float, float]:
+    """Mean diameter of the spots in points, 2 √(points/(π spots)); and by how much their points make λ too large: those
+    at their borders count whole."""
     assert pressures is not None
     touching = pressures > 0
-    return 2 * math.sqrt(np.count_nonzero(touching) / (math.pi * max(1, label(touching)[1])))
+    points, spots = np.count_nonzero(touching), max(1, label(touching)[1])
+    edges = sum(np.count_nonzero(np.diff(touching, axis=axis)) for axis in (0, 1))
+    if not mirrored:
+        edges += sum(np.count_nonzero(touching.take(0, axis) != touching.take(-1, axis)) for axis in (0, 1))
+    return 2 * math.sqrt(points / (math.pi * spots)), 1 / max(1 - OUTSIDE * edges / points, _SHARE) - 1
 
 
 def _provenance(scan: Any, patch: Patch) -> str:
@@ -266,25 +320,38 @@ def _provenance(scan: Any, patch: Patch) -> str:
 
 
 def _about(errors: Mapping[str, float]) -> list[str]:
-    if not errors:
-        return ["the scan is too small to be compared with its quarters: the error of the law is not known"]
-    pixel, patch = (rounded(100 * errors[name]) for name in ("pixel", "patch"))
+    pixel = f"finer points change A, λ or p_max by up to {rounded(100 * errors['pixel'])} % from λ = {_COUNTS:g} on"
+    if "patch" not in errors:
+        unknown = "the scan is too small to be compared with its quarters: how much another patch differs is not known"
+        return [pixel, unknown]
+    patch = rounded(100 * errors["patch"])
     return [
-        f"halving the distance of the points changes A, λ or p_max by up to {pixel} %",
+        pixel,
         f"another patch of this size may differ by {patch} % in λ or p_max, half of the scatter of its four quarters",
     ]
 
 
-def _coarse(lam: np.ndarray, spots: np.ndarray) -> list[str]:
+def _coarse(lam: np.ndarray, diameters: np.ndarray, errors: np.ndarray) -> list[str]:
     """A sentence where spots are less than _COARSE points wide."""
-    coarse = spots < _COARSE
+    coarse = diameters < _COARSE
     if not coarse.any():
         return []
     last = lam[np.flatnonzero(coarse)[-1]]
     return [
-        f"up to λ = {last:.2g} spots span fewer than {_COARSE:g} points, {spots.min():.1f} at the least: the law has "
-        "not converged there; filter the scan with a cutoff, or give refine"
+        f"up to λ = {last:.2g} spots span fewer than {_COARSE:g} points, {diameters.min():.1f} at the least, and are "
+        f"under-resolved: λ, A or p_max are off by up to {rounded(100 * errors[coarse].max())} % there, λ mostly too "
+        "large; filter the scan with a cutoff, or give refine"
     ]
+
+
+def _beside_theory(p: np.ndarray, lam: np.ndarray, slope: float) -> tuple[str, ...]:
+    """A sentence on λ h'E*/p at a small λ on a half-space, beside two theories; none without such a row."""
+    at = int(np.argmin(np.abs(np.log(lam / _SMALL))))
+    if not _SMALL / 2 < lam[at] < 2 * _SMALL:
+        return ()
+    ratio = lam[at] * slope / p[at]
+    beside = f"{ratio / _PERSSON:.2f} times Persson's {_PERSSON:.2f}; Bush, Gibson and Thomas have 2.51"
+    return (f"λ h'E*/p is {ratio:.2f} at λ = {lam[at]:.2g}, {beside}",)
 
 
 def _on_one_line(text: str) -> str:

@@ -31,8 +31,8 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "arrays", "samples", "specimen", "inputs", "pages", "rules", "data", "derivatives"),
-        *("in_words", "files", "store", "work", "lazy", "solving", "fields", "inverse", "adhesion"),
-        *("creep", "scan_laws", "yields", "figures", "api", "catalogue", "explorer", "commands", "__main__"),
+        *("in_words", "files", "store", "work", "scan_laws", "lazy", "solving", "fields", "inverse", "adhesion"),
+        *("creep", "yields", "figures", "api", "catalogue", "explorer", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.

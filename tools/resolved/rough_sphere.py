@@ -4,8 +4,9 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from conjugate_gradients import pressed
 from influence import Layer, coefficients, convolution
+
+from solver.laws.cell.periodic import division_by, pressed_flat, response_of
 
 #: Yastrebov, Anciaux and Molinari, Tribology International 114 (2017) 161: a contact made of elements is too large by
 #: this factor times the length of its edge along the elements, times their side, if they lie on the edge at random.
@@ -33,12 +34,14 @@ class Resolved(NamedTuple):
     side: float
 
 
-def resolved(punch: Punch, P, half, points, layer: Layer | None = None, start=None, tolerance=1e-5) -> Resolved:
+def resolved(punch: Punch, P, half, points, layer: Layer | None = None, start=None, tolerance=1e-6) -> Resolved:
     """The punch pressed by P on a half-space, or on a layer on one.
 
     Square elements of constant pressure cover a square of side 2 `half`, `points` a side, not periodic; for summits of
-    one height a quarter of them is enough. conjugate_gradients.py solves it, from the pressure `start` (points,
-    points).
+    one height a quarter of them is enough. The solver of scans solves it, from the pressure `start` (points,
+    points), until the gap
+    under the pressure is within `tolerance` of the depth of a smooth sphere on a half-space. A gap is divided by the
+    waves of a half-space, as if the square were periodic; that changes the number of steps alone.
     """
     side = 2 * half / points
     middle = (np.arange(points) + 0.5) * side - half
@@ -47,7 +50,10 @@ def resolved(punch: Punch, P, half, points, layer: Layer | None = None, start=No
     displaced = convolution(coefficients(side, points, layer), even)
     x, y = np.meshgrid(middle[part], middle[part], indexing="ij")
     start = np.where(np.hypot(x, y) < 0.8 * half, 1.0, 0.0) if start is None else start[part, part]
-    D, p = pressed(displaced, height(punch, x, y), start, P / (2 * half) ** 2, tolerance)
+    mean, allowed = P / (2 * half) ** 2, tolerance * (9 * P**2 / 16) ** (1 / 3)
+    divided = division_by(response_of(x.shape, side, side, None, even), even)
+    p, D, ended = pressed_flat(height(punch, x, y), displaced, mean, start * (mean / start.mean()), allowed, divided)
+    assert ended, "conjugate gradients did not end"
     if even:
         p = np.pad(p, [(points // 2, 0)] * 2, mode="symmetric")
     return Resolved(D, p, middle, side)

@@ -10,7 +10,7 @@ import numpy as np
 
 from solver.bases import FELT, is_bare, is_chosen, is_exact, is_stack, on_springs
 from solver.laws import Law, own_table
-from solver.laws.own_table import PREFIX
+from solver.laws.own_table import OF_FILES
 from solver.laws.power_law_fit import fit_power_law
 from solver.parameters import allowed, one_of
 from solver.problem import can_feel, far_apart, feels
@@ -220,6 +220,6 @@ def _with(words: np.ndarray, name: str, values: np.ndarray) -> str:
 def _why(law: Law) -> str:
     if not law.rough:
         return "which has no asperities"
-    if law.name == "power_law" or law.name.startswith(PREFIX):
+    if law.name == "power_law" or law.name.startswith(OF_FILES):
         return "whose A[p] is given, whatever asperities press on"
     return "a law that takes no kernel of the body"

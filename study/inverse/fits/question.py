@@ -11,7 +11,7 @@ import numpy as np
 
 from solver.parameters import ends
 
-from ...inputs.definition import Definition, StudyError, from_call
+from ...inputs.definition import Definition, StudyError, from_call, refuse_scans
 from ...inputs.lexicon import Lexicon, lexicon_for
 from ...inputs.punch.shapes import ANGLES
 from ...inputs.scene.stacks import short
@@ -287,7 +287,7 @@ def _bounds(name: str, pair: Any, errors: list[str], lexicon: Lexicon) -> dict[s
 
 
 def _definition(parameters: dict, where: str) -> Definition:
-    return from_call(parameters, [], False, {"output": {"profiles": False}}, where=where)
+    return refuse_scans(from_call(parameters, [], False, {"output": {"profiles": False}}, where=where), where)
 
 
 def _check_ends(parameters: dict, bounds: dict, called: dict, lexicon: Lexicon) -> None:

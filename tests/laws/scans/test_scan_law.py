@@ -6,8 +6,10 @@ from numpy.testing import assert_allclose
 
 import study
 from solver.laws import lattice
-from study import StudyError, roughness
-from study.scan_laws.patch import patch_of
+from solver.laws.cell.periodic import waves_times
+from study import StudyError, roughness, samples
+from study.scan_laws.bodies import body_of
+from study.scan_laws.patch import Pressing, patch_of
 
 pytestmark = pytest.mark.filterwarnings("ignore:this contact is beyond what the model")
 #: A wavy surface of 32 × 32 µm, 64 × 64 points: enough for what is compared with itself.
@@ -62,7 +64,8 @@ def test_at_small_lambda_the_area_of_fine_points_is_between_them_too():
 
 def test_the_pressures_cover_the_range():
     of_scan = roughness.law(SURFACE, periodic="given", progress=False)
-    assert 0.0028 < of_scan.lam[0] < 0.0055  # 16 points and 0.6 <= of_scan.lam[-1] < 0.8
+    assert 0.7e-3 < of_scan.lam[0] < 1.4e-3  # four points, or about
+    assert 0.6 <= of_scan.lam[-1] < 0.8
     assert 10 < len(of_scan.p) < 30 and all(np.diff(values).min() >= 0 for values in (of_scan.p, of_scan.lam))
     assert of_scan.error == max(of_scan.errors.values()) and {"pixel", "patch"} == {*of_scan.errors}
     contact = study.solve(**BALL, base="half_space", micro=of_scan)
@@ -119,6 +122,19 @@ def test_spots_of_few_points_are_said():
     assert of_scan.errors["pixel"] > 0.05
 
 
+def test_a_stack_comes_to_rest():
+    """A stiff layer on a soft one, where a half of the points touches: a third of them came and went for ever."""
+    layers = [{"h": "1 um", "E1": "50 GPa", "nu": 0.2, "bonding": "bonded"}, {"h": "3 um", "E1": "2 GPa", "nu": 0.4}]
+    body = body_of({"layers": layers, "nu2": 0.3, "E2": "5 GPa"}, "law")
+    scan = roughness.read(samples.scan())
+    pressing = Pressing(patch_of(scan, "plane", None, "mirror", 1, "law").quarters()[1], body.kernel)
+    for p in (1e-3, 4e-3, 0.0122):
+        A, lam, _ = pressing.at(p)
+    assert 0.45 < lam < 0.7 and pressing.pressures.mean() == pytest.approx(0.0122)
+    gap = waves_times(pressing.pressures, pressing.response, True) + pressing.depths - A
+    assert_allclose(gap[pressing.pressures > 0], 0, atol=1e-14)
+
+
 def test_what_makes_a_period():
     """A mirrored patch is four times as large; tapered borders go to the mean; points between points change little."""
     mirrored, fine = of_surface(periodic="mirror"), of_surface(refine=2)
@@ -139,6 +155,23 @@ def test_a_map_of_the_spots():
     in_pascal = roughness.contact_map(SURFACE, "20 MPa", E1="10 GPa", periodic="given")
     assert_allclose(in_pascal.pressure, 1e10 * spots.pressure, rtol=1e-6, atol=1e-3)
     assert in_pascal.pressure.units == "Pa"
+    assert [spots.A_units, spots.p_max_units, in_pascal.p_max_units] == ["m", "E1*", "Pa"]
+
+
+def test_a_map_takes_the_modulus_of_the_body_it_is_on():
+    """n = 10 on E2* = 5 GPa/0.91; and an E1 that contradicts it is refused."""
+    E1 = 10 * 5e9 / 0.91
+    on = {"on": LAYER | {"E2": "5 GPa"}, "periodic": "given"}
+    spots = roughness.contact_map(SURFACE, "50 MPa", **on)
+    by_ratio = roughness.contact_map(SURFACE, 5e7 / E1, **on | {"on": LAYER})
+    assert_allclose(spots.pressure.mean(), 5e7, rtol=1e-12)
+    assert_allclose([spots.A, spots.lam, spots.p_max / E1], [by_ratio.A, by_ratio.lam, by_ratio.p_max], rtol=1e-6)
+    assert spots.pressure.units == "Pa" and by_ratio.p_max_units == "E1*"
+    stiff = {"E_punch": "20 GPa", "nu_punch": 0.2}
+    felt = roughness.contact_map(SURFACE, "50 MPa", **on | {"on": on["on"] | stiff})
+    assert_allclose(felt.pressure.mean(), 5e7, rtol=1e-12)
+    with pytest.raises(ValueError, match=r"E1 = '20 GPa', but `on` has E1\* = 5.49\d*e\+10 Pa: leave E1 out"):
+        roughness.contact_map(SURFACE, "50 MPa", E1="20 GPa", **on)
 
 
 @pytest.mark.parametrize(
@@ -154,6 +187,7 @@ def test_a_map_of_the_spots():
         (lambda: of_surface(on={"R": "2 mm"}), "on has R"),
         (lambda: of_surface(on="DLC"), "dictionary"),
         (lambda: roughness.contact_map(SURFACE, "2 MPa"), "give E1"),
+        (lambda: roughness.contact_map(SURFACE, "2 MPa", on=LAYER), "or moduli in `on`"),
         (lambda: roughness.contact_map(SURFACE, 0), "p = 0"),
         (lambda: roughness.self_affine((64, 64), 1e-6, hurst=2, rms=1e-8), "hurst"),
         (lambda: roughness.self_affine((64, 8), 1e-6, hurst=1, rms=1e-8), "shape"),

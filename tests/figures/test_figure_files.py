@@ -172,7 +172,7 @@ def test_what_is_no_name_is_none(text):
 
 
 WRONG = {
-    "no Python": ("def (", "studies/figures.py: is no Python: line 1: ", 2),
+    "no Python": ("def (", "studies/figures.py: is not valid Python: line 1: ", 2),
     "raises": (HEAD + "raise ValueError('of mine')\n" + figure("radius"),
                "studies/figures.py: cannot be run: ValueError: of mine; -v before the command shows where", 1),
     "lacks a module": (HEAD + "import no_such_module\n" + figure("radius"),
@@ -199,7 +199,7 @@ def test_all_tells_of_a_file_that_is_no_python(monkeypatch, capsys):
     put("studies/figures.py", "def (")
     monkeypatch.setattr("study.figures.figure_files.book_files", list)
     assert main(["plot", "all"]) == 2
-    assert "studies/figures.py: is no Python: line 1: " in capsys.readouterr().err
+    assert "studies/figures.py: is not valid Python: line 1: " in capsys.readouterr().err
 
 
 def test_it_is_drawn_again_when_its_code_or_data_change():

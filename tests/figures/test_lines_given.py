@@ -36,7 +36,7 @@ def test_lengths_of_nanometres_are_told_apart():
     axes = study.plot(found, "P", "a", h="3 nm").axes
     assert len(axes) == 1 and len(axes[0].lines) == 2, "a dotted line below a solid one"
     np.testing.assert_allclose(axes[0].lines[1].get_ydata(), 1e9 * found.a.sel(h=3e-9), rtol=1e-12)
-    with pytest.raises(study.StudyError, match="h = 4 nm is not there"):
+    with pytest.raises(study.StudyError, match="h = 4 nm is not among these results"):
         study.plot(found, "P", "a", h="4 nm")
     cases = study.solve(**film, P="1 uN", cases=[{"h": "2 nm"}, {"h": "3 nm"}])
     assert float(pick(cases, h=3e-9).h) == 3e-9

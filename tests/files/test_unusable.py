@@ -75,7 +75,7 @@ def test_what_is_none_of_ours_is_said_and_kept(opened, file, spoil, capsys):
         assert f"{path}: {STRANGE[spoil]}" in said and "--force" not in said and "outdated" not in said
     assert main(["status", *where]) == 0
     assert f"  foreign  \n    {path}: {STRANGE[spoil]}" in capsys.readouterr().out
-    with pytest.raises(study.StudyError, match="is no file|another program"):
+    with pytest.raises(study.StudyError, match="is not a file|another program"):
         opened.open()
     assert (path.lstat().st_ino, path.lstat().st_mtime_ns) == (before.st_ino, before.st_mtime_ns)
 

@@ -176,7 +176,7 @@ def test_a_file_of_another_program_besides_is_named_and_never_removed(folder, ca
     for command in (["run"], ["run", "--force"], ["verify"], ["table"], ["plot", "--x", "P", "--y", "a"]):
         assert main([*command, "mine.toml"]) in (1, 2)
         assert path.name in capsys.readouterr().err
-    with pytest.raises(study.StudyError, match="notes.nc: is a netCDF file of another program|notes.nc: is no part"):
+    with pytest.raises(study.StudyError, match="notes.nc: is a netCDF file of another program|notes.nc: is not a part"):
         study.open_results(folder)
     assert path.read_bytes() == before
     path.unlink()

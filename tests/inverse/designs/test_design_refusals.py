@@ -36,7 +36,7 @@ TARGET, BY = {"p0": "20 MPa"}, {"h": ("1 um", "1 mm")}
         (TARGET, ["h"], {}, "by = ['h']: give exactly one input with two bounds"),
         (TARGET, BY | {"E1": ("1 GPa", "2 GPa")}, {}, "give exactly one input with two bounds"),
         (TARGET, {"bonding": ("bonded", "frictionless")}, {}, "by: bonding is not a number of the contact"),
-        (TARGET, {"rtol": (1e-6, 1e-3)}, {}, "by: rtol is no number of the contact"),
+        (TARGET, {"rtol": (1e-6, 1e-3)}, {}, "by: rtol is not a number of the contact"),
         (TARGET, {"thickness": ("1 um", "1 mm")}, {}, 'by: "thickness" is not a parameter; the thickness of the layer'),
         (TARGET, {"P": ("1 N", "2 N")}, {}, "P is both given and searched for (by): leave one of them out"),
         (TARGET, {"D": ("1 um", "2 um")}, {"h": "1 um"}, "exactly one of P, a, D must be given, not P and D"),

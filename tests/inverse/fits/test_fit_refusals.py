@@ -14,7 +14,7 @@ WRONG = [
     ({"free": []}, ["free: name at least one input"]),
     ({"free": None}, ["free = None", "must be names of inputs"]),
     ({"free": 5}, ["free = 5", "must be names of inputs"]),
-    ({"free": ["E1", "E1"]}, ["E1 stands twice"]),
+    ({"free": ["E1", "E1"]}, ["E1 is named twice"]),
     ({"free": ["E3"]}, ['"E3" is not an input that can be fitted']),
     ({"free": ["D0"]}, ['"D0" is not an input that can be fitted']),
     ({"free": ["rtol"]}, ['"rtol" is not an input that can be fitted']),

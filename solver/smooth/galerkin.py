@@ -105,7 +105,7 @@ def respond(shape, body, a, by_recurrence=False):
     """:class:`Response` of B shapes on a body at radii a (B,); NaN where a is NaN.
 
     by_recurrence : the functions of a table that no process has made yet are, which takes a thirtieth of the time; the
-        last bits are others (tests/smooth/test_products.py)
+        last bits are others (tests/smooth/test_wave_functions.py)
     """
     if body.kernel is None:
         return _on_half_space(shape, body, a)

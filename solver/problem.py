@@ -64,17 +64,15 @@ class Problem:
     flat_radius, tip_radius, edge_radius : radius of the flat part around the axis, of a round tip, of a round edge
     tip = "paraboloid" : the round tip of a "blunt_cone"; or "sphere"
     shape_power, shape_coefficient : k and c of f/R = c (r/R)^k
-    table_unit : the length that 1 stands for in a table of a shape; R if it is not given
-    w_adhesion = 0 : work of adhesion of smooth punches, in the unit of E2 R. The load and the depth may then be
-        negative
+    table_unit : the length that 1 stands for in a table of a shape; R by default
+    w_adhesion = 0 : work of adhesion of smooth punches, in the unit of E2 R; load and depth may then be negative
     adhesion = "jkr" : attraction only at the edge; "dmt", only outside the contact; "maugis", with the stress `sigma0`
         or the range `z0` = w_adhesion/(0.97 sigma0)
     branch = "stable" : of two states with the same load or depth, the one with the larger radius; or "unstable"
-    k_machine : stiffness of the machine that holds the punch, in the unit of E2 R. If it is not given, it is 0 (a dead
-        load) when P or a is given, and infinite when D is
-    scheme = "newton" : Newton's method; "picard", the paper's successive approximations, Eqs (8) and (10), which are
-        for asperities: a smooth case with this scheme is not solved
-    k = 1 : relaxation of the successive approximations
+    k_machine : stiffness of the machine that holds the punch, in the unit of E2 R; by default 0 (a dead load) when P or
+        a is given, and infinite when D is
+    scheme = "newton" : Newton's method; "picard", the paper's successive approximations, Eqs (8) and (10), which solve
+        no smooth case; k = 1 : their relaxation
     rtol = 1e-6 : largest allowed relative error of a, P, D, p0, p_max, Ar_An
     nodes = 0 : number of nodes; 0: chosen by `rtol`
     max_iterations = 0 : most steps on a mesh, or approximations at one radius; 0: the limit of the scheme

@@ -1,4 +1,4 @@
-"""``solve(problem, x) -> Solution``: each case is solved by the cheapest way for it."""
+"""`solve` and `solve_at_radii`: each case is solved by the cheapest way for it, or without its pull-off."""
 
 from dataclasses import replace
 
@@ -17,11 +17,15 @@ from .models.sublayers import solve_graded
 from .models.table_ends import beyond_table
 from .numerics.threads import one_blas_thread
 from .problem import Problem
-from .scaling import dimensionless, refused
+from .scaling import dimensionless, refused, restore, with_a_stiff_base, with_rigid_punch
 from .shapes import shaped
+from .smooth.contact import kinds_of, sticking
 from .solution import Solution
 from .status import Status
 from .ways import unfit
+
+#: Contacts whose error is above this are solved with their pull-off, in whose terms errors are then.
+_SURE = 1e-6
 
 
 @one_blas_thread()
@@ -104,3 +108,26 @@ def _solved(problem, x, extrapolate):
     profiles = {name: getattr(solution, name)[:, : len(x)] for name in ("p", "lam")}
     value = problem.value * 1.0  # exactly as given, even if a case is refused
     return replace(solution, **profiles, **{problem.control: value})
+
+
+@one_blas_thread()
+@np.errstate(all="ignore")
+def solve_at_radii(problem: Problem, x: np.ndarray) -> Solution:
+    """The :class:`Solution` of smooth contacts with w > 0 given by their radii, at the radii x (m,); P_off, D_off,
+    a_off, P_in, a_in are 0, and `stable` is True. Graded layers, and contacts that lose their digits, have all
+    numbers, and take as long as by :func:`~solver.solve.solve`."""
+    if problem.control != "a" or not (problem.w_adhesion > 0).all() or problem.rough().any():
+        raise ValueError("for smooth contacts with adhesion that are given by their radii")
+    problem = problem.but(base=named(problem.base))
+    if is_graded(problem).any():
+        return solve(problem, x)
+    rigid = with_a_stiff_base(with_rigid_punch(problem))
+    part, size = dimensionless(rigid), (len(problem), len(x))
+    pieces = [(index, sticking(part.take(index), x, ends=False)) for index in kinds_of(part)]
+    solution = restore(Solution.join(*size, pieces), rigid)
+    sure = (solution.status == Status.CONVERGED) & (solution.error <= _SURE) | (solution.status == Status.OUTSIDE_LAW)
+    rest = np.flatnonzero(~sure)
+    if not len(rest):
+        return solution
+    pieces = [(np.flatnonzero(sure), solution.take(sure)), (rest, solve(problem.take(rest), x))]
+    return Solution.join(*size, pieces)

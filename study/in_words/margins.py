@@ -10,9 +10,7 @@ import numpy as np
 from solver import Problem, solve
 from solver.bases import is_bare
 from solver.closed_forms import yield_pressure
-from solver.kernels.two_layers import layer_modulus
 from solver.shapes import ROUND
-from solver.yields import spots
 from solver.yields.below import central_spot
 from solver.yields.below.central_spot import SPOT_EXTREMES
 from solver.yields.contact import of_contacts
@@ -21,18 +19,17 @@ from solver.yields.similar.under_load import extremes_at, radius_under
 from solver.yields.similar.unit_contacts import are_similar
 
 from ..arrays import xarray_later as xr
-from ..data.body_strengths import known_strengths, layer_strengths, strengths
+from ..data.body_strengths import known_strengths, layer_strengths
 from ..data.contacts import Contacts
 from ..data.dataset import flag_words
 from ..inputs.definition import StudyError
 from ..inputs.vocabulary import bodies_of
 from ..rules.assumptions import FEW_SPOTS
-from ..rules.yield_bounds import stress_below_one
 from ..specimen import materials
 from ..specimen.quantities import readable
 from ..terminal import rounded
 from .stated_inputs import is_rigid
-from .stress_lines import in_stacks, of_interfaces, strengths_of_layer, which_of_stacks
+from .stress_lines import at_asperities, below_spots, in_stacks, of_interfaces, strengths_of_layer
 
 #: Modulus in Pa below which a material is a rubber or a gel (nearly always nu = 0.5), which tears and does not yield.
 RUBBER = 1e8
@@ -51,8 +48,6 @@ _OWN_LAW = (
     "The law of the asperities does not give the stress below them: it is taken to be that below a sphere, "
     "(pmax - p(0))/{q:.3g}."
 )
-#: Depth at which a body first yields below a sphere, in the radius of the contact (nu = 0.3).
-_DEEP = 0.48
 _SPOTS, _PUNCH = "of spots", "of the punch"
 
 
@@ -186,7 +181,7 @@ def _stresses(limits: list[_Limit], problem: Problem, solution: Any, case: xr.Da
         nu = np.array([_nu_punch(case)])
         stresses[_PUNCH] = of_contacts(problem, solution, names=("mises2",), punch=nu)["mises2"]
     if any(limit.stress == _SPOTS for limit in limits):
-        stresses[_SPOTS] = _of_spots(problem, solution)
+        stresses[_SPOTS] = below_spots(problem, solution)
     return [(limit, *stresses[limit.stress][:, 0].tolist()) for limit in limits]
 
 
@@ -203,32 +198,11 @@ def _nu_punch(case: xr.Dataset) -> float:
     return float(case["nu_punch"]) if "nu_punch" in case else 0.3
 
 
-def _of_spots(problem: Problem, solution: Any) -> np.ndarray:
-    """(3, 1): the stress below a spot, and its place. A law without a radius has the stress of a sphere under the same
-    pressure, on the surface. On a half-space it is at most that of one asperity that bears the whole load."""
-    stress, E, nu = spots.of_contacts(problem, solution), *_below(problem)
-    below = stress_below_one(solution.P, E, problem.Ra, nu)
-    if np.isnan(stress[0, 0]):
-        largest = np.fmax(solution.p_max[0], solution.p_spot[0])
-        stress[:, 0] = (largest - solution.p0[0]) / yield_pressure(nu)[0], 0.0, 0.0
-    elif below[0] < stress[0, 0] and not problem.feels_layer()[0]:
-        b = np.cbrt(3 * solution.P[0] * problem.Ra[0] / (4 * E[0]))
-        stress[:, 0] = below[0], 0.0, _DEEP * b / solution.a[0]
-    return stress
-
-
-def _below(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
-    """The modulus below the asperities, in series with the punch, and the Poisson ratio below them."""
-    bare = is_bare(problem.base)
-    E = np.where(bare, 1.0, layer_modulus(problem.n)) / (1 + problem.m)
-    return E * problem.E2, np.where(bare, problem.nu2, problem.nu1)
-
-
 def _of_own_law(contact: Contacts, said: list[str]) -> list[str]:
     """A sentence on asperities for which only pmax is known, if other sentences are about them."""
     if np.isfinite(contact.problem.Ra[0]) or not any("asperities" in text for text in said):
         return []
-    return [_OWN_LAW.format(q=float(yield_pressure(_below(contact.problem)[1])[0]))]
+    return [_OWN_LAW.format(q=float(yield_pressure(at_asperities(contact.problem)[1])[0]))]
 
 
 def _flowing(case: xr.Dataset) -> list[str]:
@@ -238,26 +212,6 @@ def _flowing(case: xr.Dataset) -> list[str]:
     share = 100 * float(case["plastic_share"])
     yielded = f"The asperities have yielded on {rounded(share)} % of the nominal contact area."
     return [yielded if share else "No asperity yields."]
-
-
-def which_yields(dataset: xr.Dataset) -> str:
-    """Whether the layer or the body yields, in the contacts in which one of them does."""
-    flags = dataset["validity"].values.ravel() & 512
-    try:
-        contacts = Contacts.of(dataset, "summary")
-    except StudyError:  # such as for a mean
-        return ""
-    some, known = np.flatnonzero(flags), strengths(contacts, {})
-    if layers := layer_strengths(contacts, {}):
-        return which_of_stacks(contacts, some, layers, known["body"])
-    if not any(np.isfinite(known[body]).any() for body in ("layer", "body")) or contacts.without_stresses():
-        return ""
-    problem = contacts.problem.take(some)
-    stress, parts = of_contacts(problem, solve(problem), names=("mises1", "mises2")), []
-    for body, name in (("layer", "mises1"), ("body", "mises2")):
-        count = int((stress[name][0] > known[body][some]).sum())
-        parts += [f"the {body} yields in {count} of them" if len(flags) > 1 else f"the {body} yields"] * bool(count)
-    return f"{_capital(', '.join(parts))}." if parts else ""
 
 
 def _radius(contact: Contacts) -> float:
@@ -349,7 +303,7 @@ def _at_which_load(looked: _Looked, first: _Compared, case: xr.Dataset) -> list[
     who, verb, begin = limit.who, limit.verb, "begin" if limit.plural else "begins"
     if limit.stress != _SPOTS or not (touching := _spots_of(looked.problem, solution)) < FEW_SPOTS:
         return [f"At about {text} {who} {begin} to {verb}." if share > 1 else f"{who} would {verb} at about {text}."]
-    E, nu = _below(looked.problem)
+    E, nu = at_asperities(looked.problem)
     alone = (np.pi * limit.strength * yield_pressure(nu)[0]) ** 3 * looked.problem.Ra[0] ** 2 / (6 * E[0] ** 2)
     if abs(P / alone - 1) < 3 * _SAME:
         return [f"One asperity alone {'begins to yield' if share > 1 else 'would yield'} at about {text}."]

@@ -30,9 +30,10 @@ from ..rules import rule
 from ..rules.rule import RULES, broken, have, of_cases
 from ..terminal import rounded
 from .influence import influence
-from .margins import RUBBER, holds, which_yields
+from .margins import RUBBER, holds
 from .notes import of_adhesion, of_scan, of_shape, presses_on, sticks, unit_of_length
 from .pressures import largest_of_all
+from .stress_lines import which_yields
 
 #: A contact is far outside the model if it exceeds the limit of an assumption by this factor. The estimate is right to
 #: about the same factor: among 300 random contacts within all limits it puts none far outside, and among 300 that

@@ -7,14 +7,21 @@ from typing import Any
 import numpy as np
 
 from solver import Problem, solve
-from solver.bases import is_stack
+from solver.bases import is_bare, is_stack
+from solver.closed_forms import yield_pressure
+from solver.kernels.two_layers import layer_modulus
+from solver.yields import contact as yields
+from solver.yields import spots
 from solver.yields.stacked.largest import DIMENSION, EXTREMES, of_contacts
 
 from ..arrays import xarray_later as xr
+from ..data.body_strengths import layer_strengths, strengths
 from ..data.contacts import Contacts
 from ..data.dataset import flag_words
+from ..inputs.definition import StudyError
 from ..inputs.vocabulary import VOCABULARY, name_in_stack
 from ..rules.rule import RULES
+from ..rules.yield_bounds import stress_below_one
 from ..specimen import materials
 from ..specimen.quantities import readable
 from .numbers import given_text, in_its_unit, spread_of
@@ -22,6 +29,8 @@ from .stated_inputs import is_rigid
 
 MOST_CASES = 20  # number of cases of a grid that are written out
 _BODIES = {"Y1": "layer", "Y2": "body", "Ya": "asperities", "Y_punch": "punch"}
+#: Depth at which a body first yields below a sphere, in the radius of the contact (nu = 0.3).
+_DEEP = 0.48
 _ANY_LOAD = "yields under any load: below a sharp tip or corner the stress is infinite"
 
 
@@ -225,6 +234,26 @@ def of_interfaces(contact: Contacts, problem: Problem, solution: Any) -> list[st
     return [f"The {', the '.join(parts)}."] if parts else []
 
 
+def which_yields(dataset: xr.Dataset) -> str:
+    """Whether the layer or the body yields, in the contacts in which one of them does."""
+    flags = dataset["validity"].values.ravel() & 512
+    try:
+        contacts = Contacts.of(dataset, "summary")
+    except StudyError:  # such as for a mean
+        return ""
+    some, known = np.flatnonzero(flags), strengths(contacts, {})
+    if layers := layer_strengths(contacts, {}):
+        return which_of_stacks(contacts, some, layers, known["body"])
+    if not any(np.isfinite(known[body]).any() for body in ("layer", "body")) or contacts.without_stresses():
+        return ""
+    problem = contacts.problem.take(some)
+    stress, parts = yields.of_contacts(problem, solve(problem), names=("mises1", "mises2")), []
+    for body, name in (("layer", "mises1"), ("body", "mises2")):
+        count = int((stress[name][0] > known[body][some]).sum())
+        parts += [f"the {body} yields in {count} of them" if len(flags) > 1 else f"the {body} yields"] * bool(count)
+    return f"{_capital(', '.join(parts))}." if parts else ""
+
+
 def which_of_stacks(contacts: Contacts, some: np.ndarray, layers: list, body: np.ndarray) -> str:
     """A sentence on the layer of stacks, or the body, that yields in `some` contacts.
 
@@ -241,11 +270,35 @@ def which_of_stacks(contacts: Contacts, some: np.ndarray, layers: list, body: np
         count = int((stress > limit).sum())
         where = f" in {count} of them" * (contacts.problem.shape.size > 1)
         parts += [f"{name} yields{where}"] * bool(count)
-    text = ", ".join(parts)
-    return f"{text[0].upper()}{text[1:]}." if parts else ""
+    return f"{_capital(', '.join(parts))}." if parts else ""
 
 
 def _in_pascal(contact: Contacts, value: float) -> str:
     if not contact.scene:
         return f"{value:.2g} E2*"
     return readable(float(f"{value * contact.units[0].item():.2g}"), "Pa")
+
+
+def at_asperities(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
+    """The modulus below the asperities, in series with the punch, and the Poisson ratio below them."""
+    bare = is_bare(problem.base)
+    E = np.where(bare, 1.0, layer_modulus(problem.n)) / (1 + problem.m)
+    return E * problem.E2, np.where(bare, problem.nu2, problem.nu1)
+
+
+def below_spots(problem: Problem, solution: Any) -> np.ndarray:
+    """(3, 1): the stress below a spot, and its place. A law without a radius has the stress of a sphere under the same
+    pressure, on the surface. On a half-space it is at most that of one asperity that bears the whole load."""
+    stress, E, nu = spots.of_contacts(problem, solution), *at_asperities(problem)
+    below = stress_below_one(solution.P, E, problem.Ra, nu)
+    if np.isnan(stress[0, 0]):
+        largest = np.fmax(solution.p_max[0], solution.p_spot[0])
+        stress[:, 0] = (largest - solution.p0[0]) / yield_pressure(nu)[0], 0.0, 0.0
+    elif below[0] < stress[0, 0] and not problem.feels_layer()[0]:
+        b = np.cbrt(3 * solution.P[0] * problem.Ra[0] / (4 * E[0]))
+        stress[:, 0] = below[0], 0.0, _DEEP * b / solution.a[0]
+    return stress
+
+
+def _capital(text: str) -> str:
+    return text[0].upper() + text[1:]

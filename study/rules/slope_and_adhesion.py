@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from solver.at_radii import solve_at_radii
 from solver.bases import is_bare
 from solver.shapes import PARABOLOID
+from solver.solve import solve_at_radii
 
 from .rule import rule
 from .strength import problem_of

@@ -65,13 +65,13 @@ def contact_map(
     patch = patch_of(scan, form, cutoff, periodic, refine, "contact_map")
     pressing = Pressing(patch, body.kernel)
     A, lam, p_max = pressing.at(load * (1 + body.m), scan.name)
-    modulus = unit / (1 + body.m)
+    unit_of_pressure = unit / (1 + body.m)
     y, x = (np.arange(count) * step for count, step in zip(patch.z.shape, patch.steps, strict=True))
     pressure, of_gap = {"long_name": "pressure"}, {"long_name": "gap", "units": "m"}
     pressure |= {"units": "Pa"} if modulus else {"long_name": "pressure, p/E1*"}
     return xr.Dataset(
         {
-            "pressure": (("y", "x"), pressing.pressures * modulus, pressure),
+            "pressure": (("y", "x"), pressing.pressures * unit_of_pressure, pressure),
             "gap": (("y", "x"), pressing.gap(A), of_gap),
         },
         {"y": ("y", y, {"units": "m"}), "x": ("x", x, {"units": "m"})},
@@ -79,7 +79,7 @@ def contact_map(
             "A": A,
             "A_units": "m",
             "lam": lam,
-            "p_max": p_max * modulus,
+            "p_max": p_max * unit_of_pressure,
             "p_max_units": "Pa" if modulus else "E1*",
             "scan": scan.name,
             "treatment": patch.treatment,

@@ -22,10 +22,8 @@ from .scan_texts import NumberTable, table_of, text_of
 
 #: Endings of files that are read here if they are text, and otherwise by SurfaceTopography.
 TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".xyz", ".prf", ".smd", ".sdf", ".gz", "")
-#: Arguments that override what a file states.
-_LENGTHS = ("unit", "height_unit", "dx", "dy")
-#: Parts of the names of channels in a force curve, in lower case.
-_FORCE = ("defl", "zsnsr", "lvdt", "raw", "force")
+_LENGTHS = ("unit", "height_unit", "dx", "dy")  # arguments that override what a file states
+_FORCE = ("defl", "zsnsr", "lvdt", "raw", "force")  # parts of the names of channels in a force curve, in lower case
 _NO_LENGTHS = (
     "the file states no distance of its points: give dx (and dy) and unit, and height_unit if heights have another"
 )

@@ -5,8 +5,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solver import Problem, solve
-from solver.at_radii import solve_at_radii
 from solver.smooth.adhesion import adhesive
+from solver.solve import solve_at_radii
 
 USUAL = {"a": [0.01, 0.05, 0.2], "w_adhesion": 1e-5, "micro": "smooth"}
 X = np.array([0.0, 0.4, 0.9])

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...scaling import dimensionless
-from .unit_contacts import Solved, unit_contacts
+from .unit_contacts import AtUnitRadius, unit_contacts
 
 #: Newton's steps to the radius of a load, in ln a; one below _SAME is the last. They are 3 to 5.
 _STEPS, _SAME = 30, 1e-12
@@ -34,7 +34,7 @@ def extremes_at(problem, a, names, punch=None):
     punch : (B,), Poisson ratios of the punches, if the stresses are those of the punch
     """
     scaled = dimensionless(problem)
-    contact = Solved.of(scaled.but(h=scaled.h / (a / problem.R)))
+    contact = AtUnitRadius.of(scaled.but(h=scaled.h / (a / problem.R)))
     lost, scale = contact.tensile(), problem.E2 * a / problem.R
     made = contact.largest(names, 0.0, punch)
     for values in made.values():

@@ -67,14 +67,14 @@ class Sought(NamedTuple):
         return "mises1" if self.body == "layer" else "mises2"
 
 
-def are_similar(problem, farthest):
-    """(B,) bool: the cases of which this room has the stresses up to the radius `farthest` (B,), in R."""
+def are_similar(problem, radius):
+    """(B,) bool: the cases of which this room has the stresses up to a contact radius (B,), in R."""
     one_layer = is_exact(problem.base) & ~is_stack(problem.base) & (problem.scheme == "newton")
     some = one_layer & ~problem.rough() & ~shaped(problem) & ~(problem.w_adhesion > 0)
     index = np.flatnonzero(some)
     if len(index):
         scaled = dimensionless(problem.take(index))
-        some[index] = ~refused(problem.take(index), scaled) & (scaled.h > THINNEST * farthest[index])
+        some[index] = ~refused(problem.take(index), scaled) & (scaled.h > THINNEST * radius[index])
     return some
 
 
@@ -91,7 +91,7 @@ def unit_contacts(scaled, t, sought=None, punch=None, coarse=False):
     made = UnitContacts(*np.full((7, len(t)), np.nan))
     for first in range(0, len(t), _TOGETHER):
         some = np.arange(first, min(first + _TOGETHER, len(t)))
-        contact = Solved.of(scaled.take(some).but(h=t[some]))
+        contact = AtUnitRadius.of(scaled.take(some).but(h=t[some]))
         for values, column in zip(made, contact.numbers(), strict=False):
             values[some] = column
         if sought is not None:
@@ -103,7 +103,7 @@ def unit_contacts(scaled, t, sought=None, punch=None, coarse=False):
     return made
 
 
-class Solved(NamedTuple):
+class AtUnitRadius(NamedTuple):
     """Contacts at a = R, in units R = E2* = 1, with their :class:`~solver.smooth.galerkin.Response`."""
 
     problem: Problem

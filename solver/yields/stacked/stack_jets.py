@@ -12,9 +12,9 @@ _STEP = 1e-4
 class StackJets:
     """Of a :class:`~...fields.stacks.section.Section`; the waves are formed when a point first needs them."""
 
-    def __init__(self, section):
-        self.section, self._rules = section, {}
-        self.loads = loads_of(section.mu)
+    def __init__(self, fields):
+        self.section, self._rules = fields, {}
+        self.loads = loads_of(fields.mu)
 
     def __call__(self, region, case, side, root, u, v):
         """Jets (6, 4, P) at points of a region: the number of the layer, from 0, or of the body, and "inside" or
@@ -63,16 +63,16 @@ class StackJets:
         return self._rules[far]
 
 
-def _at_their_depth(section, jets, number, sublayers, z):
+def _at_their_depth(contact, jets, number, sublayers, z):
     """The jets (6, 2, P) of sr and st in a graded layer, from those (6, 4, P) of its sublayers."""
-    tops = np.append(0.0, section.ends)
+    tops = np.append(0.0, contact.ends)
     least, most = tops[number], tops[number + 1]
     step = _STEP * (most - least)
     middle = np.clip(z, least + step, most - step)
     low, here, high = (
-        np.array(section.of_depth(number, sublayers, depth)) for depth in (middle - step, z, middle + step)
+        np.array(contact.of_depth(number, sublayers, depth)) for depth in (middle - step, z, middle + step)
     )
-    centre = np.array(section.of_depth(number, sublayers, middle))
+    centre = np.array(contact.of_depth(number, sublayers, middle))
     second = (high - 2 * centre + low) / step**2
     first = (high - low) / (2 * step) + second * (z - middle)
     sr, st, sz = jets[:, 0], jets[:, 1], jets[:, 2]

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from solver import Problem, Solution, Status, solve
-from solver.at_radii import solve_at_radii
+from solver.solve import solve_at_radii
 
 from ...arrays.labelled import Labelled
 from ...data.dataset import validity_of_rows

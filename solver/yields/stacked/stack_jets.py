@@ -12,9 +12,9 @@ _STEP = 1e-4
 class StackJets:
     """Of a :class:`~...fields.stacks.section.Section`; the waves are formed when a point first needs them."""
 
-    def __init__(self, fields):
-        self.section, self._rules = fields, {}
-        self.loads = loads_of(fields.mu)
+    def __init__(self, stacked):
+        self.stacked, self._rules = stacked, {}
+        self.loads = loads_of(stacked.mu)
 
     def __call__(self, region, case, side, root, u, v):
         """Jets (6, 4, P) at points of a region: the number of the layer, from 0, or of the body, and "inside" or
@@ -23,25 +23,25 @@ class StackJets:
         case : (P,), 0; side, root : (P,), on which side, and whether u is that of the surface next to the edge
         u, v : (P,)
         """
-        section, (number, part) = self.section, region
+        stacked, (number, part) = self.stacked, region
         r = np.where(root, np.sqrt(np.maximum(1 - u * np.abs(u), 0.0)), u)
         on_top, outside = part in ("inside", "outside"), part == "outside"
-        sublayers = section.region_of(v, np.full(len(v), number))
-        near = on_top | ((sublayers == 0) & (v < NEAR * section.h[0]))
-        nu, fields = section.stack.poisson[:, 0], {}
+        sublayers = stacked.region_of(v, np.full(len(v), number))
+        near = on_top | ((sublayers == 0) & (v < NEAR * stacked.h[0]))
+        nu, fields = stacked.stack.poisson[:, 0], {}
         for load in self.loads:
             whole = self._of_waves(load, sublayers, near, r, v)
             if on_top:
                 whole = along(whole, r, u, root, outside)
-                whole += of_surface(load, section.pressure, nu, case, u, root, outside)
+                whole += of_surface(load, stacked.pressure, nu, case, u, root, outside)
             elif near.any():
                 here = case[near], nu[case[near]], r[near], np.maximum(v[near], LEAST)
-                whole[..., near] += load.in_closed_form(section.pressure, *here)
-            fields |= load.fields(whole, section.mu)
-        made = stresses_of(fields, section.mu, section.signs, side)
-        if section.is_graded(number):
-            made[:, :2] = _at_their_depth(section, made, number, sublayers, v)
-        made[0, :2] += np.append(section.residual, 0.0)[number]
+                whole[..., near] += load.in_closed_form(stacked.pressure, *here)
+            fields |= load.fields(whole, stacked.mu)
+        made = stresses_of(fields, stacked.mu, stacked.signs, side)
+        if stacked.is_graded(number):
+            made[:, :2] = _at_their_depth(stacked, made, number, sublayers, v)
+        made[0, :2] += np.append(stacked.residual, 0.0)[number]
         return made
 
     def _of_waves(self, load, sublayers, near, r, v):
@@ -56,23 +56,23 @@ class StackJets:
 
     def _reaching(self, far):
         if far not in self._rules:
-            section = self.section
+            stacked = self.stacked
             tractions = [load.traction for load in self.loads]
             reach = REACHES[far] - 1
-            self._rules[far] = stack_points(section.stack, section.h, section.pressure, reach, NEAR, tractions)
+            self._rules[far] = stack_points(stacked.stack, stacked.h, stacked.pressure, reach, NEAR, tractions)
         return self._rules[far]
 
 
-def _at_their_depth(contact, jets, number, sublayers, z):
+def _at_their_depth(stacked, jets, number, sublayers, z):
     """The jets (6, 2, P) of sr and st in a graded layer, from those (6, 4, P) of its sublayers."""
-    tops = np.append(0.0, contact.ends)
+    tops = np.append(0.0, stacked.ends)
     least, most = tops[number], tops[number + 1]
     step = _STEP * (most - least)
     middle = np.clip(z, least + step, most - step)
     low, here, high = (
-        np.array(contact.of_depth(number, sublayers, depth)) for depth in (middle - step, z, middle + step)
+        np.array(stacked.of_depth(number, sublayers, depth)) for depth in (middle - step, z, middle + step)
     )
-    centre = np.array(contact.of_depth(number, sublayers, middle))
+    centre = np.array(stacked.of_depth(number, sublayers, middle))
     second = (high - 2 * centre + low) / step**2
     first = (high - low) / (2 * step) + second * (z - middle)
     sr, st, sz = jets[:, 0], jets[:, 1], jets[:, 2]

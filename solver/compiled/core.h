@@ -1,7 +1,7 @@
-/* The compiled core: Newton's method for many cases at once, and the loads of curves that stick. The numpy path (solver/rough) is its reference, and says
-   what is computed and why. Here each case has a lane of a vector and meets no number of another case: so it has the
-   same bits in any company. The files sse2.c, avx2.c and avx512.c compile this for their vectors of W numbers; Python
-   takes the widest that the processor has (solver/compiled/library.py). */
+/* The compiled core: Newton's method for many cases at once, and the loads of curves with adhesion. The numpy path
+   (solver/rough) is its reference, and says what is computed and why. Here each case has a lane of a vector and meets
+   no number of another case: so it has the same bits in any company. The files sse2.c, avx2.c and avx512.c compile this
+   for their vectors of W numbers; Python takes the widest that the processor has (solver/compiled/library.py). */
 #include "batch.h"
 #include <stdlib.h>
 #include <string.h>

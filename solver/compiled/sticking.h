@@ -45,7 +45,9 @@ static inline int64_t last_turn(const double *slope, int64_t length, int64_t non
     for (int64_t j = length - 2; j >= 0; j--) if (slope[j] < 0 && slope[j + 1] >= 0) return j;
     return none;
 }
-static inline void put(double *out, int64_t place, V x, int count) { for (int l = 0; l < count; l++) out[place + l] = x[l]; }
+static inline void put(double *out, int64_t place, V x, int count) {
+    for (int l = 0; l < count; l++) out[place + l] = x[l];
+}
 static void put_loads(const Sticking *s, const Loads *out, int64_t curve, int64_t point, int count, I cell, V t, V P,
                       V slope, const V *of_parts, int parts) {
     int64_t place = curve * s->points + point, all_points = s->curves * s->points;
@@ -99,7 +101,8 @@ static void sticking_loads(const Sticking *s, const double *row, const double *r
     put_loads(s, &s->sticks, curve, point, count, cell, t, load, slope, of_parts, 4);
 }
 static void of_curve(const Sticking *s, int64_t curve) {
-    double f[4][MOST_LENGTH], rising[MOST_LENGTH], of_depth[MOST_LENGTH], of_load[MOST_LENGTH], deepest = -__builtin_inf();
+    double f[4][MOST_LENGTH], rising[MOST_LENGTH], of_depth[MOST_LENGTH], of_load[MOST_LENGTH];
+    double deepest = -__builtin_inf();
     const double *row = s->rows + curve * 8 * s->length, *depth = s->depth + curve * s->points;
     int64_t L = s->length;
     for (int i = 0; i < 4; i++)

@@ -57,7 +57,7 @@ def test_names_of_line_contacts(name):
 
 
 def test_a_roller_is_no_material():
-    with pytest.raises(study.StudyError, match=f"no material.*{LINE}"):
+    with pytest.raises(study.StudyError, match=f"not a material.*{LINE}"):
         study.solve(**BARE, punch="roller")
 
 

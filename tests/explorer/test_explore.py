@@ -28,7 +28,7 @@ def test_another_file_is_not_replaced(tmp_path, capsys):
     assert main(["explore", "--out", str(tmp_path / "mine.html")]) == 2
     assert main(["explore", "--out", str(tmp_path)]) == 2
     assert (tmp_path / "mine.html").read_text() == "a night of writing"
-    assert "it stays" in capsys.readouterr().err
+    assert "is not overwritten" in capsys.readouterr().err
 
 
 def test_the_page_is_small_and_whole():

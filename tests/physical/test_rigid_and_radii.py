@@ -95,7 +95,7 @@ def test_a_cup_that_fits_closely_is_beyond_the_model():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         study.solve(**given | {"P": "1 N"}, R2="-20 mm", x=2)
-    assert "wide against" in study.summary(found.isel(R2=1)) and "wide" not in study.summary(found.isel(R2=0))
+    assert "wide compared with" in study.summary(found.isel(R2=1)) and "wide" not in study.summary(found.isel(R2=0))
 
 
 @pytest.mark.parametrize(

@@ -253,7 +253,7 @@ def test_fits_and_designs_take_shapes():
             "is for shape = .paraboloid.",
         ),
         ({"shape": "frustum", "flat_radius": 0.2, "half_angle": 70, "a": 0.1}, "must be above that of the flat end"),
-        ({"w_adhesion": 1e-3, "base": "thin_layer", "h": 0.1, "n": 1}, "does not stick"),
+        ({"w_adhesion": 1e-3, "base": "thin_layer", "h": 0.1, "n": 1}, "has no adhesion"),
     ],
 )
 def test_a_contact_that_cannot_be_is_one_clear_message(parameters, message):

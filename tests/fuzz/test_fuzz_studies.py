@@ -38,14 +38,14 @@ def _warning(*_, **__):
 )
 def test_faults_are_found(tmp_path, monkeypatch, broken, seen):
     monkeypatch.setattr(fuzz_studies, "PATIENCE", 0.2)
-    monkeypatch.setattr(reading, "complete", broken)
+    monkeypatch.setattr(reading, "definition_of", broken)
     file = tmp_path / "s.toml"
     file.write_text('[model]\nP = 1e-5\nmicro = "smooth"\nbase = "half_space"\n', encoding="utf-8")
     assert fault(["check", str(file)])[1].startswith(seen)
 
 
 def test_a_failure_that_is_not_said_is_a_fault(tmp_path, monkeypatch):
-    monkeypatch.setattr(fuzz_studies, "said", lambda _: (2, ""))
+    monkeypatch.setattr(fuzz_studies, "exit_and_messages", lambda _: (2, ""))
     assert fault(["check", "s.toml"]) == (2, "exit code 2, 0 characters: ")
-    monkeypatch.setattr(fuzz_studies, "said", lambda _: (1, "a block failed"))
+    monkeypatch.setattr(fuzz_studies, "exit_and_messages", lambda _: (1, "a block failed"))
     assert fault(["run", "s.toml"])[1].startswith("exit code 1, ")

@@ -10,7 +10,7 @@ from study.inputs.vocabulary import PARAMETERS, VOCABULARY, attributes, check, n
 
 # The largest stresses, each with its place.
 STRESSES = ("mises1", "mises2", "tresca1", "tresca2", "s1_surface", "s1_layer", "sr_interface1", "tau_interface")
-STRESSES += ("sz_interface_max", "sz_interface_min")
+STRESSES += ("sz_interface_max", "sz_interface_min", "mises_layer", "tresca_layer", "sr_interface")
 SPOTS = ("mises1_spot", "mises2_spot", "sr_interface1_spot", "sz_interface_spot_max", "tau_interface_spot")
 # Dimension in powers of kg, m, s and the printed unit of every quantity that has one.
 FORCE, LENGTH, PRESSURE = (1, 1, -2), (0, 1, 0), (1, -1, -2)

@@ -22,8 +22,8 @@ figure = rc.plot(contact, "x", "p", hue="P")
 figure
 
 # %%
-# The scan that comes with roughcoat has asperities. They carry the same load at a much higher pressure, and would yield:
-# a warning says so.
+# The scan that comes with roughcoat has asperities. They carry the same load at a much higher pressure. A warning says
+# that they would yield.
 scan = rc.roughness.read(rc.samples.scan())
 asperities = rc.roughness.measure(scan, method="summits", cutoff=2e-6).parameters()
 rough = rc.solve(**(ball | asperities), **coated, P="10 N", profiles=False)

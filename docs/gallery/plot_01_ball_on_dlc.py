@@ -20,3 +20,12 @@ assert (abs(contact.a / bare.a - 1) < 0.02).all()
 
 figure = rc.plot(contact, "x", "p", hue="P")
 figure
+
+# %%
+# The scan that comes with roughcoat has asperities. They carry the same load at a much higher pressure. A warning says
+# that they would yield.
+scan = rc.roughness.read(rc.samples.scan())
+asperities = rc.roughness.measure(scan, method="summits", cutoff=2e-6).parameters()
+rough = rc.solve(**(ball | asperities), **coated, P="10 N", profiles=False)
+print(f"{rough.p_max.item() / 1e9:.1f} GPa at an asperity, {contact.p0.sel(P=10).item() / 1e9:.2f} GPa without")
+assert rough.p_max.item() > 2 * contact.p0.sel(P=10).item()

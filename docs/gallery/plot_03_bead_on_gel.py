@@ -26,3 +26,10 @@ axes.loglog(curve.D * 1e9, curve.P * 1e9, label="gel on glass")
 axes.loglog(alone.D * 1e9, alone.P * 1e9, "--", label="gel alone (Hertz)")
 axes.set(xlabel="depth D, nm", ylabel="force P, nN")
 axes.legend()
+
+# %%
+# The force curve that comes with roughcoat was made with E1 = 5 kPa. A fit with the layer finds this modulus.
+layer = {"nu1": 0.49, "h": "1.5 um", "bonding": "bonded", "body": "glass soda-lime"}
+fitted = rc.fit(rc.samples.curve(), R="5 um", micro="smooth", **layer, free=["E1"])
+print(rc.summary(fitted))
+assert fitted.E1_low < 5e3 < fitted.E1_high

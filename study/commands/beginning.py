@@ -41,7 +41,8 @@ def new(options, name: str) -> int:
         raise StudyError([f"{path.as_posix()}: there is no folder {path.parent.as_posix()}"]) from None
     except FileExistsError:
         raise StudyError([f"{path.as_posix()}: exists and is not overwritten: choose another name"]) from None
-    return answer(f"{path.as_posix()}: edit it, then `{program()} check {path.as_posix()}` and `run`")
+    check, run = (f"`{program()} {command} {path.as_posix()}`" for command in ("check", "run"))
+    return answer(f"{path.as_posix()}: edit it, then {check} and {run}")
 
 
 def show(_, name: str) -> int:

@@ -26,7 +26,7 @@ from .point import parameters_of
 _RANGE = re.compile(r"\s*\.\.\s*")
 _SWITCHES = ("contact_point", "baseline", "tilt")
 _OPTIONS = (*_SWITCHES, "x", "y", "sigma", "loss", "intervals", "level", "depth", "free")
-_READING = ("part", "curve", "spring_constant", "sensitivity")  # of `study.curves`
+_READING = ("part", "curve", "spring_constant", "sensitivity", "area")  # of `study.curves`
 _PYTHON = ("plan", "progress")  # options of `study.fit` that a terminal does not have
 
 
@@ -72,7 +72,17 @@ def _reading(words: list[str]) -> dict[str, Any]:
     reading: dict[str, Any] = {_name(word): word.partition("=")[2].strip() for word in words}
     if re.fullmatch(r"-?\d{1,9}", reading.get("curve", "")):
         reading["curve"] = int(reading["curve"])
+    if "area" in reading:
+        reading["area"] = _coefficients(reading["area"])
     return reading
+
+
+def _coefficients(text: str) -> list[float]:
+    """C0, C1 ... of the area function of a tip, in nm."""
+    try:
+        return [float(number) for number in text.strip("[]() ").split(",")]
+    except ValueError:
+        raise StudyError([f"area={text}: must be numbers C0, C1 ... in nm, such as area=24.5,800"]) from None
 
 
 def question_of(words: list[str]) -> tuple[Any, dict, dict]:

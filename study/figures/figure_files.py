@@ -154,9 +154,14 @@ def unknown(kind: str, name: str, registered: list[str]) -> StudyError:
 
     registered : further known names
 
-    The error also names files that cannot be read, since the name may be in one of them.
+    The name may be the number of a figure or table, or that of a study file in the working folder. The error also names
+    files that cannot be read, since the name may be in one of them.
     """
-    lines = [f'"{name}" is not known{suggest(name, [*registered, *names(kind)])}']
+    known = [*registered, *names(kind)]
+    numbered = [text for text in (f"{kind}{name}", f"{kind[:3]}{name:0>2}") if text in known]
+    study_here = [f"{name}.toml"] if Path(f"{name}.toml").is_file() else []
+    meant = [f'; did you mean "{text}"?' for text in (*study_here, *numbered)]
+    lines = [f'"{name}" is not known{meant[0] if meant else suggest(name, known)}']
     for file in (*user_files(), *book_files()):
         try:
             names_in(file)

@@ -233,7 +233,8 @@ def without_indents(columns: _Columns, area: Any, where: str) -> _Columns:
     if missing := [name for name in needed if name not in columns]:
         raise StudyError([f"{where}: beside S there must be h and P, or A; there is no {' and no '.join(missing)}"])
     if "A" not in columns and area is None:
-        needs = "S, h and P need the area function of the tip: rc.curves(..., area=[24.5]), or a column A"
+        such = "area=24.5 in `roughcoat fit`, rc.curves(..., area=[24.5])"
+        needs = f"S, h and P need the area function of the tip: {such}, or a column A"
         raise StudyError([f"{where}: {needs}"])
     if strange := [name for name in columns if name not in _OF_INDENTS]:
         raise StudyError([f"{where}: {shown(strange[0])} does not go with S: leave it out"])

@@ -73,7 +73,7 @@ class ScanLaw:
     >>> rows = np.array([[0.01, 0.02], [1e-9, 2e-9], [0.1, 0.2], [0.2, 0.21]])
     >>> measured = ScanLaw(*rows, error=0.01, errors={}, body=None, name="wafer")
     >>> print(measured.text.splitlines()[2])
-    p,A [m],lam,p_max
+    p,A [m],lam,p_max,error
     """
 
     p: np.ndarray
@@ -140,7 +140,7 @@ class ScanLaw:
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     measured.to_csv(pathlib.Path(folder, "wafer.csv"))
         ...     print(pathlib.Path(folder, "wafer.csv").read_text().splitlines()[-1])
-        0.02,2e-09,0.2,0.21
+        0.02,2e-09,0.2,0.21,0.01
         """
         Path(path).write_text(self.text, encoding="utf-8")
 
@@ -201,7 +201,7 @@ def law(
     >>> surface = roughness.self_affine((64, 64), "0.5 um", hurst=0.8, rms="20 nm", seed=3)
     >>> of_scan = roughness.law(surface, periodic="given", progress=False)
     >>> print(len(of_scan.p), f"{of_scan.lam[0]:.4f} {of_scan.lam[-1]:.2f}")
-    18 0.0039 0.66
+    22 0.0012 0.71
     """
     body = body_of(on, "law")
     patch = patch_of(scan, form, cutoff, periodic, refine, "law")

@@ -12,7 +12,7 @@ from conftest import STUDIES, opened
 from scipy.integrate import simpson
 
 from study import StudyError
-from study.catalogue import draw, entry, names, save
+from study.catalogue import draw, entry, names, save, tabulate
 from study.data.derived import effective_modulus, peak_pressure
 from study.figures.formats import as_text
 from study.figures.registry import DataTable, column, pick
@@ -174,9 +174,17 @@ def test_schemes_are_copies_with_every_letter_of_the_model(name, letters, tmp_pa
     assert name in DRAWINGS
 
 
-def test_messages_of_plot(results, tmp_path):
+def test_messages_of_plot(results, tmp_path, monkeypatch):
     with pytest.raises(StudyError, match='"fig3" is not known; did you mean "fig03"?'):
         draw("fig3", results, tmp_path)
+    with pytest.raises(StudyError, match='"7" is not known; did you mean "fig07"?'):
+        draw("7", results, tmp_path)
+    with pytest.raises(StudyError, match='"1" is not known; did you mean "table1"?'):
+        tabulate("1", results, tmp_path)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.toml").touch()
+    with pytest.raises(StudyError, match='"mine" is not known; did you mean "mine.toml"?'):
+        draw("mine", results, tmp_path)
     with pytest.raises(StudyError, match="main_case.nc: does not exist, .* run main_case"):
         draw("fig03", tmp_path, tmp_path)
 

@@ -161,6 +161,12 @@ def test_mistakes(table, text, expected):
     assert message.startswith("solve: micro: mine.csv: ") and expected in message
 
 
+def checked(*columns):
+    """The checks of the columns of a user's table."""
+    own_table._check(*columns)
+    own_table._check_order(*columns)
+
+
 @pytest.mark.parametrize(("micro", "more"), [("disc_cell", {}), ("normal_heights", {"sigma": 1e-4, "cut": 3.0})])
 @pytest.mark.parametrize("density", [0.25, 1, 4, 100])
 @pytest.mark.parametrize("first", [1e-7, 1e-4])
@@ -169,11 +175,11 @@ def test_exchanged_columns_are_refused(micro, more, density, first):
     p, wave = np.geomspace(first, 0.2, 40), 1 + 0.01 * np.sin(37 * np.arange(40))
     spots = laws.LAWS[micro].at(p, 1.0, Nbar=density / 0.004**2, Ra=0.004, **more)
     columns = [p, spots.A, np.maximum.accumulate(np.minimum(spots.lam * wave, 1)), spots.p_max * wave]
-    own_table._check(*columns)
+    checked(*columns)
     for i, j in combinations(range(4), 2):
         order = {i: j, j: i}
         with pytest.raises(ValueError, match="^columns? "):
-            own_table._check(*(columns[order.get(k, k)] for k in range(4)))
+            checked(*(columns[order.get(k, k)] for k in range(4)))
 
 
 def test_pressures_in_another_unit_are_beyond_validity(table):

@@ -10,7 +10,7 @@ def test_a_notebook_is_that_of_its_script(name):
     """`python tools/notebooks.py` writes them."""
     made = notebook((ROOT / f"docs/gallery/{name}.py").read_text(encoding="utf-8"))
     assert made == (ROOT / f"docs/notebooks/{name[8:]}.ipynb").read_text(encoding="utf-8")
-    assert made.count('"cell_type": "code"') == 2
+    assert made.count('"cell_type": "code"') == 3
 
 
 @pytest.mark.parametrize("name", SCRIPTS)

@@ -11,8 +11,9 @@ from numpy.testing import assert_allclose
 
 import study
 from study.__main__ import main
-from study.inputs.definition import from_call, from_tables
+from study.inputs.definition import from_call
 from study.inputs.identity import case_keys
+from study.inputs.reading import from_tables
 
 DLC = [
     {"material": "DLC a-C:H", "h": "2 um", "bonding": "bonded"},

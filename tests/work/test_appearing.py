@@ -135,6 +135,6 @@ def test_measurements_of_the_trade_off_do_not_replace_what_appears(tmp_path, mon
     few = tradeoff.measure(2, ways={"auto": tradeoff.WAYS["auto"]})
     made = registry.entry("measured", "tradeoff")._replace(measure=lambda: path.write_text("precious") and few)
     monkeypatch.setitem(registry.REGISTERS[""]["measured"], "tradeoff", made)
-    with pytest.raises(study.StudyError, match=r"tradeoff.nc: has appeared or changed .* and stays"):
+    with pytest.raises(study.StudyError, match=r"tradeoff.nc: appeared or changed .* and is left as it is"):
         results("tradeoff", tmp_path)
     assert path.read_text(encoding="utf-8") == "precious"

@@ -119,4 +119,4 @@ def test_answers_have_summaries(loads):
     largest = study.summary(study.extremes(ball))
     assert "largest von Mises stress of the body" in largest and "MPa, on the axis, 0.48" in largest
     field = study.summary(study.stresses(ball, r=[0.0, 1.0], z=[0.0, 0.5]))
-    assert field.startswith("Stresses at 2 radii and 2 depths.\nvon Mises stress, at most: ")
+    assert field.startswith("Stresses at 2 radii and 2 depths.\nvon Mises stress, maximum: ")

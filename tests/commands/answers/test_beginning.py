@@ -19,7 +19,8 @@ def folder(tmp_path, monkeypatch):
 
 def test_a_new_study_is_valid_and_has_comments(capsys):
     assert main(["new", "mine"]) == 0
-    assert capsys.readouterr().out == "mine.toml: edit it, then `python -m roughcoat check mine.toml` and `run`\n"
+    check, run = (f"`python -m roughcoat {command} mine.toml`" for command in ("check", "run"))
+    assert capsys.readouterr().out == f"mine.toml: edit it, then {check} and {run}\n"
     definition, text = read(Path("mine.toml")), Path("mine.toml").read_text(encoding="utf-8")
     assert dict(definition.grid.sizes) == {"h in SI": 3, "P in SI": 5}
     assert all("#" in line for line in text.splitlines() if " = " in line and "title" not in line)

@@ -1,10 +1,13 @@
 """Tables of indents (h, P, S): the radius by the area function, and the modulus of the film that made them."""
 
+import json
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 import study
+from study.__main__ import main
 
 FILM = {"R": "1 mm", "h": "500 nm", "nu1": 0.2, "bonding": "bonded", "body": "silicon", "punch": "rigid"}
 FILM |= {"micro": "smooth"}
@@ -31,8 +34,8 @@ def test_the_radius_of_an_area_function():
     assert_allclose(study.curves(with_area).a, curves.a, rtol=1e-12)
 
 
-def test_from_a_table_to_the_modulus(tmp_path):
-    """A file whose stiffness is that of contacts with the radii of its area function."""
+def test_from_a_table_to_the_modulus(tmp_path, capsys):
+    """A file whose stiffness is that of contacts with the radii of its area function, in Python and in a terminal."""
     depths = np.linspace(10, 200, 25)
     radii = np.sqrt((24.5 * depths**2 + 800 * depths) / np.pi)
     contacts = study.solve(**FILM, E1="200 GPa", a=[f"{a} nm" for a in radii], x=2, profiles=False)
@@ -43,6 +46,15 @@ def test_from_a_table_to_the_modulus(tmp_path):
     curves = study.curves(tmp_path / "table.csv", area=[24.5, 800])
     fitted = study.fit(curves, **FILM, free=["E1"], x="a", y="dP_dD", intervals="fisher")
     assert fitted.E1.item() == pytest.approx(200e9, rel=1e-5)
+    words = [*(f"{name}={value}" for name, value in FILM.items()), "free=E1", "x=a", "y=dP_dD", "intervals=fisher"]
+    assert main(["fit", str(tmp_path / "table.csv"), *words, "area=24.5, 800", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["E1"]["value"] == fitted.E1.item()
+    for area, message in {
+        "area=tip": "area=tip: must be numbers C0, C1 ... in nm, such as area=24.5,800",
+        "area=": "area=: must be numbers C0, C1 ... in nm",
+    }.items():
+        assert main(["fit", str(tmp_path / "table.csv"), *words, area]) == 2
+        assert message in capsys.readouterr().err
 
 
 def test_points_without_contact_are_none():

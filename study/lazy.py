@@ -66,7 +66,7 @@ def lazily(definition: Definition, chunks: Any, command: str) -> xr.Dataset:
     first_case = _dataset(first, not_run(first, first.grid.size), command)
     variables = {}
     for name, array in first_case.data_vars.items():
-        behind = [first_case.sizes[dim] for dim in array.dims if dim not in dims.values()]
+        behind = [first_case.sizes[dim] for dim in array.dims if dim not in dims]
         more = {"new_axis": len(shape)} if behind else {}
         lengths_with_x = (*lengths, *((size,) for size in behind))
         more["meta"] = np.empty((0,) * array.ndim, array.dtype)

@@ -195,7 +195,7 @@ def test_point(capsys):
 def test_the_summary_has_the_geometry():
     text = str(study.summary(study.solve(**BALL, layers=DLC, P="1 N")))
     assert "Stack, from the surface down: layer 2: of CrN, h = 200 nm" in text and "then the body" in text
-    assert "layer 2 0.0" in text and "The largest shear stress of an interface is" in text
+    assert "layer 2 at 0.0" in text and "The largest shear stress of an interface is" in text
 
 
 def test_cases():

@@ -110,7 +110,7 @@ def refused(opened, address: str) -> str:
 
 @pytest.mark.parametrize("scheme", ["tcp://", ""])
 @pytest.mark.parametrize(
-    ("words", "why"), [(b"SSH-2.0-OpenSSH_9\r\n", "something else listens there"), (b"", "it does not answer within 0.5 s")]
+    ("words", "why"), [(b"SSH-2.0-OpenSSH_9\r\n", "something else listens there"), (b"", "it does not answer within")]
 )
 def test_a_port_that_is_not_dask(tmp_path, monkeypatch, words, why, scheme):
     monkeypatch.setattr(engines, "ANSWER", PATIENCE if words else 0.5)

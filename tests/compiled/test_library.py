@@ -33,8 +33,8 @@ def test_without_a_compiler_nothing_fails(tmp_path):
 def test_a_compiler_builds_it(tmp_path):
     (name,) = built(tmp_path)
     assert name.startswith(f"{library.NAME}.")
-    in_place = [path for path in (ROOT / "solver/compiled").glob(f"{library.NAME}.*") if path.suffix == Path(name).suffix]
-    assert in_place, "build it: make setup, or python setup.py build_ext --inplace"
+    beside_the_sources = (ROOT / "solver/compiled").glob(f"{library.NAME}*{Path(name).suffix}")
+    assert list(beside_the_sources), "build it: make setup, or python setup.py build_ext --inplace"
 
 
 def test_without_the_core_numpy_computes(without):

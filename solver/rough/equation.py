@@ -19,7 +19,7 @@ import numpy as np
 from ..body.operator import Body, Operator
 from ..laws import Bound, Curve
 from ..numerics import batch
-from ..numerics.kept import once
+from ..numerics.caches import once
 from ..shapes.shape import Shape, has_radius
 from .punch import largest, punch_of
 

@@ -13,7 +13,7 @@ import study
 from solver import Problem, solve
 from solver.known import register
 from solver.laws import disc_cell, heights, spread
-from solver.numerics.kept import Kept
+from solver.numerics.caches import Cache
 from study.studies.literature.formulas import GREENWOOD_TRIPP
 
 pytestmark = pytest.mark.usefixtures("forgetful")
@@ -182,7 +182,7 @@ def test_the_tables_do_not_depend_on_company(monkeypatch):
     sigma = A_STAR * np.geomspace(0.01, 10, 30)
     given = CASE | {"P": 1e-5, "base": "half_space", "micro": "normal_heights", "rtol": 1e-4}
     many = solve(Problem.of(**given, sigma=sigma))
-    monkeypatch.setattr(heights, "_kept", Kept(1e7))
+    monkeypatch.setattr(heights, "_cache", Cache(1e7))
     alone = solve(Problem.of(**given, sigma=sigma[17]))
     assert_allclose(many.D[17], alone.D[0], rtol=1e-11)
     assert (np.diff(many.D) > 0).all()

@@ -111,10 +111,10 @@ def mises_in(problem, solution, body, layer, mu, residual, punch=None, coarse=Fa
     return extremes
 
 
-def _at_tip(answer, case, radius):
-    """Write the infinite stresses below a sharp tip or corner into `answer`."""
-    for name in {"mises_layer", "tresca_layer"} & {*answer}:
-        answer[name][:, case, 0] = np.inf, radius, 0.0
+def _at_tip(by_name, case, radius):
+    """Write the infinite stresses below a sharp tip or corner into `by_name`."""
+    for name in {"mises_layer", "tresca_layer"} & {*by_name}:
+        by_name[name][:, case, 0] = np.inf, radius, 0.0
 
 
 def _of_sections(cases, names, coarse, only):

@@ -16,11 +16,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..body.operator import Operator
 from ..laws import Curve
-from ..numerics import batch
 from ..numerics.linalg import solve_stack
 from ..numerics.mesh import panel_mesh
-from ..rough.equation import Evaluation, Unknowns, evaluate, jacobian
+from ..rough.equation import Evaluation, Unknowns, evaluate_with, jacobian
 from ..rough.panels import ends_of, stretch
 from ..rough.results import quantities
 from .inputs import STEP
@@ -77,10 +77,10 @@ def _after_steps(start, cases, eta, operator, count):
     times, before = len(eta) // len(start.tangent), start.at
     y, tangent = np.tile(before.state.y, (times, 1)), np.tile(start.tangent, (times, 1))
     curve = moved_curve(cases.law, before.cases.law, before.state.y, before.curve)
-    now = evaluate(cases, Unknowns(y, eta), operator.mesh, operator, curve)
+    now = evaluate_with(operator, cases, Unknowns(y, eta), curve)
     for _ in range(count):
         y = cases.law.limit(y - start.correction(now.F / now.X) / now.curve.dq, y)
-        now = evaluate(cases, Unknowns(y, eta), operator.mesh, operator)
+        now = evaluate_with(operator, cases, Unknowns(y, eta))
     diagonal, dF_deta = jacobian(now)
     residual = operator.products(tangent)[0] + diagonal * tangent + dF_deta
     return Moved(now, tangent - start.correction(residual))
@@ -164,12 +164,48 @@ def _meshes(ev, cases, eta):
 def _operator(ev, cases, eta, mesh, changed):
     """The operator of moved cases on a mesh: a new one for the blocks that have `changed`, (m,) bool, and that of the
     solved cases for the others."""
-    size = len(ev.state.eta)
     if cases.body.kernel is None:  # one operator for all bodies and radii
         return cases.body.at(np.exp(eta), mesh)
-    places = np.arange(len(changed) * size).reshape(-1, size)
-    anew, same = places[changed].ravel(), places[~changed]
-    operators, where = [ev.operator] * len(same), [*same]
-    if len(anew):
-        operators, where = [cases.body.take(anew).at(np.exp(eta[anew]), mesh), *operators], [anew, *where]
-    return batch.join(operators, where)
+    anew = np.flatnonzero(np.repeat(changed, len(ev.state.eta)))
+    operator = cases.body.take(anew).at(np.exp(eta[anew]), mesh) if len(anew) else None
+    return operator if changed.all() else BlockOperator(ev.operator, operator, changed)
+
+
+class BlockOperator(NamedTuple):
+    """The :class:`~solver.body.operator.Operator` of m blocks of B cases, as far as a step needs it.
+
+    solved : operator of the B solved cases, which most of the blocks share
+    anew : that of the cases in the blocks that have `changed`, (m,) bool; None where no block has
+    """
+
+    solved: Operator
+    anew: Operator | None
+    changed: np.ndarray
+
+    @property
+    def mesh(self):
+        return self.solved.mesh
+
+    @property
+    def edge(self):
+        rows = np.repeat(self.solved.edge[None], len(self.changed), axis=0)
+        if self.anew is not None:
+            rows[self.changed] = self.anew.edge.reshape(-1, *rows.shape[1:])
+        return rows.reshape(-1, rows.shape[-1])
+
+    def products(self, q):
+        return self._of_blocks("products", q)
+
+    def slopes(self, q):
+        return self._of_blocks("slopes", q)
+
+    def _of_blocks(self, name, q):
+        blocks = q.reshape(len(self.changed), -1, q.shape[-1])
+        rows, edge = np.empty_like(blocks), np.empty(blocks.shape[:2])
+        for number in np.flatnonzero(~self.changed):
+            rows[number], edge[number] = getattr(self.solved, name)(blocks[number])
+        if self.anew is not None:
+            anew, at_edge = getattr(self.anew, name)(blocks[self.changed].reshape(-1, q.shape[-1]))
+            rows[self.changed] = anew.reshape(-1, *blocks.shape[1:])
+            edge[self.changed] = at_edge.reshape(-1, blocks.shape[1])
+        return rows.reshape(q.shape), edge.ravel()

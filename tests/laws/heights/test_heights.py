@@ -253,3 +253,13 @@ def test_a_histogram_that_is_none(tmp_path, text, words):
     file.write_text(text)
     with pytest.raises(study.StudyError, match=words):
         study.solve(P=1e-5, Nbar=250_000.0, Ra=0.004, base="half_space", micro=f"table:{file}")
+
+
+def test_places_are_looked_up_some_at_a_time(monkeypatch):
+    """To the same bits, however many: also one at a time, and a last part that is shorter."""
+    table = np.log(np.cumsum(np.random.default_rng(0).random((3, spread.KNOTS)), axis=1))
+    y, group = np.geomspace(1e-5, 1e8, 7 * 5).reshape(7, 5), np.array([0, 2, 1, 1, 0, 2, 2])
+    whole = spread.look_up(table, group, y)
+    for most in (1, 10):
+        monkeypatch.setattr(spread, "_LOOKED_UP", most)
+        assert all(map(np.array_equal, whole, spread.look_up(table, group, y)))

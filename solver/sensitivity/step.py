@@ -25,6 +25,9 @@ from ..rough.panels import ends_of, stretch
 from ..rough.results import quantities
 from .inputs import STEP
 
+#: Decimal places of the places of kinks, in s, above which only rounding is different.
+_DIGITS = 14
+
 
 class Solved(NamedTuple):
     """The solved equation of B cases.
@@ -32,18 +35,20 @@ class Solved(NamedTuple):
     at : the equation at the solutions
     inverse : (B, n, n), the inverse of dF/dq over X
     tangent : (B, n), dq/d ln a along the branch of solutions
+    meshes : the meshes of moved contacts whose panels follow kinks, by the places of these
     """
 
     at: Evaluation
     inverse: np.ndarray
     tangent: np.ndarray
+    meshes: dict
 
     @classmethod
     def of(cls, at):
         diagonal, dF_deta = jacobian(at)
         unit = np.broadcast_to(np.eye(at.mesh.n), (*diagonal.shape, at.mesh.n))
         inverse = np.ascontiguousarray(solve_stack(at.operator.K, diagonal, unit))
-        return cls(at, inverse, -np.einsum("bij,bj->bi", inverse, dF_deta))
+        return cls(at, inverse, -np.einsum("bij,bj->bi", inverse, dF_deta), {})
 
     def correction(self, residual):
         """The change of q, or of its slope, (m B, n), whose subtraction removes the `residual` over X, (m B, n), of the
@@ -66,7 +71,7 @@ def moved_contacts(start, cases, eta, count=1):
     order."""
     size = len(start.at.state.eta)
     changed = _changed(start.at, cases, eta)
-    for mesh, blocks in _meshes(start.at, cases, eta).items():
+    for mesh, blocks in _meshes(start, cases, eta).items():
         rows = (np.array(blocks)[:, None] * size + np.arange(size)).ravel()
         part = cases.take(rows), eta[rows]
         operator = _operator(start.at, *part, mesh, changed[blocks] | (mesh != start.at.mesh))
@@ -111,17 +116,29 @@ def _ends(ev):
     return ends_of(ev.cases.shape, float(np.exp(ev.state.eta[0])))
 
 
-def branch_slope(start, cases, eta):
+def branch_slope(start, cases, eta, logs):
     """d ln P/d ln D (m,) of moved cases whose panels follow kinks, at which the slope for a fixed place is infinite. It
-    is from the difference of contacts with two radii. Each takes two steps: the result is a second derivative, and
-    needs terms of second order."""
-    logs = np.empty((2, 2, len(eta)))
-    for end, sign in zip(logs, (1, -1), strict=True):
-        for blocks, contacts in moved_contacts(start, cases, eta + sign * STEP, count=2):
-            numbers = quantities(contacts.at)
-            end[:, blocks] = np.log(numbers.P), np.log(numbers.D)
-    of_load, of_depth = logs[0] - logs[1]
-    return of_load / of_depth
+    is from differences of contacts with two radii. Each takes two steps: the result is a second derivative, and needs
+    terms of second order.
+
+    cases, eta : pairs of moved contacts, up and down; in the last pair it is the radius that is moved
+    logs : (2, m), ln P and ln D there
+
+    Each pair is moved once more: with the input up the radius goes up, and down with the input down. So kinks whose
+    place is an input come back to where they were, and need no further mesh.
+    """
+    sign, last = np.tile([1.0, -1.0], len(eta) // 2), len(eta) - 2  # the case of the last pair is the solved one
+    further = np.empty((2, last + 1))
+    moved = np.append(eta[:last] + STEP * sign[:last], start.at.state.eta)
+    for blocks, contacts in moved_contacts(start, cases.take(np.arange(last + 1)), moved, count=2):
+        numbers = quantities(contacts.at)
+        further[:, blocks] = np.log(numbers.P), np.log(numbers.D)
+    (high, low), middle = logs[:, last:].T, further[:, last]
+    slope, bend = (high - low) / (2 * STEP), (high - 2 * middle + low) / STEP**2
+    change = ((further[:, :last] - logs[:, :last]) * sign[:last]).reshape(2, -1, 2)
+    mixed = (change[..., 0] - change[..., 1]) / (2 * STEP**2) - bend[:, None] / 2
+    by_input = np.column_stack([mixed, bend]) / slope[:, None]
+    return slope[0] / slope[1] * np.exp(STEP * sign * np.repeat(by_input[0] - by_input[1], 2))
 
 
 def _changed(ev, cases, eta):
@@ -146,19 +163,31 @@ def _numbers(body):
             yield part
 
 
-def _meshes(ev, cases, eta):
+def _meshes(start, cases, eta):
     """Mesh -> its blocks. There is one mesh, that of the solved cases, unless panels end at kinks: then the panels of
-    each block follow its kinks."""
-    mesh, blocks = ev.mesh, range(len(eta) // len(ev.state.eta))
+    each block follow its kinks. Blocks whose kinks are at the same places, but for rounding, share their mesh, which is
+    most of the work for a case with kinks."""
+    ev, size = start.at, len(start.at.state.eta)
+    blocks = range(len(eta) // size)
     if not on_kinks(ev):
-        return {mesh: list(blocks)}
-    before, meshes = _ends(ev), {}
+        return {ev.mesh: list(blocks)}
+    before, of_mesh = _ends(ev), {}
+    places = start.meshes or {_rounded(before): ev.mesh}
+    start.meshes.update(places)
     for block in blocks:
         ends = ends_of(cases.shape.take([block]), float(np.exp(eta[block])))
-        follows = len(ends) == len(before) and ends != before
-        stretched = panel_mesh(mesh.order, stretch(mesh.breaks, before, ends)) if follows else mesh
-        meshes.setdefault(stretched, []).append(block)
-    return meshes
+        if len(ends) != len(before):
+            mesh = ev.mesh
+        elif (mesh := start.meshes.get(_rounded(ends))) is None:
+            mesh = panel_mesh(ev.mesh.order, stretch(ev.mesh.breaks, before, ends))
+            start.meshes[_rounded(ends)] = mesh
+        of_mesh.setdefault(mesh, []).append(block)
+    return of_mesh
+
+
+def _rounded(ends):
+    """Places of kinks to _DIGITS: a key for places that differ by rounding."""
+    return tuple(round(end, _DIGITS) for end in ends)
 
 
 def _operator(ev, cases, eta, mesh, changed):

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from study import *  # noqa: F403
     from study import __version__ as __version__
 
-_BESIDE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # the folder, or zip file, of the packages
+_PLACE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # the folder, or zip file, of the packages
 
 
 class _OwnPackages:
@@ -24,7 +24,7 @@ class _OwnPackages:
 
     @staticmethod
     def find_spec(name: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
-        return PathFinder.find_spec(name, [_BESIDE]) if name in ("study", "solver") else None
+        return PathFinder.find_spec(name, [_PLACE]) if name in ("study", "solver") else None
 
 
 def _refuse_others() -> None:
@@ -32,7 +32,7 @@ def _refuse_others() -> None:
     for name in ("study", "solver"):
         other = sys.modules.get(name)
         place = next(iter(getattr(other, "__path__", ())), getattr(other, "__file__", None) or "")
-        if other and os.path.realpath(place) != os.path.realpath(os.path.join(_BESIDE, name)):
+        if other and os.path.realpath(place) != os.path.realpath(os.path.join(_PLACE, name)):
             wrong = f"has been imported as {name}, which is also a package of roughcoat: give it another name"
             raise ImportError(f"{getattr(other, '__file__', None) or place}: {wrong}", name=name, path=place)
 

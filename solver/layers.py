@@ -28,7 +28,7 @@ class LayerWords:
 
     keys : the keys that a layer may have
     first : key of the first layer -> its name in a case with one layer
-    beside : names that are refused together with a list of layers
+    conflicts : names that are refused together with a list of layers
     rigid : inputs by which a base is rigid without `rigid_base`
     example : an example of a list, for a message
     shown : function from a value to its text in a message
@@ -38,7 +38,7 @@ class LayerWords:
 
     keys: Collection[str]
     first: Mapping[str, str]
-    beside: Collection[str]
+    conflicts: Collection[str]
     rigid: Collection[str]
     example: str
     shown: Callable[[Any], str]
@@ -99,8 +99,8 @@ class LayerWords:
         others = {name: v for name, v in parameters.items() if name not in ("layers", RIGID) and name not in named}
         stack = {}
         if "layers" in parameters:
-            errors += self.beside_list(others)
-            others = {name: value for name, value in others.items() if name not in self.beside}
+            errors += self.conflicts_among(others)
+            others = {name: value for name, value in others.items() if name not in self.conflicts}
             stack, wrong = listed or self.list_of(parameters["layers"])
             errors += wrong
         stack = {name: value for name, value in stack.items() if name not in elsewhere}
@@ -120,9 +120,9 @@ class LayerWords:
         both = [(self.short(name), name) for name in names if self.short(name) != name]
         return [f"{name} is {short}, which is given too: leave out one" for short, name in both if short in names]
 
-    def beside_list(self, names: Collection[str]) -> list[str]:
+    def conflicts_among(self, names: Collection[str]) -> list[str]:
         """A list with a message about the first of the `names` that is refused together with a list of layers."""
-        wrong = [name for name in self.beside if name in names]
+        wrong = [name for name in self.conflicts if name in names]
         return [f"{name} is given beside layers: each of the layers has its own" for name in wrong[:1]]
 
     def _on_base(self, rigid: Any, numbers: dict[str, Any], errors: list[str]) -> dict[str, float]:
@@ -161,7 +161,7 @@ def base_of_layers(base: Any, errors: list[str]) -> Any:
 _WORDS = LayerWords(
     keys=LAYER,
     first=FIRST,
-    beside=tuple(FIRST.values()),
+    conflicts=tuple(FIRST.values()),
     rigid=(),
     example="each like {'h': 0.01, 'n': 2.0}",
     shown=lambda value: f"{value!r:.60}",

@@ -119,7 +119,7 @@ _MODULES = {
     "units": "data.units",
     "vocabulary": "inputs.vocabulary",
 }
-_BESIDE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # the folder, or zip file, of both packages
+_PLACE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # the folder, or zip file, of both packages
 
 
 class _OurPackages:
@@ -131,7 +131,7 @@ class _OurPackages:
     @staticmethod
     def find_spec(name: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
         in_a_clone = name == "study.studies" and not os.path.isdir(os.path.join(*__path__, "studies"))
-        return PathFinder.find_spec(name, [_BESIDE]) if in_a_clone or name in ("roughcoat", "solver") else None
+        return PathFinder.find_spec(name, [_PLACE]) if in_a_clone or name in ("roughcoat", "solver") else None
 
 
 def _take_our_solver() -> None:

@@ -28,7 +28,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VEC
     os.environ.setdefault(_name, "1")
 
 DIR = {"type": folder, "metavar": "DIR"}
-KEPT = "; finished blocks are kept, and the same command continues from there"
+BLOCKS_STAY = "; finished blocks are kept, and the same command continues from there"
 
 
 def parser() -> argparse.ArgumentParser:
@@ -133,15 +133,15 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments=None) -> int:
     """Run one command; returns the exit code."""
-    kept = ""
+    remark = ""
     try:
         commands = parser()
         complete(commands)
         options = commands.parse_args(arguments)
         level = logging.DEBUG if options.verbose else logging.WARNING
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
-        kept = signals.state.kept = KEPT if options.command in ("run", "retry") else ""
-        code = perform(options, kept)
+        remark = signals.state.remark = BLOCKS_STAY if options.command in ("run", "retry") else ""
+        code = perform(options, remark)
         signals.state.code = code
     except SystemExit as ended:  # raised by the parser
         signals.state.code = ended.code
@@ -150,7 +150,7 @@ def main(arguments=None) -> int:
         # a library may have turned the interrupt into another error
         if not (interrupt.came or isinstance(error, KeyboardInterrupt)):
             raise
-        say(f"\ninterrupted{kept}", sys.stderr)
+        say(f"\ninterrupted{remark}", sys.stderr)
         code = INTERRUPTED
     finally:
         empty_buffers()
@@ -166,7 +166,7 @@ def complete(commands: argparse.ArgumentParser) -> None:
             argcomplete.autocomplete(commands)
 
 
-def perform(options, kept: str) -> int:
+def perform(options, remark: str) -> int:
     """Run a command on each of its items, even if it fails on others. Returns the largest exit code."""
     module, name = options.action
     if wrong := wrong_core() if module not in ("lookup", "beginning", "checking") else "":
@@ -175,7 +175,7 @@ def perform(options, kept: str) -> int:
     commands = import_module(f".commands.{module}", __package__)
     items = commands.items(options) if hasattr(commands, "items") else options.items
     signals.state.working = True  # until here, during imports, a signal ends the process at once
-    return max((_attempt(getattr(commands, name), options, item, kept) for item in items), default=0)
+    return max((_attempt(getattr(commands, name), options, item, remark) for item in items), default=0)
 
 
 def wrong_core() -> str:
@@ -190,7 +190,7 @@ def wrong_core() -> str:
     return ""
 
 
-def _attempt(act, options, item, kept: str) -> int:
+def _attempt(act, options, item, remark: str) -> int:
     from .inputs.definition import StudyError
 
     try:
@@ -200,9 +200,9 @@ def _attempt(act, options, item, kept: str) -> int:
     except (OSError, MemoryError, RuntimeError) as error:  # such as a full disk, or a scheduler that is gone
         what = item if isinstance(item, str) else options.command
         if short_of_memory(error):
-            text, code = f"{what}: {memory_message(error)}{kept}", 1
+            text, code = f"{what}: {memory_message(error)}{remark}", 1
         elif isinstance(error, OSError):
-            text, code = f"{what}: {error}{kept}", 1
+            text, code = f"{what}: {error}{remark}", 1
         else:
             raise
     except SystemExit as ended:  # foreign code, such as the function of a figure, must not end the command

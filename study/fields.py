@@ -143,7 +143,7 @@ def stress_fields(contacts: Contacts, r: np.ndarray, z: np.ndarray, mu: float, s
         for name, axis in (("r", r), ("z", z)):
             about = {"long_name": "radius" if name == "r" else "depth", "units": "m"}
             coords[f"{name}_length"] = _labelled(contacts, lengths * axis, (name,), about)
-    return carried(contacts.dataset, variables).assign_coords(coords)
+    return with_coordinates_of(contacts.dataset, variables).assign_coords(coords)
 
 
 def _ends(contacts: Contacts) -> np.ndarray:
@@ -254,7 +254,7 @@ def stress_extremes(contacts: Contacts, mu: float, sigma_res: Any) -> xr.Dataset
             long_name = VOCABULARY[name].long_name
             variables[name] = _labelled(contacts, value * unit, (), _about(contacts, long_name, "Pa"))
             variables[f"{name}_z"] = _labelled(contacts, z, (), {"long_name": f"{long_name}: its depth over a"})
-    variables = carried(contacts.dataset, variables)
+    variables = with_coordinates_of(contacts.dataset, variables)
     return variables.assign_coords(numbered(contacts, "layer", "interface") if stacked else {})
 
 
@@ -364,7 +364,7 @@ def _labelled(contacts: Contacts, values: np.ndarray, axes: Any, about: dict[str
     return xr.Variable((*contacts.dims, *axes), values.reshape((*contacts.shape, *values.shape[1:])), about)
 
 
-def carried(contact: xr.Dataset, variables: dict[str, xr.Variable]) -> xr.Dataset:
+def with_coordinates_of(contact: xr.Dataset, variables: dict[str, xr.Variable]) -> xr.Dataset:
     """A dataset of these variables with the coordinates of the contact except `x`."""
     dims = {*contact["status"].dims}
     left_out = [

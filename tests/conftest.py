@@ -24,7 +24,7 @@ from screens import impatient, stderr  # noqa: F401
 from solver import known
 from solver.compiled.library import VARIABLE, available
 from study import open_results
-from study.files.lock import held
+from study.files.lock import lock_file
 from study.work import engine
 
 collect_ignore = ["shared/hold.py"]  # importing it changes `study`: it is for processes of their own
@@ -93,7 +93,7 @@ def results(tmp_path_factory) -> Path:
     them. The first process of pytest that asks computes them for all."""
     alone = "PYTEST_XDIST_WORKER" not in os.environ
     folder = (tmp_path_factory.getbasetemp() if alone else tmp_path_factory.getbasetemp().parent) / "project/results"
-    with held(folder.with_name("lock")):
+    with lock_file(folder.with_name("lock")):
         if not folder.exists():
             unfinished = folder.with_name("unfinished")
             if "ROUGHCOAT_RESULTS" in os.environ:  # of tools/mutants/mutate.py: this mutant does not change them

@@ -18,7 +18,7 @@ def markdown(name: str, results) -> str:
 
 def page(text: str, results="results") -> str:
     """The text of a page. Each table after a line "<!-- table NAME -->" is written anew from the results."""
-    return re.sub(r"(<!-- table (\w+) -->\n\n)(?:[|].*\n)*", lambda found: found[1] + markdown(found[2], results), text)
+    return re.sub(r"(<!-- table (\w+) -->\n\n)(?:[|].*\n)*", lambda match: match[1] + markdown(match[2], results), text)
 
 
 if __name__ == "__main__":

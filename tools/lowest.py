@@ -4,7 +4,7 @@ import tomllib
 from pathlib import Path
 
 #: matplotlib 3.9 calls names of pyparsing of which later versions warn, and a warning fails a test.
-BESIDE = ["pyparsing==3.1.0"]
+FURTHER = ["pyparsing==3.1.0"]
 EXTRAS = ("cluster", "test")
 
 
@@ -13,7 +13,7 @@ def lowest(pyproject: dict) -> list[str]:
     project = pyproject["project"]
     allowed = pyproject["build-system"]["requires"] + project["dependencies"]
     allowed += [one for extra in EXTRAS for one in project["optional-dependencies"][extra]]
-    return [one.replace(">=", "==") for one in allowed] + BESIDE
+    return [one.replace(">=", "==") for one in allowed] + FURTHER
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.polynomial.legendre import legvander
 
 from ..numerics import special
-from ..numerics.kept import Kept
+from ..numerics.caches import Cache
 from ..numerics.quadrature import gauss_legendre, radau_nodes
 from . import film
 from .wave_rule import CUT, FILM, STIFFEST, few, quadrature
@@ -80,10 +80,10 @@ class OctaveTable(NamedTuple):
         return L1 * self.spread if self.spread.ndim == 1 else L1 @ self.spread
 
 
-_tables = Kept(_MOST_BYTES)
+_tables = Cache(_MOST_BYTES)
 
 
-def _kept(make):
+def _memo(make):
     """Decorator: the results of a function of hashable arguments are cached in `_tables`."""
 
     @wraps(make)
@@ -93,7 +93,7 @@ def _kept(make):
     return cached
 
 
-@_kept
+@_memo
 def table(mesh, sampler, octave, stiffness, many):
     """The :class:`OctaveTable` of a mesh in an octave and a class of stiffness. `sampler`: the
     :class:`~solver.kernels.kernel.Sampler` of the kernels, or None. `many`: whether the table is for many cases."""
@@ -108,27 +108,27 @@ def table(mesh, sampler, octave, stiffness, many):
     return OctaveTable(J, phi, spread, product, _film_table(mesh, many) if is_film else None)
 
 
-@_kept
+@_memo
 def _waves(mesh, octave, stiffness):
     """J and φ of an :class:`OctaveTable`, the same for many cases and for few."""
     k, _ = quadrature(octave, stiffness)
     return np.hstack([less_edge(k, mesh.s), special.j0(k)[:, None]]), transform(mesh, k)
 
 
-@_kept
+@_memo
 def _spread(sampler, octave, stiffness):
     """`spread` of an :class:`OctaveTable`, the same for all meshes."""
     return np.pi / 2 * few(sampler, octave, stiffness).spread
 
 
-@_kept
+@_memo
 def _film_table(mesh, many):
     nodes, edge = felt(mesh, mesh.x), np.zeros(1)
     rows = film_rows(mesh, mesh.s[nodes].tobytes(), many)
     return FilmTable(nodes, rows, film_rows(mesh, edge.tobytes(), True).table)
 
 
-@_kept
+@_memo
 def film_rows(mesh, s_bytes, many):
     """The convolution at any points s. For many cases, or on few nodes, it is a :class:`film.Whole`, which serves all
     later cases; otherwise a :class:`film.Convolution`."""
@@ -208,6 +208,6 @@ def between(octave, stiffness, s):
     return (_between if small else _between.__wrapped__)(octave, stiffness % len(STIFFEST), s.tobytes())
 
 
-@_kept
+@_memo
 def _between(octave, stiffness, s_bytes):
     return less_edge(quadrature(octave, stiffness)[0], np.frombuffer(s_bytes))

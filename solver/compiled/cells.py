@@ -10,7 +10,7 @@ import numpy as np
 
 from ..laws.cell.cell_law import exponent, number, settled_slope, spot_guess
 from ..laws.cell.family import NUMBERS
-from ..numerics.kept import Kept
+from ..numerics.caches import Cache
 
 #: As in batch.h: the pieces in an octave, and the coefficients of each polynomial for exp(P), exp(G) and exp(Q). The
 #: polynomials for the first guess have half as many. All agree with the series to 1e-13 (tests/compiled/test_cells.py).
@@ -18,7 +18,7 @@ PIECES, ROW = 32, 8
 #: The least number of octaves.
 _OCTAVES = 2
 #: Families for later calls, at most 40 MB.
-_kept = Kept(4e7)
+_cache = Cache(4e7)
 
 
 def cells_of(rows):
@@ -26,7 +26,7 @@ def cells_of(rows):
     its family, (B,) integers."""
     digests, first, index = np.unique(number(rows, "digest")[:, 0], return_index=True, return_inverse=True)
     families = [
-        _kept.get((digest, rows.shape[1]), lambda i=i: _family(rows[i : i + 1]))
+        _cache.get((digest, rows.shape[1]), lambda i=i: _family(rows[i : i + 1]))
         for digest, i in zip(digests.tolist(), first, strict=True)
     ]
     addresses = np.array([family.ctypes.data for family in families], dtype=np.int64)

@@ -13,7 +13,7 @@ from ..kernels.closed_form import bond_constants
 from ..kernels.two_layers import SAMPLER, TwoLayers
 from ..laws import LAWS
 from ..laws.cell.cell_law import number, spot_curve
-from ..numerics.kept import Kept
+from ..numerics.caches import Cache
 from ..numerics.ladder import LADDER, finer_mesh
 from ..numerics.mesh import mesh_of
 from ..parameters import one_of
@@ -48,7 +48,7 @@ MOST_WAVES = 4096
 #: meshes.
 _PRODUCT = 32
 #: Meshes and tables for later calls, at most 200 MB.
-_kept = Kept(2e8)
+_cache = Cache(2e8)
 
 
 def solve_newton(cases, rtol, nodes, limit, x):
@@ -175,14 +175,14 @@ class CStructure(tuple):
 
 def mesh_for(n, s_bytes):
     """:class:`CStructure` with the :class:`.library.CMesh` of n nodes and the points of profiles."""
-    return _kept.get(("mesh", n, s_bytes), lambda: _mesh(mesh_of(n), np.frombuffer(s_bytes)))
+    return _cache.get(("mesh", n, s_bytes), lambda: _mesh(mesh_of(n), np.frombuffer(s_bytes)))
 
 
 def table_for(n, octave, stiffness, s_bytes):
     """:class:`CStructure` with the :class:`.library.CTable` of an octave of h/a and a class of stiffness on n nodes;
     None if the core has no room for it."""
     key = "table", n, octave, stiffness, s_bytes
-    return _kept.get(key, lambda: _table(mesh_of(n), octave, stiffness, np.frombuffer(s_bytes)))
+    return _cache.get(key, lambda: _table(mesh_of(n), octave, stiffness, np.frombuffer(s_bytes)))
 
 
 def _mesh(mesh, profile):

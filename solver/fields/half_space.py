@@ -54,35 +54,35 @@ def integrals(pressure, r, z, most=2, displacements=True):
 
 
 class Nodes(NamedTuple):
-    """Nodes t (R, T) of the integrals over t, their distance `beyond` = t - r, and the `weight` φ dt there (B, R,
+    """Nodes t (R, T) of the integrals over t, their distance `gap` = t - r, and the `weight` φ dt there (B, R,
     T)."""
 
     t: np.ndarray
-    beyond: np.ndarray
+    gap: np.ndarray
     weight: np.ndarray
 
     @classmethod
     def of(cls, pressure, r, halvings):
         """The nodes for radii r (R,), on panels that are halved `halvings` times towards t = r."""
-        t, beyond, s, width = _places(pressure.mesh, r, halvings)
+        t, gap, s, width = _places(pressure.mesh, r, halvings)
         density = pressure.density(s) * s + (2 / np.pi * pressure.at_edge())[:, None, None]
         weight = density * t * width
         if pressure.A is None:
-            return cls(t, beyond, weight)
+            return cls(t, gap, weight)
         edge = np.broadcast_to(pressure.A[:, None, None], (len(weight), len(r), 1))
-        t, beyond = np.hstack([t, np.ones((len(r), 1))]), np.hstack([beyond, (1 - r)[:, None]])
-        return cls(t, beyond, np.concatenate([weight, edge], axis=2))
+        t, gap = np.hstack([t, np.ones((len(r), 1))]), np.hstack([gap, (1 - r)[:, None]])
+        return cls(t, gap, np.concatenate([weight, edge], axis=2))
 
     @classmethod
     def of_each(cls, pressure, r, halvings):
         """As :meth:`of`, for as many cases as radii, each at its own radius; the weights are (R, T)."""
-        t, beyond, s, width = _places(pressure.mesh, r, halvings)
+        t, gap, s, width = _places(pressure.mesh, r, halvings)
         density = pressure.density_of_each(s) * s + (2 / np.pi * pressure.at_edge())[:, None]
         weight = density * t * width
         if pressure.A is None:
-            return cls(t, beyond, weight)
-        t, beyond = np.hstack([t, np.ones((len(r), 1))]), np.hstack([beyond, (1 - r)[:, None]])
-        return cls(t, beyond, np.hstack([weight, pressure.A[:, None]]))
+            return cls(t, gap, weight)
+        t, gap = np.hstack([t, np.ones((len(r), 1))]), np.hstack([gap, (1 - r)[:, None]])
+        return cls(t, gap, np.hstack([weight, pressure.A[:, None]]))
 
 
 def _places(mesh, r, halvings):
@@ -103,8 +103,8 @@ def _places(mesh, r, halvings):
     distance = (ends[:, :-1, None] + width * x).reshape(len(r), -1)
     angle = centre + distance
     t, s = np.sin(angle), np.maximum(np.cos(angle), 0.0)
-    beyond = 2 * np.cos(centre + distance / 2) * np.sin(distance / 2) - np.maximum(r - 1, 0.0)[:, None]
-    return t, beyond, s, (width * w).reshape(len(r), -1)
+    gap = 2 * np.cos(centre + distance / 2) * np.sin(distance / 2) - np.maximum(r - 1, 0.0)[:, None]
+    return t, gap, s, (width * w).reshape(len(r), -1)
 
 
 def _halvings(r, z):
@@ -123,7 +123,7 @@ def halvings_at(r, z):
 def _kernels(nodes, r, z, most, displacements):
     """Kernels (R, T) of E, F and D at the depth z, a list over the order each."""
     t = nodes.t
-    real, imaginary = z * z - nodes.beyond * (t + r), z * t  # real part of rho², and its imaginary part over -2
+    real, imaginary = z * z - nodes.gap * (t + r), z * t  # real part of rho², and its imaginary part over -2
     large = np.sqrt((np.hypot(real, 2 * imaginary) + np.abs(real)) / 2) + _TINY
     small = imaginary / large
     rho = np.where(real >= 0, large - 1j * small, small - 1j * large)

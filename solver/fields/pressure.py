@@ -26,7 +26,7 @@ _MORE = 16
 _LONG, _WINDOW, _WIDE = 500.0, 120.0, 8.0
 _NARROW = 40.0
 #: Matrices of at most this many entries are cached for other cases and other points.
-_KEPT = 250_000
+_LARGEST_CACHED = 250_000
 #: Numbers in an array of basis functions.
 _AT_ONCE = 2_000_000
 #: An edge pressure below this part of the largest is rounding. It would make stresses infinite at the edge.
@@ -48,7 +48,7 @@ class Pressure(NamedTuple):
         pieces = [piece for piece in np.split(k, np.searchsorted(k, octaves)) if len(piece)]
         rows = [
             self.values @ _kept_waves(self.mesh, piece.tobytes())
-            if piece.size * self.mesh.n <= _KEPT
+            if piece.size * self.mesh.n <= _LARGEST_CACHED
             else _waves(self.mesh, self.values, piece)
             for piece in pieces
         ]

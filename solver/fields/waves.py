@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..numerics import special
-from ..numerics.kept import Kept
+from ..numerics.caches import Cache
 from ..numerics.quadrature import gauss_legendre
 
 #: A panel of _POINTS Gauss points covers at most _RADIANS of the phase of p^ J_m. It is no longer than its distance
@@ -39,7 +39,7 @@ _SMALL, _TERMS = 3.0, 14
 #: Largest number of entries of an array of states, which limits the number of waves at a time.
 _AT_ONCE = 200_000
 #: Bessel functions of coarse grids, which bodies of one octave of h/a share. They are half of the time of such grids.
-_bessel = Kept(3e7)
+_bessel = Cache(3e7)
 
 
 class Load(NamedTuple):

@@ -130,7 +130,7 @@ def derivative(v, nu):
     return w + 2 * T, ((1 - 2 * nu) * S - nu * u) / (1 - nu), -T, (u + nu * S) / (1 - nu)
 
 
-def carried(x, nu, v):
+def state_below(x, nu, v):
     """State e^(Ax) v at the distance x below a plane with the state v; for x below about 1.5. With N = A A - 1,
 
     e^(Ax) = cosh x + sinh x A + (x sinh x)/2 N + (x cosh x - sinh x)/2 A N.
@@ -162,7 +162,7 @@ def _solved(first, second, right):
 def thin_surface(bodies, X, S, T):
     """State of the surface of a thin layer under the tractions S, T."""
     nu = bodies.nu1
-    ends = (bodies.jumps(carried(X, nu, v)) for v in ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, S, T)))
+    ends = (bodies.jumps(state_below(X, nu, v)) for v in ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, S, T)))
     along, deep, right = ends
     u, w = _solved(along, deep, tuple(-v for v in right))
     return u, w, S, T
@@ -195,7 +195,7 @@ def wave_state(kind, bodies, X, x, load, thin):
         return decaying(x - X, bodies.nu2, S, np.where(bodies.bonded, T, 0.0))
     nu, less = bodies.nu1, kind == StatePart.DIFFERENCE
     if thin:
-        v = carried(x, nu, thin_surface(bodies, X, *load))
+        v = state_below(x, nu, thin_surface(bodies, X, *load))
         return tuple(a - b for a, b in zip(v, decaying(x, nu, *load), strict=True)) if less else v
     down, up = thick_waves(bodies, X, *load)
     down = down if less else tuple(a + b for a, b in zip(down, load, strict=True))

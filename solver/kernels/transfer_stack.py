@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .minors import LayerPowers, across, base, scaled, through
-from .transfer import THIN, carried, decaying, growing
+from .transfer import THIN, decaying, growing, state_below
 
 
 class StackWaves(NamedTuple):
@@ -45,8 +45,8 @@ class StackWaves(NamedTuple):
 
     def up_to(self, end):
         """The first waves, as many as `end`."""
-        kept = {"tops": self.tops, "nu": self.nu}
-        return StackWaves(**{name: values[..., :end] for name, values in self._asdict().items()} | kept)
+        constants = {"tops": self.tops, "nu": self.nu}
+        return StackWaves(**{name: values[..., :end] for name, values in self._asdict().items()} | constants)
 
     def state(self, region, z, less=False):
         """u, w, S, T (4, B, Z, K) of :func:`~.transfer.wave_state` at depths z (B, Z) in a region. less : less those of
@@ -59,7 +59,7 @@ class StackWaves(NamedTuple):
         state = np.empty((4, *x.shape))
         S, T = self.tractions[region][:, :, None][..., thin]
         here = x[..., thin]
-        state[..., thin] = carried(here, nu, (*self.displacements[region][:, :, None][..., thin], S, T))
+        state[..., thin] = state_below(here, nu, (*self.displacements[region][:, :, None][..., thin], S, T))
         if less:
             state[..., thin] -= decaying(here, nu, S, T)
         y = (self.k * (self.tops[:, region + 1, None] - z)[..., None])[..., thick]
@@ -105,7 +105,7 @@ def stack_waves(stack, k, h, load):
         is_thin, is_thick, ratio = thin[j], ~thin[j], nu[:, j, None]
         t, below, moved = tractions[j], tractions[j + 1], displacements[j]
         moved[..., is_thin] = _moved(at_top[..., is_thin], t[..., is_thin])
-        below[..., is_thin] = carried(X[:, is_thin], ratio, (*moved[..., is_thin], *t[..., is_thin]))[2:]
+        below[..., is_thin] = state_below(X[:, is_thin], ratio, (*moved[..., is_thin], *t[..., is_thin]))[2:]
         c, b = _two_waves(at_bottom[..., is_thick], X[:, is_thick], ratio, t[..., is_thick])
         down[j][..., is_thick], up[j][..., is_thick] = c - t[..., is_thick], b
         below[..., is_thick] = np.array(decaying(X[:, is_thick], ratio, *c)[2:]) + b

@@ -17,7 +17,7 @@ from .. import laws, shapes
 from ..laws import own_table, trial
 from ..laws.law import Law
 from ..numerics import profiles
-from ..numerics.kept import once, shared_lock
+from ..numerics.caches import once, shared_lock
 from ..parameters import COMMON, CONTROL, COUPLED, LAYER, LAYERED, NamedRows, Parameter, full_name, uses
 from ..parameters import row as row_of_layer
 from ..shapes import table
@@ -309,10 +309,10 @@ def _declared_by_shapes(known):
     return {name: row._replace(needed_by=("shape", words)) for name, (row, words) in declared.items()}
 
 
-def _refuse_one_name_of_two(given: Iterable[Law]) -> None:
+def _refuse_one_name_of_two(of_call: Iterable[Law]) -> None:
     """Raise ValueError for two different laws of one name: every case with the name would have the last of them."""
     by_name: dict[str, Law] = {}
-    for law in given:
+    for law in of_call:
         first = by_name.setdefault(law.name, law)
         if first is not law and not _are_one(first, law):
             raise ValueError(f'two micro laws of one call are called "{law.name}": give each a name of its own')

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..numerics import special
-from ..numerics.kept import Kept
+from ..numerics.caches import Cache
 from ..numerics.quadrature import gauss_legendre
 from ..parameters import Parameter
 from . import disc_cell, spread
@@ -122,7 +122,7 @@ def _uniform(x, cut):
     return np.ones_like(x) / (2 * cut)
 
 
-_kept = Kept(_MOST_BYTES)
+_cache = Cache(_MOST_BYTES)
 
 
 def _tables(density, field, sigma, cut):
@@ -131,7 +131,7 @@ def _tables(density, field, sigma, cut):
     # as complex numbers, pairs are sorted in a tenth of the time
     pairs, group = np.unique(np.concatenate([sigma, cut], axis=1).view(complex)[:, 0], return_inverse=True)
     keys = [(density, field, pair.real, pair.imag) for pair in pairs.tolist()]
-    tables = _kept.several(keys, lambda missing: _computed(density, field, missing))
+    tables = _cache.several(keys, lambda missing: _computed(density, field, missing))
     return np.array(tables).reshape(len(keys), 2, spread.KNOTS * density.fine), group.ravel()
 
 
@@ -252,7 +252,7 @@ class _Body(NamedTuple):
             at = [keys.index(key) for key in missing]
             return [self._table(triples[i], rows[first[i]], summits[first[i]]) for i in at]
 
-        tables = _kept.several(keys, computed)
+        tables = _cache.several(keys, computed)
         return np.array(tables).reshape(len(keys), 2, spread.KNOTS * self.density.fine), group.ravel()
 
     def _table(self, numbers, row, summit):

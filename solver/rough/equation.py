@@ -19,7 +19,7 @@ import numpy as np
 from ..body.operator import Body, Operator
 from ..laws import Bound, Curve
 from ..numerics import batch
-from ..numerics.kept import once
+from ..numerics.caches import once
 from ..shapes.shape import Shape, has_radius
 from .punch import largest, punch_of
 
@@ -187,11 +187,15 @@ def groups(cases, eta):
 def evaluate(cases, state, mesh, near=None, curve=None):
     """:class:`Evaluation` of `cases` at `state`. `near`: their operator at another state or on another mesh, from which
     everything that is still valid is reused. `curve`: that of their law at `state`, if it has been computed."""
+    return evaluate_with(cases.body.at(np.exp(state.eta), mesh, near), cases, state, curve)
+
+
+def evaluate_with(operator, cases, state, curve=None):
+    """:class:`Evaluation` of `cases` at `state`, at which their `operator` is known; `curve` as above."""
     X, Y, Z = groups(cases, state.eta)
     curve, a = cases.law.evaluate(state.y) if curve is None else curve, np.exp(state.eta)
-    operator = cases.body.at(a, mesh, near)
     Kq, edge_q = operator.products(curve.q)
-    F = X * Kq + Y * curve.q + Z * curve.g - cases.punch.drop(a, mesh.s)
+    F = X * Kq + Y * curve.q + Z * curve.g - cases.punch.drop(a, operator.mesh.s)
     return Evaluation(cases, state, operator, curve, X, Y, Z, Kq, edge_q, F)
 
 

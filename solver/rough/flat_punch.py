@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..numerics import batch
-from ..numerics.kept import once
+from ..numerics.caches import once
 from ..numerics.ladder import MARGIN, finer_mesh
 from ..numerics.linalg import solve_stack
 from ..numerics.mesh import mesh_of, panel_mesh

@@ -68,7 +68,8 @@ def _answers(start, solved_as: SolvedCases, moved, x):
     eta[-2 * size :] += np.repeat([STEP, -STEP], size)
     bent, added = start.at.cases.law.bent(start.at.state.y, start.at.curve.q), solved_as.added.any()
     answers, at_x = {name: np.empty(len(moved)) for name in QUANTITIES}, np.empty((2, len(moved), len(x)))
-    for blocks, contacts in moved_contacts(start, cases, eta):
+    kinks = on_kinks(start.at)
+    for blocks, contacts in moved_contacts(start, cases, eta, count=1 + kinks):
         rows = (np.array(blocks)[:, None] * size + np.arange(size)).ravel()
         values, E2 = quantities(contacts.at)._asdict(), solved_as.E2[rows]
         values["dP_dD"] = stiffness(contacts.at, contacts.tangent, values["P"], values["D"])
@@ -86,6 +87,7 @@ def _answers(start, solved_as: SolvedCases, moved, x):
             at_x[1, rows] = law.at(at_x[0, rows]).lam
         for name, array in answers.items():
             array[rows] = values[name]
-    if on_kinks(start.at):
-        answers["dP_dD"] = branch_slope(start, cases, eta) * answers["P"] / answers["D"]
+    if kinks:
+        logs = np.log([answers["P"] / solved_as.E2, answers["D"]])
+        answers["dP_dD"] = branch_slope(start, cases, eta, logs) * answers["P"] / answers["D"]
     return answers, at_x

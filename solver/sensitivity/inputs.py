@@ -8,8 +8,9 @@ import numpy as np
 from ..layers import numbers_of
 from ..parameters import CONTROL, is_ratio
 
-#: An input is moved up and down by this part of itself, a Poisson ratio by this number. The error by the third
-#: derivative is then 1e-8 times this, and that by rounding 1e-12 to 1e-9.
+#: The logarithm of an input is moved up and down by this, and so is a Poisson ratio. The error by the third derivative
+#: is then 1e-8 times this, and that by rounding 1e-12 to 1e-9. The radius moves by the same factors: then few ratios of
+#: two lengths are different, such as those that say where the kinks of a punch are (:mod:`.step`).
 STEP = 1e-4
 #: Numbers that are not inputs: they control how a case is solved, or are units, whose effect follows from dimensions.
 _NO_INPUTS = {"accuracy", "k", "rtol", "R", "E2"}
@@ -32,7 +33,10 @@ def moved_cases(problem, inputs, step=STEP, copies=0):
     for i, name in enumerate(inputs):
         values = np.array(rows.value if name in CONTROL else getattr(rows, name), dtype=float)
         pair = values.reshape(-1, 2, size)[i]
-        pair += sign * step * (1.0 if is_ratio(name) else pair)
+        if is_ratio(name):
+            pair += sign * step
+        else:
+            pair *= np.exp(sign * step)
         if name in CONTROL:
             value = values
         else:

@@ -16,14 +16,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..body.operator import Operator
 from ..laws import Curve
-from ..numerics import batch
 from ..numerics.linalg import solve_stack
 from ..numerics.mesh import panel_mesh
-from ..rough.equation import Evaluation, Unknowns, evaluate, jacobian
+from ..rough.equation import Evaluation, Unknowns, evaluate_with, jacobian
 from ..rough.panels import ends_of, stretch
 from ..rough.results import quantities
 from .inputs import STEP
+
+#: Decimal places of the places of kinks, in s, above which only rounding is different.
+_DIGITS = 14
 
 
 class Solved(NamedTuple):
@@ -32,18 +35,20 @@ class Solved(NamedTuple):
     at : the equation at the solutions
     inverse : (B, n, n), the inverse of dF/dq over X
     tangent : (B, n), dq/d ln a along the branch of solutions
+    meshes : the meshes of moved contacts whose panels follow kinks, by the places of these
     """
 
     at: Evaluation
     inverse: np.ndarray
     tangent: np.ndarray
+    meshes: dict
 
     @classmethod
     def of(cls, at):
         diagonal, dF_deta = jacobian(at)
         unit = np.broadcast_to(np.eye(at.mesh.n), (*diagonal.shape, at.mesh.n))
         inverse = np.ascontiguousarray(solve_stack(at.operator.K, diagonal, unit))
-        return cls(at, inverse, -np.einsum("bij,bj->bi", inverse, dF_deta))
+        return cls(at, inverse, -np.einsum("bij,bj->bi", inverse, dF_deta), {})
 
     def correction(self, residual):
         """The change of q, or of its slope, (m B, n), whose subtraction removes the `residual` over X, (m B, n), of the
@@ -66,7 +71,7 @@ def moved_contacts(start, cases, eta, count=1):
     order."""
     size = len(start.at.state.eta)
     changed = _changed(start.at, cases, eta)
-    for mesh, blocks in _meshes(start.at, cases, eta).items():
+    for mesh, blocks in _meshes(start, cases, eta).items():
         rows = (np.array(blocks)[:, None] * size + np.arange(size)).ravel()
         part = cases.take(rows), eta[rows]
         operator = _operator(start.at, *part, mesh, changed[blocks] | (mesh != start.at.mesh))
@@ -77,10 +82,10 @@ def _after_steps(start, cases, eta, operator, count):
     times, before = len(eta) // len(start.tangent), start.at
     y, tangent = np.tile(before.state.y, (times, 1)), np.tile(start.tangent, (times, 1))
     curve = moved_curve(cases.law, before.cases.law, before.state.y, before.curve)
-    now = evaluate(cases, Unknowns(y, eta), operator.mesh, operator, curve)
+    now = evaluate_with(operator, cases, Unknowns(y, eta), curve)
     for _ in range(count):
         y = cases.law.limit(y - start.correction(now.F / now.X) / now.curve.dq, y)
-        now = evaluate(cases, Unknowns(y, eta), operator.mesh, operator)
+        now = evaluate_with(operator, cases, Unknowns(y, eta))
     diagonal, dF_deta = jacobian(now)
     residual = operator.products(tangent)[0] + diagonal * tangent + dF_deta
     return Moved(now, tangent - start.correction(residual))
@@ -111,17 +116,29 @@ def _ends(ev):
     return ends_of(ev.cases.shape, float(np.exp(ev.state.eta[0])))
 
 
-def branch_slope(start, cases, eta):
+def branch_slope(start, cases, eta, logs):
     """d ln P/d ln D (m,) of moved cases whose panels follow kinks, at which the slope for a fixed place is infinite. It
-    is from the difference of contacts with two radii. Each takes two steps: the result is a second derivative, and
-    needs terms of second order."""
-    logs = np.empty((2, 2, len(eta)))
-    for end, sign in zip(logs, (1, -1), strict=True):
-        for blocks, contacts in moved_contacts(start, cases, eta + sign * STEP, count=2):
-            numbers = quantities(contacts.at)
-            end[:, blocks] = np.log(numbers.P), np.log(numbers.D)
-    of_load, of_depth = logs[0] - logs[1]
-    return of_load / of_depth
+    is from differences of contacts with two radii. Each takes two steps: the result is a second derivative, and needs
+    terms of second order.
+
+    cases, eta : pairs of moved contacts, up and down; in the last pair it is the radius that is moved
+    logs : (2, m), ln P and ln D there
+
+    Each pair is moved once more: with the input up the radius goes up, and down with the input down. So kinks whose
+    place is an input come back to where they were, and need no further mesh.
+    """
+    sign, last = np.tile([1.0, -1.0], len(eta) // 2), len(eta) - 2  # the case of the last pair is the solved one
+    further = np.empty((2, last + 1))
+    moved = np.append(eta[:last] + STEP * sign[:last], start.at.state.eta)
+    for blocks, contacts in moved_contacts(start, cases.take(np.arange(last + 1)), moved, count=2):
+        numbers = quantities(contacts.at)
+        further[:, blocks] = np.log(numbers.P), np.log(numbers.D)
+    (high, low), middle = logs[:, last:].T, further[:, last]
+    slope, bend = (high - low) / (2 * STEP), (high - 2 * middle + low) / STEP**2
+    change = ((further[:, :last] - logs[:, :last]) * sign[:last]).reshape(2, -1, 2)
+    mixed = (change[..., 0] - change[..., 1]) / (2 * STEP**2) - bend[:, None] / 2
+    by_input = np.column_stack([mixed, bend]) / slope[:, None]
+    return slope[0] / slope[1] * np.exp(STEP * sign * np.repeat(by_input[0] - by_input[1], 2))
 
 
 def _changed(ev, cases, eta):
@@ -146,30 +163,78 @@ def _numbers(body):
             yield part
 
 
-def _meshes(ev, cases, eta):
+def _meshes(start, cases, eta):
     """Mesh -> its blocks. There is one mesh, that of the solved cases, unless panels end at kinks: then the panels of
-    each block follow its kinks."""
-    mesh, blocks = ev.mesh, range(len(eta) // len(ev.state.eta))
+    each block follow its kinks. Blocks whose kinks are at the same places, but for rounding, share their mesh, which is
+    most of the work for a case with kinks."""
+    ev, size = start.at, len(start.at.state.eta)
+    blocks = range(len(eta) // size)
     if not on_kinks(ev):
-        return {mesh: list(blocks)}
-    before, meshes = _ends(ev), {}
+        return {ev.mesh: list(blocks)}
+    before, of_mesh = _ends(ev), {}
+    places = start.meshes or {_rounded(before): ev.mesh}
+    start.meshes.update(places)
     for block in blocks:
         ends = ends_of(cases.shape.take([block]), float(np.exp(eta[block])))
-        follows = len(ends) == len(before) and ends != before
-        stretched = panel_mesh(mesh.order, stretch(mesh.breaks, before, ends)) if follows else mesh
-        meshes.setdefault(stretched, []).append(block)
-    return meshes
+        if len(ends) != len(before):
+            mesh = ev.mesh
+        elif (mesh := start.meshes.get(_rounded(ends))) is None:
+            mesh = panel_mesh(ev.mesh.order, stretch(ev.mesh.breaks, before, ends))
+            start.meshes[_rounded(ends)] = mesh
+        of_mesh.setdefault(mesh, []).append(block)
+    return of_mesh
+
+
+def _rounded(ends):
+    """Places of kinks to _DIGITS: a key for places that differ by rounding."""
+    return tuple(round(end, _DIGITS) for end in ends)
 
 
 def _operator(ev, cases, eta, mesh, changed):
     """The operator of moved cases on a mesh: a new one for the blocks that have `changed`, (m,) bool, and that of the
     solved cases for the others."""
-    size = len(ev.state.eta)
     if cases.body.kernel is None:  # one operator for all bodies and radii
         return cases.body.at(np.exp(eta), mesh)
-    places = np.arange(len(changed) * size).reshape(-1, size)
-    anew, same = places[changed].ravel(), places[~changed]
-    operators, where = [ev.operator] * len(same), [*same]
-    if len(anew):
-        operators, where = [cases.body.take(anew).at(np.exp(eta[anew]), mesh), *operators], [anew, *where]
-    return batch.join(operators, where)
+    anew = np.flatnonzero(np.repeat(changed, len(ev.state.eta)))
+    operator = cases.body.take(anew).at(np.exp(eta[anew]), mesh) if len(anew) else None
+    return operator if changed.all() else BlockOperator(ev.operator, operator, changed)
+
+
+class BlockOperator(NamedTuple):
+    """The :class:`~solver.body.operator.Operator` of m blocks of B cases, as far as a step needs it.
+
+    solved : operator of the B solved cases, which most of the blocks share
+    anew : that of the cases in the blocks that have `changed`, (m,) bool; None where no block has
+    """
+
+    solved: Operator
+    anew: Operator | None
+    changed: np.ndarray
+
+    @property
+    def mesh(self):
+        return self.solved.mesh
+
+    @property
+    def edge(self):
+        rows = np.repeat(self.solved.edge[None], len(self.changed), axis=0)
+        if self.anew is not None:
+            rows[self.changed] = self.anew.edge.reshape(-1, *rows.shape[1:])
+        return rows.reshape(-1, rows.shape[-1])
+
+    def products(self, q):
+        return self._of_blocks("products", q)
+
+    def slopes(self, q):
+        return self._of_blocks("slopes", q)
+
+    def _of_blocks(self, name, q):
+        blocks = q.reshape(len(self.changed), -1, q.shape[-1])
+        rows, edge = np.empty_like(blocks), np.empty(blocks.shape[:2])
+        for number in np.flatnonzero(~self.changed):
+            rows[number], edge[number] = getattr(self.solved, name)(blocks[number])
+        if self.anew is not None:
+            anew, at_edge = getattr(self.anew, name)(blocks[self.changed].reshape(-1, q.shape[-1]))
+            rows[self.changed] = anew.reshape(-1, *blocks.shape[1:])
+            edge[self.changed] = at_edge.reshape(-1, blocks.shape[1])
+        return rows.reshape(q.shape), edge.ravel()

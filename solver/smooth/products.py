@@ -17,7 +17,7 @@ import numpy as np
 from ..body.film import step
 from ..body.wave_rule import CUT, FILM, few, quadrature
 from ..numerics import special
-from ..numerics.kept import Kept
+from ..numerics.caches import Cache
 from ..numerics.quadrature import gauss_legendre
 
 #: Number N of functions in the basis for each octave of h/a from 3 downwards: for shapes that are smooth in r² (True),
@@ -31,7 +31,7 @@ _SIZES = {
 LAST = 4 - len(_SIZES[True])
 #: Most bytes of each cache.
 _MOST = 256_000_000
-_TABLES, _WAVES = Kept(_MOST), Kept(_MOST)
+_TABLES, _WAVES = Cache(_MOST), Cache(_MOST)
 #: Octave of h/a below which the few nodes are not enough: they are chosen for functions that fall like 1/κ², and the
 #: cos κ of the edge does not fall. A table would also be large.
 _THINNEST = -4
@@ -156,8 +156,8 @@ def _waves(octave, stiffness, size, by_recurrence=False):
         far, far_weight = _far_rule(size)
     else:
         (k, weight), (far, far_weight) = quadrature(octave, stiffness), np.empty((2, 0))
-    made = differences_at(size, k[None])[0] if by_recurrence else differences(size, k)
-    near = np.vstack([made, np.cos(k), k * np.sin(k)])
+    rows = differences_at(size, k[None])[0] if by_recurrence else differences(size, k)
+    near = np.vstack([rows, np.cos(k), k * np.sin(k)])
     amplitudes = _far_by_recurrence(size, far) if by_recurrence else _far(size, far)
     if len(far):
         amplitudes[0] = -1 - 1j / far

@@ -65,24 +65,24 @@ def first_crossing(
         several cost as much as one; None: there are none
     """
     same_grid = (lambda index, at: at) if same_grid is None else same_grid
-    made = Crossing.none(len(start))
+    crossing = Crossing.none(len(start))
     index = np.flatnonzero(start <= last)
     places, values, failed = _bracketed(stress, index, start[index], np.log(last[index]), same_grid)
     there = np.isfinite(places).all(axis=0)
-    made.unsolved[index] = ~there & (failed | np.isfinite(places[1]))
-    _searched(made, stress, index[there], places[:, there], values[:, there])
+    crossing.unsolved[index] = ~there & (failed | np.isfinite(places[1]))
+    _searched(crossing, stress, index[there], places[:, there], values[:, there])
     if slopes:
-        _sloped(made, stress, np.flatnonzero(made.crossed))
-    return made
+        _sloped(crossing, stress, np.flatnonzero(crossing.crossed))
+    return crossing
 
 
-def _sloped(made, stress, index):
-    """Put `by_strength` into `made`, by a contact a little beyond the crossing."""
+def _sloped(crossing, stress, index):
+    """Put `by_strength` into `crossing`, by a contact a little beyond the crossing."""
     if len(index):
-        value, _, _, solution = stress(index, made.at[index] * (1 + ASIDE), False)
+        value, _, _, solution = stress(index, crossing.at[index] * (1 + ASIDE), False)
         for number in NUMBERS:
-            change = np.log(getattr(solution, number) / made.numbers[number][index])
-            made.by_strength[number][index] = change / np.log(value)
+            change = np.log(getattr(solution, number) / crossing.numbers[number][index])
+            crossing.by_strength[number][index] = change / np.log(value)
 
 
 def _bracketed(stress, index, start, last, same_grid):
@@ -141,8 +141,8 @@ def _near(value, rows):
     return (value >= 1 - _MISSED) & (before == 0)
 
 
-def _searched(made, stress, index, places, values):
-    """Put the crossings between two places into `made`: by false position, where the value at an end that stays is
+def _searched(crossing, stress, index, places, values):
+    """Put the crossings between two places into `crossing`: by false position, where the value at an end that stays is
     halved."""
     (below, above), (left, right) = places, values
     stays = np.zeros(len(index))
@@ -154,10 +154,10 @@ def _searched(made, stress, index, places, values):
         f = np.log(value)
         done, over = np.abs(f) <= _SAME, f > 0
         rows = index[active[done]]
-        made.crossed[rows], made.at[rows] = True, np.exp(at[done])
-        made.r[rows], made.z[rows] = r[done], z[done]
+        crossing.crossed[rows], crossing.at[rows] = True, np.exp(at[done])
+        crossing.r[rows], crossing.z[rows] = r[done], z[done]
         for number in NUMBERS:
-            made.numbers[number][rows] = getattr(solution, number)[done]
+            crossing.numbers[number][rows] = getattr(solution, number)[done]
         some = active[over]
         left[some] = np.where(stays[some] > 0, left[some] / 2, left[some])
         above[some], right[some], stays[some] = at[over], f[over], 1
@@ -166,4 +166,4 @@ def _searched(made, stress, index, places, values):
         below[some], left[some], stays[some] = at[~over], np.nan_to_num(f[~over], nan=-1.0), -1
         return done
 
-    made.unsolved[index[march(step, np.arange(len(index)), most=_MOST)]] = True
+    crossing.unsolved[index[march(step, np.arange(len(index)), most=_MOST)]] = True

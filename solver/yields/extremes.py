@@ -41,7 +41,7 @@ _RIVAL, _ROUGH = 0.85, 3e-4
 #: distances beyond the edge in lengths over which a layer bends, h or n^(1/3) h; and below, depths in a, in octaves of
 #: h, and below the interface in a.
 _RADII = np.array([0, 0.15, 0.3, 0.45, 0.6, 0.7, 0.8, 0.9, 0.95, 1, 1.05, 1.15, 1.3, 1.6])
-_BEYOND, _OF_LENGTHS = np.array([0.12, 0.25, 0.5, 1, 1.5, 2, 3, 4.5, 6.5]), np.array([0.25, 0.4, 0.5, 0.75, 1])
+_PAST_EDGE, _OF_LENGTHS = np.array([0.12, 0.25, 0.5, 1, 1.5, 2, 3, 4.5, 6.5]), np.array([0.25, 0.4, 0.5, 0.75, 1])
 #: Radii of the surface and of the interface where layers thicker than _FELT may have weak tension.
 _AWAY, _FELT = np.array([1.8, 2.2, 2.5, 2.8, 3.2, 3.7, 4.4, 5.5]), 0.1
 #: Those of films that are nearer to the edge than this, inside too.
@@ -52,7 +52,7 @@ _BELOW = np.array([0, 0.05, 0.15, 0.3, 0.48, 0.65, 0.9, 1.3])
 #: If the pressure is largest in a ring: distances inside the edge, and depths below it, in the distance of the ring.
 _OF_RING, _BELOW_RING = np.array([-1, -0.4, 0, 0.3, 0.6, 1, 1.5, 2.2]), np.array([0.25, 0.5, 0.8, 1.2, 1.8, 2.7, 4, 6])
 #: The ratio of successive lengths of a thick or stiff layer is at most _APART; lengths within _ALIKE count as one.
-_APART, _ALIKE = 25.0, 2.0
+_RATIO, _ALIKE = 25.0, 2.0
 #: Largest distance of a place, in units of a plus the length over which a layer spreads the pressure.
 _FARTHEST = 10.0
 #: Where s = sqrt(1 - r²) is above this, near the axis, the coordinate along the surface is the radius.
@@ -98,11 +98,11 @@ def extremes(loaded, names=EXTREMES):
 
 def together(batches, names=EXTREMES):
     """The :func:`extremes` of each of several :class:`~.loaded.Loaded`, with or without layers, which share mu."""
-    made, tasks = [], {}  # -> the names whose starts they are
+    answers, tasks = [], {}  # -> the names whose starts they are
     boxes = []
     for number, loaded in enumerate(batches):
         values, wanted, grids, coarse = _on_coarse_grids(loaded, names)
-        made.append(values)
+        answers.append(values)
         largest = np.abs(loaded.pressure.values).max(axis=1)
         there = np.isfinite(loaded.pressure.values).all(axis=1)
         for name, kinds in wanted.items():
@@ -117,36 +117,36 @@ def together(batches, names=EXTREMES):
     jets = [Jets(loaded) for loaded in batches]
     for task, value, place in zip(tasks, *climbed(jets, list(tasks), boxes, scales, batches[0].signs), strict=True):
         for name in tasks[task]:
-            best = made[task.batch][name][:, task.case]
+            best = answers[task.batch][name][:, task.case]
             if not best[0] >= value:
                 best[:] = value, *place
-    for loaded, values in zip(batches, made, strict=True):
+    for loaded, values in zip(batches, answers, strict=True):
         largest = np.abs(loaded.pressure.values).max(axis=1)
         for name, best in values.items():
             if name in _MAY_LACK:
                 best[:, best[0] <= _NOTHING * largest] = np.array([0.0, np.nan, np.nan])[:, None]
             if name == "sz_interface_min":
                 best[0] *= -1
-    return made
+    return answers
 
 
 def coarsely(loaded, names=EXTREMES):
     """The largest values on the coarse grids, name -> (3, B); their places are NaN."""
-    made, wanted, grids, coarse = _on_coarse_grids(loaded, names)
+    answer, wanted, grids, coarse = _on_coarse_grids(loaded, names)
     for name, kinds in wanted.items():
         for region in kinds:
             if region in grids:
                 values = VALUES[EXTREMES[name][0]](*coarse[region].swapaxes(0, 1))
                 there = grids[region].v <= grids[region].v_bounds[:, 1:]
                 values = np.where(there[:, None, :, None], values, -np.inf).max(axis=(1, 2, 3))
-                made[name][0] = np.fmax(made[name][0], values)
-    return made
+                answer[name][0] = np.fmax(answer[name][0], values)
+    return answer
 
 
 def _on_coarse_grids(loaded, names):
     """Four mappings: name -> an array for the answer; name -> its regions; region -> its grid; and region -> the
     stresses on it, (B, 4, S, V, U)."""
-    made = {name: np.full((3, len(loaded.h)), np.nan) for name in names}
+    answer = {name: np.full((3, len(loaded.h)), np.nan) for name in names}
     wanted = {name: EXTREMES[name][2 if loaded.bare else 1] for name in names}
     grids = regions(loaded)
     grids = {name: grid for name, grid in grids.items() if any(name in kinds for kinds in wanted.values())}
@@ -154,7 +154,7 @@ def _on_coarse_grids(loaded, names):
         region: loaded.stresses(grid.radius(grid.u), grid.v, grid.body, roughly=True).swapaxes(0, 1)
         for region, grid in grids.items()
     }
-    return made, wanted, grids, coarse
+    return answer, wanted, grids, coarse
 
 
 def farthest_of(loaded):
@@ -170,35 +170,35 @@ def regions(loaded):
     stiff = 1.0 if loaded.bare else max(1.0, np.cbrt(loaded.layers.n.max()))
     far = farthest_of(loaded)
     bending = 0.5 if loaded.bare else octave * stiff
-    beyond = np.minimum(1 + bending * _BEYOND, far.max())
+    past_edge = np.minimum(1 + bending * _PAST_EDGE, far.max())
     lengths = _lengths(octave, bending)
     thick = np.outer(lengths, _OF_LENGTHS).ravel() * (not loaded.bare and lengths[-1] > 1)
     ring, deep = (np.unique(loaded.ring * values) for values in (_OF_RING, _BELOW_RING))
-    within = 2 - beyond[beyond < _THIN]
-    radii = np.unique(np.concatenate([_RADII, beyond[:6], thick, 1 - ring, within]))
+    within = 2 - past_edge[past_edge < _THIN]
+    radii = np.unique(np.concatenate([_RADII, past_edge[:6], thick, 1 - ring, within]))
     away = _AWAY * (octave > _FELT)
-    wide = np.unique(np.concatenate([_RADII, beyond, thick, 1 - ring, within, away]))
+    wide = np.unique(np.concatenate([_RADII, past_edge, thick, 1 - ring, within, away]))
     surface = np.zeros((B, 1))
     of_ring, of_film = np.sqrt(np.maximum(ring * (2 - ring), 0.0)), np.sqrt((1 - within) * (1 + within))
     inner, none = np.unique(np.concatenate([np.linspace(0, 1, 12), of_ring, of_film])), np.zeros((B, 2))
     from_axis = np.stack([0 * far, far], axis=1)
     outer = -np.sqrt(wide[wide >= 1] ** 2 - 1)[::-1]
-    made = {
+    grids = {
         "inside": SearchGrid(inner, surface, none + [0.0, 1.0], none, loaded.bare, True),
         "outside": SearchGrid(outer, surface, -from_axis[:, ::-1], none, loaded.bare, True),
     }
     if loaded.bare:
         depths = np.tile(np.unique(np.concatenate([_DEPTHS, [1.5, 2.5], deep[deep > 0]])), (B, 1))
-        return made | {"body": SearchGrid(radii, depths, from_axis, from_axis, True)}
+        return grids | {"body": SearchGrid(radii, depths, from_axis, from_axis, True)}
     near = np.concatenate([_DEPTHS, deep[deep > 0]])
     depths = np.unique(np.concatenate([near[2 * octave > near], octave * _OF_OCTAVE]))
-    made["layer"] = SearchGrid(radii, np.tile(depths, (B, 1)), from_axis, np.stack([0 * h, h], axis=1), False)
-    made["above"] = SearchGrid(wide, h[:, None], from_axis, np.stack([h, h], axis=1), False)
+    grids["layer"] = SearchGrid(radii, np.tile(depths, (B, 1)), from_axis, np.stack([0 * h, h], axis=1), False)
+    grids["above"] = SearchGrid(wide, h[:, None], from_axis, np.stack([h, h], axis=1), False)
     if np.all(loaded.layers.n > 0):
         bounds = np.stack([h, h + far], axis=1)
         across, below = _of_body(radii, lengths)
-        made["body"] = SearchGrid(across, h[:, None] + below, from_axis, bounds, True)
-    return made
+        grids["body"] = SearchGrid(across, h[:, None] + below, from_axis, bounds, True)
+    return grids
 
 
 def _of_body(radii, lengths):
@@ -215,7 +215,7 @@ def _lengths(octave, bending):
     least = max(1.0, octave)
     if bending <= _ALIKE * least:
         return np.array([least])
-    return np.geomspace(least, bending, 2 + int(np.log(bending / least) / np.log(_APART)))
+    return np.geomspace(least, bending, 2 + int(np.log(bending / least) / np.log(_RATIO)))
 
 
 def _starts(value, kinds, coarse, grids, largest):
@@ -263,22 +263,22 @@ def climbed(jets, tasks, boxes, scales, signs):
     root, boxes = np.array([root for _, root in boxes]), np.array([box for box, _ in boxes]).swapaxes(0, 1)
 
     def at(index, u, v):
-        made = np.empty((6, 4, len(index)))
+        stresses = np.empty((6, 4, len(index)))
         keys = np.stack([areas.of[index], case[index], side[index], u, v, root[index]])
-        _, first, again = np.unique(keys, axis=1, return_index=True, return_inverse=True)
+        _, first, inverse = np.unique(keys, axis=1, return_index=True, return_inverse=True)
         for number in np.unique(areas.of[index]):
             here = first[areas.of[index[first]] == number]
             (batch, region), some = areas.names[number], index[here]
-            made[..., here] = jets[batch](region, case[some], side[some], root[some], u[here], v[here])
-        return made[..., first[again.ravel()]]
+            stresses[..., here] = jets[batch](region, case[some], side[some], root[some], u[here], v[here])
+        return stresses[..., first[inverse.ravel()]]
 
     def value(index, stresses):
-        made = np.empty(stresses.shape[1:])
+        values = np.empty(stresses.shape[1:])
         for number, name in enumerate(functions.names):
             here = np.flatnonzero(functions.of[index] == number)
             if len(here):
-                made[here] = VALUES[name](*stresses[:, here])
-        return made
+                values[here] = VALUES[name](*stresses[:, here])
+        return values
 
     scale = np.array([scales[task.batch][task.case] for task in tasks])
     values, places = climb(at, value, *boxes, scale)

@@ -76,15 +76,15 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slope
     start = np.where(round_, np.maximum(start, NARROWEST), np.where(reach.sharp, np.nan, reach.start))
     last = np.where(round_, WIDEST, reach.last)
     tabled = are_similar(problem, last) & np.all(residual == 0, axis=1) & (body != "asperities") & (layer == 0)
-    made = first_crossing(stress, np.where((left > 0) & ~tabled, start, np.nan), last, slopes, same_grid)
+    crossing = first_crossing(stress, np.where((left > 0) & ~tabled, start, np.nan), last, slopes, same_grid)
     sought = Sought(body, float(mu)), punch, slopes
-    put_first_loads(made, problem, np.flatnonzero(tabled & (left > 0)), strength, sought, (start, last))
+    put_first_loads(crossing, problem, np.flatnonzero(tabled & (left > 0)), strength, sought, (start, last))
     # the residual stress alone is as large as the strength, or there is a tip or corner below which it is infinite
     rest = (left <= 0) | reach.sharp & (left > 0)
-    made.crossed[rest], made.at[rest] = True, 0.0
+    crossing.crossed[rest], crossing.at[rest] = True, 0.0
     for number in NUMBERS:
-        made.numbers[number][rest] = reach.flat[rest] * problem.R[rest] if number == "a" else 0.0
-    return made
+        crossing.numbers[number][rest] = reach.flat[rest] * problem.R[rest] if number == "a" else 0.0
+    return crossing
 
 
 def _touched(problem, body, punch):

@@ -52,7 +52,7 @@ def densities(panels, lattice: xr.Dataset, paper: xr.Dataset) -> Columns:
     """(a) Nominal pressure for three densities of asperities on a square lattice, on the exact layer; dotted: with
     the power law of Table 1 on the same layer. (b) How far that (dotted) and the disc cell (dashed) are from the
     lattice, over its p(0). a0: radius of the paper's contact 1."""
-    axes, beside = panels
+    axes, right = panels
     shown, differences = [], {}
     a0 = float(pick(paper, Nbar=250_000, base="thin_layer")["a"])
     for i, side in enumerate(("above", "below", "below")):
@@ -65,13 +65,13 @@ def densities(panels, lattice: xr.Dataset, paper: xr.Dataset) -> Columns:
             r = np.linspace(0, max(float(case["a"]) for case in (other, true)), true.sizes["x"])
             p = [np.interp(r, case["x"] * case["a"], case["p"], right=0.0) for case in (other, true)]
             difference = (p[0] - p[1]) / float(true["p0"])
-            beside.plot(r / a0, 100 * difference, color=f"C{i}", **style)
+            right.plot(r / a0, 100 * difference, color=f"C{i}", **style)
             differences |= {f"r/a0 ({name}, {kind} off)": r / a0, f"off/p(0) ({name}, {kind})": difference}
     columns = pressures(axes, shown, a0, "power law (the paper)")
-    beside.plot([], [], color="0.3", label="power law (the paper)", **PAPER)
-    beside.plot([], [], color="0.3", label="disc cell", **DISC)
-    beside.axhline(0, color="0.6", linewidth=0.6, zorder=0)
-    beside.set(xlabel="$r/a_0$", ylabel=r"difference from the lattice / $p(0)$ (%)", xlim=axes.get_xlim())
-    beside.legend(loc="best", fontsize=8)
+    right.plot([], [], color="0.3", label="power law (the paper)", **PAPER)
+    right.plot([], [], color="0.3", label="disc cell", **DISC)
+    right.axhline(0, color="0.6", linewidth=0.6, zorder=0)
+    right.set(xlabel="$r/a_0$", ylabel=r"difference from the lattice / $p(0)$ (%)", xlim=axes.get_xlim())
+    right.legend(loc="best", fontsize=8)
     by_curve = sorted((columns | differences).items(), key=lambda column: column[0].rpartition("(")[2][0])
     return dict(by_curve)

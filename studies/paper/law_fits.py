@@ -85,11 +85,11 @@ def laws(panels) -> Columns:
     return draw_laws(panels, laws_of, names, ("fit",), at=0.95 * PRESSURES[-1], align="right")
 
 
-def draw_laws(panels, laws_of: Callable, names: dict[str, str], beside: tuple[str, ...], **place) -> Columns:
+def draw_laws(panels, laws_of: Callable, names: dict[str, str], labelled: tuple[str, ...], **place) -> Columns:
     """Draw A[p] of the roughnesses of PANELS by several laws; returns the numbers.
 
     laws_of : (Ra, N̄) -> law, one of LOOKS -> A/R at PRESSURES; names : law -> its label in the legend
-    beside : laws whose curves carry the name of a roughness; place : of the name, see `name_curve`
+    labelled : laws whose curves carry the name of a roughness; place : of the name, see `name_curve`
     """
     columns = {"p/E1*": PRESSURES}
     for axes, (panel, roughnesses) in zip(panels, PANELS.items(), strict=True):
@@ -98,7 +98,7 @@ def draw_laws(panels, laws_of: Callable, names: dict[str, str], beside: tuple[st
             looks = {law: {"color": f"C{i}"} | look for law, look in LOOKS.items() if law in A}
             lines = {law: axes.plot(PRESSURES, A[law] * 1e4, **look)[0] for law, look in looks.items()}
             text = rf"$\bar N R^2 = {Nbar}$" if panel == "a" else f"$R_a/R = {Ra}$"
-            name_curve(axes, [lines[law] for law in beside], text, **place)
+            name_curve(axes, [lines[law] for law in labelled], text, **place)
             columns |= {f"A/R Ra={Ra} N={Nbar} {law}": values for law, values in A.items()}
         for law, name in names.items():
             axes.plot([], [], label=name, **{"color": "0.5"} | LOOKS[law])

@@ -121,13 +121,13 @@ def state_line(definition: Definition, state: dict) -> str:
 
 def verified_line(name: str | Path, condition: Condition) -> str:
     """The words of `verify` on a results file."""
-    said = {
+    texts = {
         "sound": "verified: every number is as it was written"
         + f"; it holds results of the study {condition.name}" * (condition.name not in ("", Path(name).stem)),
         "unverified": "xarray or an earlier version wrote it, without a digest to compare; no damage was found",
         "missing": "does not exist",
     }
-    return f"{name}: {said.get(condition.kind, condition.reason)}"
+    return f"{name}: {texts.get(condition.kind, condition.reason)}"
 
 
 def cost_line(name: str, cost: Estimate) -> str:

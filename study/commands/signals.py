@@ -26,8 +26,8 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 ORDERLY, COMPUTING, BUSY = 0.6, 0.2, 2.0
 
 
-state = SimpleNamespace(working=False, code=None, kept="", elsewhere=False)
-"""working : whether the command has begun; code : the exit code, once it is known; kept : the work that survives an
+state = SimpleNamespace(working=False, code=None, remark="", elsewhere=False)
+"""working : whether the command has begun; code : the exit code, once it is known; remark : the work that survives an
 interrupt, in words; elsewhere : whether another program has the terminal, such as a pager, which gets the signals."""
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from solver import Model, Status
 from solver.known import Known
-from solver.numerics.kept import once
+from solver.numerics.caches import once
 from solver.parameters import one_of
 from solver.status import NO_SOLUTION
 
@@ -208,11 +208,11 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
 
 def _numbers_of_layers(definition: Definition) -> dict[str, Labelled]:
     """The coordinates of layers and interfaces, while `layer` may still be an axis of materials."""
-    made = {}
+    coords = {}
     for name, (_, numbers, words_of) in numbered(definition.layers, "layer", "interface").items():
         dim = LAYER_NUMBER if name == "layer" else name
-        made[dim] = Labelled((dim,), numbers, words_of)
-    return made
+        coords[dim] = Labelled((dim,), numbers, words_of)
+    return coords
 
 
 def _about(definition: Definition, name: str, rigid: bool) -> dict:

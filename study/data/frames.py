@@ -17,7 +17,7 @@ def frames(dataset: xr.Dataset) -> dict[str, Any]:
     words = {name: decode(array) for name, array in dataset.data_vars.items() if "flag_meanings" in array.attrs}
     dataset = dataset.assign(words).reset_coords(drop=False)
     dims = list(dataset["status"].dims)
-    dataset = _apart([dim for dim in ("layer", "interface") if dim in dataset.dims and dim not in dims], dataset)
+    dataset = _one_of_each([dim for dim in ("layer", "interface") if dim in dataset.dims and dim not in dims], dataset)
     along_x = [name for name, array in dataset.data_vars.items() if "x" in array.dims]
     tables = {"contacts": dataset.drop_vars([*along_x, "x"], errors="ignore")}
     if along_x:
@@ -25,7 +25,7 @@ def frames(dataset: xr.Dataset) -> dict[str, Any]:
     return {name: _frame(table, [*dims, *["x"] * (name == "profiles")]) for name, table in tables.items()}
 
 
-def _apart(numbered: list[str], dataset: xr.Dataset) -> xr.Dataset:
+def _one_of_each(numbered: list[str], dataset: xr.Dataset) -> xr.Dataset:
     """The dataset with a variable for each layer or interface, "mises_layer 1" and so on, in place of one over all."""
     columns = {}
     for name, array in dataset.data_vars.items():

@@ -157,11 +157,11 @@ def unknown(kind: str, name: str, registered: list[str]) -> StudyError:
     The name may be the number of a figure or table, or that of a study file in the working folder. The error also names
     files that cannot be read, since the name may be in one of them.
     """
-    known = [*registered, *names(kind)]
-    numbered = [text for text in (f"{kind}{name}", f"{kind[:3]}{name:0>2}") if text in known]
+    choices = [*registered, *names(kind)]
+    numbered = [text for text in (f"{kind}{name}", f"{kind[:3]}{name:0>2}") if text in choices]
     study_here = [f"{name}.toml"] if Path(f"{name}.toml").is_file() else []
     meant = [f'; did you mean "{text}"?' for text in (*study_here, *numbered)]
-    lines = [f'"{name}" is not known{meant[0] if meant else suggest(name, known)}']
+    lines = [f'"{name}" is not known{meant[0] if meant else suggest(name, choices)}']
     for file in (*user_files(), *book_files()):
         try:
             names_in(file)

@@ -14,7 +14,9 @@ except ImportError:  # not POSIX: two runs at once compute the same blocks twice
 
 
 @contextmanager
-def held(path: Path, *, shared: bool = False, wait: bool = True, waiting: Callable = lambda: None) -> Iterator[bool]:
+def lock_file(
+    path: Path, *, shared: bool = False, wait: bool = True, waiting: Callable = lambda: None
+) -> Iterator[bool]:
     """Hold the lock file `path`, whose folder is made if it is missing; yields whether the lock is held.
 
     shared : whether other processes may hold the lock shared at the same time
@@ -42,7 +44,7 @@ def _opened(path: Path) -> int:
 
 
 def locked(file: int, shared: bool, wait: bool, waiting: Callable = lambda: None) -> bool:
-    """Take the lock of an open file, until it is closed; see `held`. Returns whether it is held."""
+    """Take the lock of an open file, until it is closed; see `lock_file`. Returns whether it is held."""
     if fcntl is None:
         return True
     kind = fcntl.LOCK_SH if shared else fcntl.LOCK_EX

@@ -19,7 +19,7 @@ DIVIDED = "parts"
 FIRST = "first_case"
 """Attribute of a part: the number of its first case. Parts of earlier versions lack it."""
 NAME = re.compile(r"(\d{12})-([0-9a-f]{16})\.nc")  # of a part: its first case and the digest of the study
-AGAIN = "run the study, which computes the right ones"
+REMEDY = "run the study, which computes the right ones"
 
 
 class PartFile(NamedTuple):
@@ -56,7 +56,7 @@ def open_parts(folder: Path) -> xr.Dataset:
     begin, strangers = 0, _strangers(parts, counts)
     for number, part in enumerate(parts):
         if part.first != begin or part.stated not in (None, begin) or number in strangers:
-            raise Unusable(part.path, "misplaced", f"holds other cases than its name says; {AGAIN}")
+            raise Unusable(part.path, "misplaced", f"holds other cases than its name says; {REMEDY}")
         begin += part.size
     return opened_together([part.path for part in parts], folder, counts)
 
@@ -119,5 +119,5 @@ def _described(path: Path) -> PartFile:
     if not axes or not name or not {*counts} <= {*axes}:
         raise Unusable(path, "foreign", "is not a part of the results in this folder; move it away")
     if name[2] != condition.digest[:16]:
-        raise Unusable(path, "misplaced", f"holds results of another study than its name says; {AGAIN}")
+        raise Unusable(path, "misplaced", f"holds results of another study than its name says; {REMEDY}")
     return PartFile(path, condition.digest, counts, axes, int(name[1]), None if stated is None else int(stated))

@@ -34,9 +34,9 @@ def selected(dataset: xr.Dataset, names: list[str] | tuple[str, ...] | None) -> 
     """
     if not names:
         return dataset
-    known = known_columns(dataset)
-    if unknown := [name for name in names if name not in known]:
-        raise StudyError([f"--columns {shown(name)} is not a column{suggest(name, known)}" for name in unknown])
+    choices = known_columns(dataset)
+    if unknown := [name for name in names if name not in choices]:
+        raise StudyError([f"--columns {shown(name)} is not a column{suggest(name, choices)}" for name in unknown])
     derived = {name: QUANTITIES[name](dataset) for name in names if name not in dataset.variables}
     whole = dataset.assign(derived).reset_coords()
     dims = list(dataset["status"].dims)

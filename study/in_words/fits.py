@@ -60,11 +60,11 @@ def of_fit(fitted: xr.Dataset) -> str:
     inputs, shifts = [n for n in names if n not in NAMES_OF_SHIFTS], [n for n in names if n in NAMES_OF_SHIFTS]
     x, y, level = fitted.attrs["x"], fitted.attrs["y"], fitted.attrs["level"]
     count = fitted.sizes["curve"]
-    beside = f"; also {' and '.join(NAMES_OF_SHIFTS[name] for name in shifts)}" if shifts else ""
+    shifted = f"; also {' and '.join(NAMES_OF_SHIFTS[name] for name in shifts)}" if shifts else ""
     kind = "A plan for" if f"{y}_fit" not in fitted else "Fitted to"
     lines = [fitted.attrs["given"], ""] if "given" in fitted.attrs else []
     lines += [
-        f"{kind} {count} curve{'s' * (count != 1)} {y}({x}): {', '.join(inputs)}{beside}. ± is one standard deviation."
+        f"{kind} {count} curve{'s' * (count != 1)} {y}({x}): {', '.join(inputs)}{shifted}. ± is one standard deviation."
     ]
     if f"{names[0]}_low" in fitted:
         lines[-1] += f" In brackets: {100 * level:g} % intervals."
@@ -95,7 +95,7 @@ def _of_curve(curve: xr.Dataset, i: int, count: int, inputs: list[str], shifts: 
     doubts = _doubts(curve, inputs)
     lines += _points(curve) + doubts
     lines += [_SENTENCES[status]] if status in _SENTENCES else []
-    lines += _known(curve, inputs)
+    lines += _inseparable_pairs(curve, inputs)
     lines += [_FLOWS] if "flows" in curve and bool(curve["flows"]) else []
     broken = str(decode(curve["validity"]).item()).split() if int(curve["validity"]) else []
     lines += [f"At the deepest point: {RULES[name].sentence}" for name in broken if name in RULES]
@@ -231,7 +231,7 @@ def _rounded(end: float, spread: float) -> float:
     return round(end, 1 - int(np.floor(np.log10(spread)))) + 0.0
 
 
-def _known(curve: xr.Dataset, inputs: list[str]) -> list[str]:
+def _inseparable_pairs(curve: xr.Dataset, inputs: list[str]) -> list[str]:
     """Sentences on pairs of inputs that the curve cannot separate: the product of powers that is known, and how
     well."""
     lines = []

@@ -35,20 +35,20 @@ def influence(case: xr.Dataset, name: str) -> list[str]:
         return []
     symbol = VOCABULARY[name].symbol
     parts = {key: by_input[key] * part for key, part in relative_spreads(case, by_input).items()}
-    found = []
+    texts = []
     if float(case[f"{name}_spread"]) < _UNSEEN * abs(float(case[name])):
-        found = [f"the ± of the inputs changes {symbol} by less than a part in ten million"]
+        texts = [f"the ± of the inputs changes {symbol} by less than a part in ten million"]
     elif not correlated(case):
         largest = max(parts, key=lambda one: abs(parts[one]))
         share = parts[largest] ** 2 / sum(part**2 for part in parts.values())
         most = "nearly all" if share > _NEARLY else f"{100 * share:.0f} %"
-        found = [f"{largest} contributes {most} of the variance of {symbol}"]
+        texts = [f"{largest} contributes {most} of the variance of {symbol}"]
     by_h = by_input.get("h", 0.0)
     if abs(by_h) * _FAR > 0.01:
         thickness = f"a {rounded(1 / abs(by_h))} % {'larger' if by_h > 0 else 'smaller'} h"
-        found.append(f"{thickness} makes {symbol} 1 % larger")
+        texts.append(f"{thickness} makes {symbol} 1 % larger")
     elif by_h:
         change = 10 * abs(by_h)  # in %
         size = f"{rounded(change)} %" if change > _LITTLE else f"less than {_LITTLE:g} %"
-        found.append(f"10 % of h changes {symbol} by {size}")
-    return ["; ".join(found) + "."] if found and np.isfinite([*by_input.values()]).all() else []
+        texts.append(f"10 % of h changes {symbol} by {size}")
+    return ["; ".join(texts) + "."] if texts and np.isfinite([*by_input.values()]).all() else []

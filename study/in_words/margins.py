@@ -121,13 +121,13 @@ def holds(case: xr.Dataset) -> Margin:
         return Margin([looked] * bool(looked))
     compared, hard = looked.compared, looked.hard
     far = not compared or not hard and compared[0].share < _FAR
-    said = [] if far else _closest(looked, case)
+    sentences = [] if far else _closest(looked, case)
     if "pitch_not_small_against_h" in flag_words(case["validity"]).item().split() and not is_rigid(case, "base"):
-        said = [*said, _THROUGH] if said else []
-    said += _needed(looked.contact, looked.lacking) if looked.lacking and hard else []
-    said += of_interfaces(looked.contact, looked.problem, looked.solution) if hard else []
-    said = [*(_flowing(case) if said else []), *said, *_of_own_law(looked.contact, said)]
-    return Margin(said, bool(compared) and compared[0].share > 1)
+        sentences = [*sentences, _THROUGH] if sentences else []
+    sentences += _needed(looked.contact, looked.lacking) if looked.lacking and hard else []
+    sentences += of_interfaces(looked.contact, looked.problem, looked.solution) if hard else []
+    sentences = [*(_flowing(case) if sentences else []), *sentences, *_of_own_law(looked.contact, sentences)]
+    return Margin(sentences, bool(compared) and compared[0].share > 1)
 
 
 def closest(case: xr.Dataset) -> str:
@@ -145,11 +145,11 @@ def _looked_at(case: xr.Dataset) -> _Looked | str:
         contact = Contacts.of(case, "summary")
     except StudyError:  # such as for a mean
         return ""
-    known = {body: [column[0] for column in columns] for body, columns in known_strengths(contact, {}).items()}
+    strengths = {body: [column[0] for column in columns] for body, columns in known_strengths(contact, {}).items()}
     moduli = [case[name] for name, _, _ in bodies_of(case.variables).values() if name in case]
     moduli = [modulus for modulus in moduli if modulus.attrs.get("units") == "Pa"]
     hard = bool(moduli) and min(moduli) >= RUBBER
-    values = [value for value, *_ in known.values()] + [value[0] for value, *_ in layer_strengths(contact, {})]
+    values = [value for value, *_ in strengths.values()] + [value[0] for value, *_ in layer_strengths(contact, {})]
     if not (hard or np.isfinite(values).any()):
         return ""
     problem = contact.problem
@@ -160,7 +160,7 @@ def _looked_at(case: xr.Dataset) -> _Looked | str:
     if not is_bare(problem.base[0]) and problem.h[0] < _THINNEST * _radius(contact):
         return _FILM + "."
     at_a = replace(problem, control="a", value=np.array([_radius(contact)]))
-    solution, limits = solve(at_a), _limits(contact, known)
+    solution, limits = solve(at_a), _limits(contact, strengths)
     stresses = [_Compared(*row) for row in _stresses(limits, at_a, solution, case) if np.isfinite(row[1])]
     compared = sorted((row for row in stresses if np.isfinite(row.limit.strength)), key=lambda row: -row.share)
     lacking = [row for row in stresses if np.isnan(row.limit.strength) and row.limit.needs]
@@ -188,19 +188,19 @@ def _stresses(limits: list[_Limit], problem: Problem, solution: Any, case: xr.Da
 def _of_similar(limits: list[_Limit], problem: Problem, a: np.ndarray, case: xr.Dataset) -> list[tuple]:
     """The same of a smooth contact on one layer at the radius a, which needs no tables of a mesh."""
     names = tuple(limit.stress for limit in limits if limit.stress in EXTREMES)
-    found = extremes_at(problem, a, names) if names else {}
+    stresses = extremes_at(problem, a, names) if names else {}
     if any(limit.stress == _PUNCH for limit in limits):
-        found[_PUNCH] = extremes_at(problem, a, ("mises2",), np.array([_nu_punch(case)]))["mises2"]
-    return [(limit, *found[limit.stress][:, 0].tolist()) for limit in limits]
+        stresses[_PUNCH] = extremes_at(problem, a, ("mises2",), np.array([_nu_punch(case)]))["mises2"]
+    return [(limit, *stresses[limit.stress][:, 0].tolist()) for limit in limits]
 
 
 def _nu_punch(case: xr.Dataset) -> float:
     return float(case["nu_punch"]) if "nu_punch" in case else 0.3
 
 
-def _of_own_law(contact: Contacts, said: list[str]) -> list[str]:
+def _of_own_law(contact: Contacts, sentences: list[str]) -> list[str]:
     """A sentence on asperities for which only pmax is known, if other sentences are about them."""
-    if np.isfinite(contact.problem.Ra[0]) or not any("asperities" in text for text in said):
+    if np.isfinite(contact.problem.Ra[0]) or not any("asperities" in text for text in sentences):
         return []
     return [_OWN_LAW.format(q=float(yield_pressure(at_asperities(contact.problem)[1])[0]))]
 
@@ -218,13 +218,13 @@ def _radius(contact: Contacts) -> float:
     return float(contact.dataset["a"]) / contact.units[1].item()
 
 
-def _limits(contact: Contacts, known: dict[str, list]) -> list[_Limit]:
+def _limits(contact: Contacts, strengths: dict[str, list]) -> list[_Limit]:
     """The limits of a contact at which a part fails."""
     case, problem, limits = contact.dataset, contact.problem, []
     coated, mises, Y = not is_bare(problem.base[0]), "largest von Mises stress", "yield strength"
 
     def yields(who: str, stress: str, body: str, needs: str, what: str = mises) -> _Limit:
-        value, spread, hard = known[body]
+        value, spread, hard = strengths[body]
         return _Limit(who, "yield", "yielding", what, Y, stress, float(value), float(spread), needs, bool(hard))
 
     felt, below, unit = bool(problem.feels_layer()[0]), "below the asperities", contact.units[0].item()
@@ -282,22 +282,22 @@ def _closest(looked: _Looked, case: xr.Dataset) -> list[str]:
     closest = f"{'are' if limit.plural else 'is'} closest to {limit.ing}"
     of = f"{_part(share)} the {limit.of}{' estimated from hardness' * limit.hard}, {strength}"
     verb = closest if share <= 1 else f"would {limit.verb}"
-    said = [f"{limit.who} {verb}: the {limit.what}, {value}{place}, is {of}."]
+    sentences = [f"{limit.who} {verb}: the {limit.what}, {value}{place}, is {of}."]
     if others:
         parts = [(one.limit, _part(one.share)) for one in others]
         texts = [f"{one.who} at {part} {'their' if one.plural else 'its'} {one.of}" for one, part in parts]
-        said.append(f"Less close: {', '.join(texts)}.")
-    return [_capital(text) for text in [*said, *_at_which_load(looked, first, case)]]
+        sentences.append(f"Less close: {', '.join(texts)}.")
+    return [_capital(text) for text in [*sentences, *_at_which_load(looked, first, case)]]
 
 
 def _at_which_load(looked: _Looked, first: _Compared, case: xr.Dataset) -> list[str]:
     """Sentences on the load that reaches the limit, and on the number of asperities that touch then, if few."""
     limit, share, contact = first.limit, first.share, looked.contact
-    found = _load(looked, first, case)
-    if found is None:
+    failure = _load(looked, first, case)
+    if failure is None:
         farther = f"No load up to a = 0.2 R was found that makes {limit.who} {limit.verb}."
         return [farther] * (share < 1)
-    P, slope, solution = found
+    P, slope, solution = failure
     spread = P * slope * limit.spread / limit.strength
     text = f"P = {_with_unit(contact, P, 2, spread)}"
     who, verb, begin = limit.who, limit.verb, "begin" if limit.plural else "begins"

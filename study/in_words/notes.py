@@ -28,6 +28,7 @@ _SPHERES = (
     "is up to 1.4 times too small, and up to 9 times where single points stand out. rc.roughness.law(scan), or "
     "`roughcoat scan FILE --law OUT.csv`, is the law of the scan itself (docs/roughness.md)."
 )
+_SHARP_EDGE = "The pressure is infinite at the edge of a flat punch: shape = rounded_flat has a rounded edge."
 
 
 def sticks(contacts: xr.Dataset) -> bool:
@@ -46,14 +47,14 @@ def of_shape(case: xr.Dataset) -> list[str]:
     if shape == PARABOLOID:
         return []
     kind = lexicon_in(case).known.shapes.get(shape)
-    said = [f"Shape: {kind.words if kind else shape}{_angle_of(shape)}."]
+    sentences = [f"Shape: {kind.words if kind else shape}{_angle_of(shape)}."]
     if np.isposinf(case["p0"]):
-        said.append("The tip is sharp: p(0) is infinite, so every material yields in the centre.")
+        sentences.append("The tip is sharp: p(0) is infinite, so every material yields in the centre.")
     elif np.isnan(case["p0"]) and np.isfinite(case["a"]) and case["status"] == 0:
-        said.append("The tip is sharp: a, P and D are known; p(0), pmax and λ(0) are not.")
+        sentences.append("The tip is sharp: a, P and D are known; p(0), pmax and λ(0) are not.")
     if shape == "flat" and case["status"] == 0:
-        said.append("The pressure is infinite at the edge of a flat punch: shape = rounded_flat has a rounded edge.")
-    return said + _inwards(case, shape)
+        sentences.append(_SHARP_EDGE)
+    return sentences + _inwards(case, shape)
 
 
 def _angle_of(shape: str) -> str:
@@ -94,16 +95,16 @@ def of_adhesion(case: xr.Dataset) -> list[str]:
         return ["Adhesion: pull-off is not known."]
     off = f"P = {_text(case, 'P_off')}, D = {_text(case, 'D_off')}, a = {_text(case, 'a_off')}"
     control = _control_of_machine(case)
-    said = [f"Adhesion: {control} the punch comes off at {off}."]
+    sentences = [f"Adhesion: {control} the punch comes off at {off}."]
     if case["status"] == 0:
         state = "This contact is stable" if case["stable"] else "This contact is unstable: left alone it comes off"
-        said.insert(0, f"{state}.")
+        sentences.insert(0, f"{state}.")
     if np.isfinite(case["a_in"]) and case["a_in"] > 0:
         state = f"a = {_text(case, 'a_in')} at P = {_text(case, 'P_in')}"
-        said.append(f"When the surfaces first touch, the contact jumps to {state}.")
+        sentences.append(f"When the surfaces first touch, the contact jumps to {state}.")
     if case["adhesion"] == "jkr" and not ({"z0", "sigma0"} & {*case.variables}):
-        said.append("Without its range z0 it is not known whether the attraction reaches too far for JKR.")
-    return said
+        sentences.append("Without its range z0 it is not known whether the attraction reaches too far for JKR.")
+    return sentences
 
 
 def _control_of_machine(case: xr.Dataset) -> str:

@@ -33,9 +33,9 @@ def given_text(case: xr.Dataset, name: str) -> str:
     assumed = " (assumed)" * (case[name].attrs.get("comment") == ASSUMED)
     if isinstance(value, (str, np.str_)):
         word = _MODELS.get(str(value), str(value)) if name == "adhesion" else str(value)
-        said = f"{_WORDS[name]} {word}" if name in _WORDS else word.replace("_", " ")
-        said = _ASPERITIES[str(value)] if name == "asperities_on" else said
-        return f"{name} of {value}" if name in BODIES else said + assumed
+        words = f"{_WORDS[name]} {word}" if name in _WORDS else word.replace("_", " ")
+        words = _ASPERITIES[str(value)] if name == "asperities_on" else words
+        return f"{name} of {value}" if name in BODIES else words + assumed
     text = f"{name} = {in_its_unit(case, name, float(value), spread_of(case, name))}"
     text += " Ra/E1*^beta" * (name == "B") + "°" * (name in ANGLES) + assumed
     return text + " (fitted to Nbar and Ra)" * ("comment" in case[name].attrs and name in ("B", "beta"))

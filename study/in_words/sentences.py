@@ -43,7 +43,7 @@ FAR = 10.0
 #: layers. This is a choice, since the time falls steadily as n rises.
 SOFT = 0.1
 MOST = 100  # number of contacts of a grid that are judged, evenly spread: few enough to take no noticeable time
-SAID = f"far outside what the model describes: estimates exceed limits {FAR:g} times or more. Solving may take long."
+FAR_OUT = f"far outside what the model describes: estimates exceed limits {FAR:g} times or more. Solving may take long."
 _BASES = {
     "half_space": "a half-space",
     "layer_alone": "a half-space of the layer's material",
@@ -63,7 +63,7 @@ SLIDES = 'The layer slides on the body without friction because bonding is not g
 not slide, and a soft one is then much stiffer: give bonding = "bonded".'
 
 #: A law that ends below this share of the largest contact fraction ends because the disc cell goes wrong.
-_EARLY = 0.999
+_WHOLE_RANGE = 0.999
 _WIDE_PITCH = (
     f"The pitch of the asperities is above {MOST_PITCH:g} h, where the effect of the layer on them is not known"
 )
@@ -99,9 +99,9 @@ def far_outside(definition: Definition) -> list[str]:
     index = np.arange(grid.size)[:: -(-grid.size // MOST)]
     looked_at = index[np.broadcast_to(slow, grid.shape).ravel()[index]]
     far = _exceeded(columns(grid, looked_at), grid.lexicon.known) if len(looked_at) else {}
-    found = [RULES[word].sentence for word, where in far.items() if 2 * where.sum() >= len(index)]
+    assumptions = [RULES[word].sentence for word, where in far.items() if 2 * where.sum() >= len(index)]
     who = "this contact is" if grid.size == 1 else "at least half of these contacts are"
-    return [f"{who} {SAID}", *found] if found else []
+    return [f"{who} {FAR_OUT}", *assumptions] if assumptions else []
 
 
 def _exceeded(parameters: dict[str, np.ndarray], known: Known) -> dict[str, np.ndarray]:
@@ -115,10 +115,10 @@ def _exceeded(parameters: dict[str, np.ndarray], known: Known) -> dict[str, np.n
 def doubts(contact: xr.Dataset) -> list[str]:
     """A sentence for each assumption of the model that some cases violate, and for inputs that no real body has."""
     v = dict(contact.variables)  # arithmetic of DataArrays takes longer than solving a contact
-    found = rule.sentences(v | (largest_of_all(contact) if v["p_max"].attrs.get("units") == "Pa" else {}))
+    texts = rule.sentences(v | (largest_of_all(contact) if v["p_max"].attrs.get("units") == "Pa" else {}))
     yields = rule.RULES["body_yields"].sentence
-    found = [f"{text} {which_yields(contact)}".rstrip() if text.endswith(yields) else text for text in found]
-    return found + beside_rules(contact)
+    texts = [f"{text} {which_yields(contact)}".rstrip() if text.endswith(yields) else text for text in texts]
+    return texts + beside_rules(contact)
 
 
 def beside_rules(contact: xr.Dataset) -> list[str]:
@@ -142,14 +142,14 @@ def ended(contacts: xr.Dataset) -> list[str]:
     index, last = np.flatnonzero(outside), np.full(outside.shape, np.nan)
     part, far = problem.take(index), np.zeros_like(outside)
     last.flat[index], far.flat[index] = last_fraction(part), without_family(part)
-    early = outside & ~far & (last < _EARLY * REACH)
-    said = []
-    if early.any():
-        text = f"On a layer this soft the disc cell fails where spots cover more than {rounded(last[early].min())}"
-        said.append(f'{of_cases(early)}{text} of the area; micro = "hex_lattice" holds up to {REACH:g}.')
-    for where, text in ((far, _WIDE_PITCH), (outside & ~far & ~early, _MERGED)):
-        said += [f"{of_cases(where)}{text}; {_HALF_SPACE}"] * bool(where.any())
-    return said
+    fails = outside & ~far & (last < _WHOLE_RANGE * REACH)
+    texts = []
+    if fails.any():
+        text = f"On a layer this soft the disc cell fails where spots cover more than {rounded(last[fails].min())}"
+        texts.append(f'{of_cases(fails)}{text} of the area; micro = "hex_lattice" holds up to {REACH:g}.')
+    for where, text in ((far, _WIDE_PITCH), (outside & ~far & ~fails, _MERGED)):
+        texts += [f"{of_cases(where)}{text}; {_HALF_SPACE}"] * bool(where.any())
+    return texts
 
 
 def falling(contacts: xr.Dataset) -> list[str]:
@@ -200,37 +200,37 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
     if word == "converged":
         *first, last = (VOCABULARY[name].symbol for name in judged if np.isfinite(case[name]))
         of = f"{', '.join(first)} and {last}{_near_0(case)}"
-        found = [f"Solved: the estimated relative error of {of} is {float(case['error']):.1g}."]
-        found += [f"Spreads: {text}" for text in influence(case, "p_max" if "p_max" in judged else "p0")]
+        lines = [f"Solved: the estimated relative error of {of} is {float(case['error']):.1g}."]
+        lines += [f"Spreads: {text}" for text in influence(case, "p_max" if "p_max" in judged else "p0")]
     else:
-        known = {one.name.lower(): one.meaning for one in Status}
-        meaning = known.get(word, "the case has not been computed")
-        found = [f"NOT SOLVED ({word}): {meaning}."]
+        meanings = {one.name.lower(): one.meaning for one in Status}
+        meaning = meanings.get(word, "the case has not been computed")
+        lines = [f"NOT SOLVED ({word}): {meaning}."]
     model = MODELS.get(used)
     if model:
         error = float(case["model_error"])
         exact = used in ("half_space", "layered", "stack")  # then `model_error` is that of the micro law
         against = "the micro law itself errs" if exact else "against the exact layered contact it errs"
         errs = f"; {against} by about {rounded(100 * error)} %" if error > 0 else ""
-        found.append(f"Model: {model}{presses_on(case)}{errs}.{WHOSE * (not used.startswith('smooth'))}")
-    found += of_scan(case) + of_shape(case) + of_adhesion(case)
-    beyond = doubts(case)
-    found += [f"Beware: {sentence}" for sentence in beyond]
+        lines.append(f"Model: {model}{presses_on(case)}{errs}.{WHOSE * (not used.startswith('smooth'))}")
+    lines += of_scan(case) + of_shape(case) + of_adhesion(case)
+    warnings = doubts(case)
+    lines += [f"Beware: {sentence}" for sentence in warnings]
     strength, exceeded = holds(case) if word == "converged" else ([], False)
-    found += [EXCEEDED if exceeded else NOT_VIOLATED] * (not beyond and word == "converged")
+    lines += [EXCEEDED if exceeded else NOT_VIOLATED] * (not warnings and word == "converged")
     if word == "converged":
-        found += [f"Strength: {' '.join(strength)}"] * bool(strength)
+        lines += [f"Strength: {' '.join(strength)}"] * bool(strength)
         unchecked = ["adhesion"] * (not sticks(case)) + ["whether the bodies stay elastic"] * (not strength)
-        found += [f"Not checked (docs/model.md, Limits): {', and '.join(unchecked)}."] * bool(unchecked)
-    return found + [f"Assumed: {sentence}" for sentence in assumed(case)]
+        lines += [f"Not checked (docs/model.md, Limits): {', and '.join(unchecked)}."] * bool(unchecked)
+    return lines + [f"Assumed: {sentence}" for sentence in assumed(case)]
 
 
 def assumed(case: xr.Dataset) -> list[str]:
     """A sentence for each input that was not given, if its default may be far from the true value."""
     v = case.variables
     defaults = {name for name in v if v[name].attrs.get("comment") == ASSUMED}
-    found = unit_of_length(case) + [SLIDES] * bool("bonding" in defaults and not is_bare(v["base"].item()))
+    lines = unit_of_length(case) + [SLIDES] * bool("bonding" in defaults and not is_bare(v["base"].item()))
     for modulus, ratio, _ in bodies_of(v).values():
         if ratio in defaults and modulus in v and v[modulus].attrs.get("units") == "Pa" and v[modulus] < RUBBER:
-            found.append(f"{ratio} = {v[ratio].item():g}. Rubbers and gels, as soft as this, have nearly 0.5.")
-    return found
+            lines.append(f"{ratio} = {v[ratio].item():g}. Rubbers and gels, as soft as this, have nearly 0.5.")
+    return lines

@@ -134,7 +134,7 @@ def is_rigid(contacts: xr.Dataset, body: str) -> bool:
     return bool((contacts[ratio] == 0).all())
 
 
-def given(case: xr.Dataset, left_out=()) -> list[str]:
+def input_lines(case: xr.Dataset, left_out=()) -> list[str]:
     """The line "Given: ..." of one contact, without its control and the names `left_out`, and "Not used: ..." if it has
     inputs that change nothing."""
     used = used_inputs(case)

@@ -60,8 +60,8 @@ def _first_yield(case: xr.Dataset) -> list[str]:
     first = flag_words(case["first_yield"]).item().replace("_", " ")
     ends = [end for end in _BODIES if f"found_{end}" in case and not ("P_Y_layer" in case and end == "Y1")]
     place = f"layer {int(case['first_layer'])}" if first == "layer" and "first_layer" in case else f"the {first}"
-    known = f"First to yield, as far as strengths are known: {place}."
-    lines = [known if first != "not known" else "No load is found."]
+    sentence = f"First to yield, as far as strengths are known: {place}."
+    lines = [sentence if first != "not known" else "No load is found."]
     for number in case["layer"].values.tolist() if "P_Y_layer" in case else ():
         lines += _of_body(case.sel(layer=number), "Y_layer", f"layer {number}")
     for end in ends:
@@ -73,14 +73,14 @@ def _of_body(case: xr.Dataset, end: str, layer: str = "") -> list[str]:
     """Sentences on the load and the place at which a body, or a `layer` of a stack, yields, and on assumptions that the
     contact violates there."""
     body = layer or f"the {_BODIES[end]}"
-    found = flag_words(case[f"found_{end}"]).item()
+    outcome = flag_words(case[f"found_{end}"]).item()
     verb = "yield" if end == "Ya" else "yields"
-    if found == "no_asperities":
+    if outcome == "no_asperities":
         return ["The punch is smooth: there are no asperities."]
-    if found == "strength_not_known":
+    if outcome == "strength_not_known":
         return [f"The strength of {body} is not known."]
-    if found != "first_crossing":
-        farthest = found.replace("none_up_to_", "").replace("0.2_R", "a = 0.2 R").replace("_", " ")
+    if outcome != "first_crossing":
+        farthest = outcome.replace("none_up_to_", "").replace("0.2_R", "a = 0.2 R").replace("_", " ")
         missing = "" if end == "Ya" else "; it may be rigid or absent"
         return [f"No load up to {farthest} was found at which {body} {verb}{missing}."]
     if float(case[f"P_{end}"]) == 0:
@@ -241,15 +241,15 @@ def which_yields(dataset: xr.Dataset) -> str:
         contacts = Contacts.of(dataset, "summary")
     except StudyError:  # such as for a mean
         return ""
-    some, known = np.flatnonzero(flags), strengths(contacts, {})
+    some, limits = np.flatnonzero(flags), strengths(contacts, {})
     if layers := layer_strengths(contacts, {}):
-        return which_of_stacks(contacts, some, layers, known["body"])
-    if not any(np.isfinite(known[body]).any() for body in ("layer", "body")) or contacts.without_stresses():
+        return which_of_stacks(contacts, some, layers, limits["body"])
+    if not any(np.isfinite(limits[body]).any() for body in ("layer", "body")) or contacts.without_stresses():
         return ""
     problem = contacts.problem.take(some)
     stress, parts = yields.of_contacts(problem, solve(problem), names=("mises1", "mises2")), []
     for body, name in (("layer", "mises1"), ("body", "mises2")):
-        count = int((stress[name][0] > known[body][some]).sum())
+        count = int((stress[name][0] > limits[body][some]).sum())
         parts += [f"the {body} yields in {count} of them" if len(flags) > 1 else f"the {body} yields"] * bool(count)
     return f"{_capital(', '.join(parts))}." if parts else ""
 

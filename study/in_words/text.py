@@ -17,7 +17,7 @@ from .notes import OF_PULL_OFF
 from .numbers import given_text, peak_text, result_text, ring_text, spot_text
 from .pressures import largest
 from .sentences import sentences
-from .stated_inputs import given, is_rigid
+from .stated_inputs import input_lines, is_rigid
 from .stress_lines import of_stresses
 
 MOST_CASES = 20  # number of cases of a grid that a summary writes out
@@ -139,7 +139,7 @@ def _summary_of_case(case: xr.Dataset, dims=()) -> str:
     width = max(len(label) for label, _, _ in rows)
     lines = [f"  {label:{width}}  {symbol:6} = {text}" for label, symbol, text in rows]
     judged = [name for name in names if name in _JUDGED]
-    return "\n".join([*given(case, dims), "", *lines, "", *sentences(case, judged)])
+    return "\n".join([*input_lines(case, dims), "", *lines, "", *sentences(case, judged)])
 
 
 def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:

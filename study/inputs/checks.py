@@ -192,8 +192,8 @@ def picard_for_nothing(grid: Grid) -> list[str]:
 
     If the grid also has it for rough cases, the status of each smooth case refuses it.
     """
-    asked, smooth = along(grid, "scheme") == "picard", grid.lexicon.smooth_laws()
-    if not asked.any() or (asked & ~one_of(along(grid, "micro"), smooth)).any():
+    by_picard, smooth = along(grid, "scheme") == "picard", grid.lexicon.smooth_laws()
+    if not by_picard.any() or (by_picard & ~one_of(along(grid, "micro"), smooth)).any():
         return []
     others = " or ".join(shown(name) for name in grid.lexicon.known.laws if name not in smooth)
     names = " or ".join(map(shown, smooth))

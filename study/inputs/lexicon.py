@@ -16,7 +16,7 @@ from solver.known import PACKAGE as OF_SOLVER
 from solver.known import RESERVED, Known, names_of
 from solver.known import default as known_by_default
 from solver.laws import Law, name_in, own_table
-from solver.numerics.kept import once
+from solver.numerics.caches import once
 from solver.parameters import CONTROL, NamedRows, Parameter, among
 
 from .vocabulary import BODIES, PARAMETERS, SCENE, VOCABULARY, Entry, Names, parameters_of_layers

@@ -82,10 +82,10 @@ def is_study(name: str) -> bool:
     return Path(name).suffix == ".toml" or name in known_studies()
 
 
-def study_file(path, beside: Path | None = None) -> Path:
+def study_file(path, folder: Path | None = None) -> Path:
     """The study file at a path, or with a name, in `studies` or in the book.
 
-    beside : the folder to search first; then comes the folder of studies of which it is a chapter
+    folder : the folder to search first; then comes the folder of studies of which it is a chapter
 
     A name may have its chapter, "paper/main_case", and a path may lack it: `studies/main_case.toml` is
     `studies/paper/main_case.toml`. Raises StudyError when there is no such file, or there are two.
@@ -97,7 +97,7 @@ def study_file(path, beside: Path | None = None) -> Path:
     if by_path := place.suffix == ".toml":
         roots = [place.parent] if place.parent.name == STUDIES.name else []
     else:
-        roots = [beside, root_of(beside), STUDIES, packaged()] if beside else [STUDIES, packaged()]
+        roots = [folder, root_of(folder), STUDIES, packaged()] if folder else [STUDIES, packaged()]
     for root in roots if ".." not in place.parts else ():
         if file := _in(root, place.stem if by_path else text):
             return file
@@ -120,12 +120,12 @@ def _not_found(text: str, place: Path) -> Exception:
     from .definition import StudyError
     from .vocabulary import suggest
 
-    by_path, beside = place.suffix == ".toml", Path(f"{text}.toml")
+    by_path, neighbour = place.suffix == ".toml", Path(f"{text}.toml")
     files = (*sorted(place.parent.glob("*.toml")), *files_in(STUDIES))
     paths = list(dict.fromkeys(path.as_posix() for path in files))
     same = [path for path in paths if Path(path).name == place.name]
     meant = same or paths if by_path else known_studies()
     looked = "" if by_path else f" (looked for {place.as_posix()} and {(STUDIES / f'{text}.toml').as_posix()})"
-    if not by_path and beside.is_file():  # not a study with a similar name
-        return StudyError([f'{text}: not found{looked}; did you mean "{beside.as_posix()}"?'])
+    if not by_path and neighbour.is_file():  # not a study with a similar name
+        return StudyError([f'{text}: not found{looked}; did you mean "{neighbour.as_posix()}"?'])
     return StudyError([f"{text}: not found{looked}{suggest(text, meant) if meant else ''}"])

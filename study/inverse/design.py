@@ -150,8 +150,8 @@ def _messages(want: Wanted, outcome: Outcome, contacts: xr.Dataset) -> list[str]
             each = []
             for number in np.flatnonzero(np.isfinite(outcome.t[row])).tolist():
                 text = _solution(want, outcome, row, number, [end[row, number] for end in ends])
-                beyond = valid[row, number].replace(" ", ", ")
-                each.append(text + f"; outside the model there: {beyond}" * bool(beyond))
+                violated = valid[row, number].replace(" ", ", ")
+                each.append(text + f"; outside the model there: {violated}" * bool(violated))
             solutions = "; or ".join(each)
             edge = f". {want.name} is at a bound there: beyond it there may be more" * (status == 4)
             texts.append(f"{_value(want, want.target, want.level)} at {solutions}{edge}")

@@ -8,7 +8,7 @@ import xarray as xr
 
 from solver import solve
 from solver.laws.trial import going_on
-from solver.numerics.kept import once
+from solver.numerics.caches import once
 from solver.status import Status
 
 from ..data.units import with_unit

@@ -19,7 +19,7 @@ _BENT = 1e-5
 _TURN = 1e-3
 #: Distance of a further point from each bound, over that between points of the scan. It shows a turn in the last
 #: interval.
-_BESIDE = 0.01
+_STEP_INSIDE = 0.01
 _HALVINGS = 12  # number of halvings of the interval in which contacts cease to have a solution
 _NEAR = 1e-12  # distance between the ends of a bracket, in ln of the input
 
@@ -52,7 +52,7 @@ class Curves:
 def scanned(evaluate: Evaluate, rows: np.ndarray, low: float, high: float) -> Curves:
     """The curves of the cases `rows` between two bounds of t. The ends of gaps and the turns are among the points."""
     points, k = np.linspace(low, high, SCAN), len(rows)
-    near = _BESIDE * (points[1] - points[0])
+    near = _STEP_INSIDE * (points[1] - points[0])
     t = np.tile([low, low + near, *points[1:-1], high - near, high], (k, 1))
     curves = Curves(t, evaluate(t.ravel(), np.repeat(rows, t.shape[1])).reshape(t.shape))
     curves = _with(curves, *_ends_of_gaps(evaluate, rows, curves))

@@ -76,8 +76,8 @@ def metals_yield(v):
     body = max(shares, key=lambda body: shares[body].max())
     exceeds = sum(share > YIELD for share in shares.values()) > 0
     share = f"The pressure on the {body} reaches {rounded(float(shares[body].max()))} of its Young's modulus"
-    said = f"{of_cases(exceeds.values)}{share}: metals yield before that, which the model leaves out."
-    return [said] * bool(exceeds.any())
+    sentence = f"{of_cases(exceeds.values)}{share}: metals yield before that, which the model leaves out."
+    return [sentence] * bool(exceeds.any())
 
 
 @rule()

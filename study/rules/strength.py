@@ -156,9 +156,9 @@ def _exceeded(limit, low, high, stress):
 
     stress : stress(index, limits) computes the stresses of the cases `index`; NaN: not known
     """
-    known = np.isfinite(limit)
-    exceeded = np.array(known & (low > limit))  # an array even for one case
-    index = np.flatnonzero(known & ~exceeded & ~(high <= limit))
+    finite = np.isfinite(limit)
+    exceeded = np.array(finite & (low > limit))  # an array even for one case
+    index = np.flatnonzero(finite & ~exceeded & ~(high <= limit))
     if len(index):
         exceeded.flat[index] = stress(index, limit.flat[index]) > limit.flat[index]
     return exceeded

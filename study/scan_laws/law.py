@@ -352,8 +352,8 @@ def _beside_theory(p: np.ndarray, lam: np.ndarray, slope: float) -> tuple[str, .
     if not _SMALL / 2 < lam[at] < 2 * _SMALL:
         return ()
     ratio = lam[at] * slope / p[at]
-    beside = f"{ratio / _PERSSON:.2f} times Persson's {_PERSSON:.2f}; Bush, Gibson and Thomas have 2.51"
-    return (f"λ h'E*/p is {ratio:.2f} at λ = {lam[at]:.2g}, {beside}",)
+    theories = f"{ratio / _PERSSON:.2f} times Persson's {_PERSSON:.2f}; Bush, Gibson and Thomas have 2.51"
+    return (f"λ h'E*/p is {ratio:.2f} at λ = {lam[at]:.2g}, {theories}",)
 
 
 def _on_one_line(text: str) -> str:

@@ -7,7 +7,7 @@ from typing import TextIO
 import numpy as np
 
 from solver.laws import own_table
-from solver.numerics.kept import Kept
+from solver.numerics.caches import Cache
 
 from ..inputs.definition import Definition, StudyError
 from ..inputs.lexicon import lexicon_of
@@ -15,7 +15,7 @@ from ..inputs.punch.pressed_body import body_in
 from ..inputs.punch.scan_words import ScanWord, content_of, scan_in
 
 #: Tables of the last scans, some 3 kB each, by the versions of their laws.
-_TABLES = Kept(1_000_000)
+_TABLES = Cache(1_000_000)
 
 
 def with_rows(definition: Definition, stream: TextIO | None = None) -> Definition:

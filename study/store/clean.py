@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from ..files.lock import held
+from ..files.lock import lock_file
 from ..inputs.definition import StudyError
 from ..terminal import counted
 from .blocks import inventory
@@ -38,7 +38,7 @@ def clean(store: Store) -> list[str]:
 @contextmanager
 def alone(store: Store) -> Iterator[None]:
     """Hold the lock of a study. Raises StudyError while the study runs."""
-    with held(store.lock, wait=False) as is_free:
+    with lock_file(store.lock, wait=False) as is_free:
         if not is_free:
             raise StudyError([f"{store.folder}: a run of this study is going on; clean when it has ended"])
         yield

@@ -11,7 +11,7 @@ log = logging.getLogger(__name__)
 CONNECT = 10  # seconds within which something must listen at the address of a scheduler
 ANSWER = 60  # seconds within which a listening scheduler must answer; it may be busy
 AHEAD = 4  # blocks submitted for each thread, so that it has work while the process of the run writes
-AGAIN = 5  # seconds between checks of the workers while a run waits; a check is one short message
+CHECK_INTERVAL = 5  # seconds between checks of the workers while a run waits; a check is one short message
 
 
 class Lost(ConnectionError):
@@ -61,7 +61,7 @@ class Cluster:
         self.client = client
         self.under_way: dict[str, tuple] = {}
         self._ended = SimpleQueue()
-        self._asked, self._left_out = set(), set()
+        self._workers_asked, self._left_out = set(), set()
 
     def submit(self, number: int, call: Callable, workers: Iterable[str] = ()) -> None:
         """Give the call of a block to one of the `workers`, or without these to any worker that is not left out."""
@@ -79,7 +79,7 @@ class Cluster:
         """(number, result) of the block that ends next. An exception, such as one from killed workers, is a Failure."""
         while True:
             try:
-                key = self._ended.get(timeout=AGAIN).key
+                key = self._ended.get(timeout=CHECK_INTERVAL).key
             except Empty:
                 self._place_anew()
                 continue
@@ -132,13 +132,13 @@ class Cluster:
 
             return cases.NUMERICS_VERSION
 
-        new = [address for address in self._threads() if address not in self._asked]
+        new = [address for address in self._threads() if address not in self._workers_asked]
         try:
             answers = self.client.run(version, workers=new, on_error="ignore") if new else {}
         except OSError:
             raise Lost from None
         for address, version_of_worker in answers.items():
-            self._asked.add(address)
+            self._workers_asked.add(address)
             if version_of_worker != NUMERICS_VERSION:
                 has = f"has version {version_of_worker} of the numerics, not {NUMERICS_VERSION}"
                 log.warning("the worker %s %s: it is left out", address, has)

@@ -18,7 +18,7 @@ from ..terminal import shown
 EVERY = 10.0  # seconds between plain lines
 BLINK = 0.1  # seconds between rewritten lines
 SILENT = 2.0  # seconds without output; after about three, people wonder whether the program has stopped
-AGAIN = 0.5  # seconds between updates of the line, in which seconds are counted
+UPDATE_INTERVAL = 0.5  # seconds between updates of the line, in which seconds are counted
 SPEAKER = "roughcoat progress"  # the name of the thread
 ERASE = "\r\x1b[K"  # go to the beginning of the terminal's line, and erase it
 
@@ -75,7 +75,7 @@ class Progress:
         wait = max(SILENT - (time.monotonic() - self.begun), 0.0)
         while not self._ended.wait(wait):
             self.tell()
-            wait = AGAIN
+            wait = UPDATE_INTERVAL
 
     def tell(self) -> None:
         """Write the progress, unless it was written just now."""

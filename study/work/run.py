@@ -11,7 +11,7 @@ import numpy as np
 
 from ..data.dataset import failed_cases, status_words
 from ..files.atomic import make_folder, target
-from ..files.lock import held
+from ..files.lock import lock_file
 from ..inputs.definition import Definition, StudyError
 from ..store.blocks import add, count_statuses, inventory, put_in_memory, write_rest
 from ..store.window_files import WindowFiles, add_counts, checked, glance, put_away
@@ -46,7 +46,7 @@ def run(definition: Definition, results="results", **options) -> Report:
     check_replaceable(order, state)
     check_size(order)
     check_writable(state.windows[0].path)
-    with held(order.store.lock, shared=order.shared, waiting=lambda: say_waiting(order)):
+    with lock_file(order.store.lock, shared=order.shared, waiting=lambda: say_waiting(order)):
         now = checked(order.store, state)
         if now is not state:  # the run for which this one waited has changed it
             if order.done(now):
@@ -177,7 +177,7 @@ class Harvest:
 
 def _export_if_last(order: Order, report: Report) -> Report:
     """Write the results if no other run holds the lock. Then this run is the last of several."""
-    with held(order.store.lock, wait=False) as is_alone:
+    with lock_file(order.store.lock, wait=False) as is_alone:
         if not is_alone:
             return report
         state = checked(order.store)

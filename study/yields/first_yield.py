@@ -15,7 +15,7 @@ from solver.yields.reach import STEEPEST
 
 from ..data.body_strengths import layer_strengths, strengths
 from ..data.contacts import Contacts
-from ..fields import carried, friction, numbered, refuse_both, residual_stresses, with_numbered_layers
+from ..fields import friction, numbered, refuse_both, residual_stresses, with_coordinates_of, with_numbered_layers
 from ..inputs.vocabulary import CONTROLS, name_in_stack
 from ..rules.rule import validity_attributes
 from .model_validity import sentences_on, validity_at
@@ -23,10 +23,10 @@ from .yielding_contacts import control_of, materials_in, of_dataset, of_inputs, 
 
 BODIES = {"layer": "_Y1", "body": "_Y2", "asperities": "_Ya", "punch": "_Y_punch"}
 """Part that may yield, in the order of the codes of `first_yield` -> the ending of the names of its numbers."""
-FOUND = ("first_crossing", "none_up_to_0.2_R", "strength_not_known")
+OUTCOMES = ("first_crossing", "none_up_to_0.2_R", "strength_not_known")
 """Meanings of the values of found_Y1 and so on; for shapes other than balls the second has another name."""
 _NO_ASPERITIES = "no_asperities"  # the value 3 of found_Ya
-_FOUND_OF_SHAPES = (FOUND[0], f"none_up_to_a_slope_of_{STEEPEST}", FOUND[2])
+_FOUND_OF_SHAPES = (OUTCOMES[0], f"none_up_to_a_slope_of_{STEEPEST}", OUTCOMES[2])
 _LONG_NAMES = {"P": "load", "a": "contact radius", "D": "indentation depth", "p0": "nominal pressure in the centre"}
 _POWERS = {"P": (1, 2), "a": (0, 1), "D": (0, 1), "p0": (1, 0)}
 _SHARP = "0: below a sharp tip or corner the stress is infinite, so that it yields under any load"
@@ -124,17 +124,17 @@ def first_yield(
             crossing = crossing_of(problem, body, strength, mu, residual, nu_punch, bool(np.any(spreads[body] > 0)))
         else:
             crossing = Crossing.none(len(problem))
-        found = np.where(crossing.crossed, 0, np.where(np.isnan(values[body]), 2, 1))
-        found = np.where((body == "asperities") & ~_is_elastic(problem, "asperities"), 3, found).astype(np.int8)
+        outcome = np.where(crossing.crossed, 0, np.where(np.isnan(values[body]), 2, 1))
+        outcome = np.where((body == "asperities") & ~_is_elastic(problem, "asperities"), 3, outcome).astype(np.int8)
         loads.append(np.where(crossing.crossed, crossing.numbers["P"], np.inf))
-        variables |= _variables(contacts, body, end, crossing, found)
+        variables |= _variables(contacts, body, end, crossing, outcome)
         if np.any(spreads[body] > 0):
             variables |= _spreads(contacts, body, end, crossing, spreads[body] / values[body])
     loads = np.array(loads)
     first = np.where(np.isfinite(loads).any(axis=0), 1 + loads.argmin(axis=0), 0).astype(np.int8)
     about = _flags("what yields first", ("not_known", *BODIES))
     variables["first_yield"] = labelled(contacts, first, about)
-    answer = without_control(carried(contacts.dataset, variables), name)
+    answer = without_control(with_coordinates_of(contacts.dataset, variables), name)
     return answer.assign_coords(numbered(contacts, "layer")) if stacked else answer
 
 
@@ -155,9 +155,9 @@ def _of_layers(contacts: Contacts, layers: list, mu: float, residual: np.ndarray
         if np.isfinite(strength).any():
             slopes = bool(np.any(spread > 0))
             crossing = crossing_of(problem, "layer", strength, mu, residual, slopes=slopes, layer=j)
-        found = np.where(crossing.crossed, 0, np.where(np.isnan(strength), 2, 1)).astype(np.int8)
+        outcome = np.where(crossing.crossed, 0, np.where(np.isnan(strength), 2, 1)).astype(np.int8)
         loads.append(np.where(crossing.crossed, crossing.numbers["P"], np.inf))
-        columns_of_layer = _variables(contacts, f"layer {j + 1}", "_Y_layer", crossing, found)
+        columns_of_layer = _variables(contacts, f"layer {j + 1}", "_Y_layer", crossing, outcome)
         if any(np.any(spread > 0) for _, spread, _ in layers):
             columns_of_layer |= _spreads(
                 contacts, f"layer {j + 1}", "_Y_layer", crossing, np.nan_to_num(spread / strength)
@@ -185,7 +185,7 @@ def _is_elastic(problem: Any, body: str) -> np.ndarray:
     return {"layer": ~bare, "body": bare | (problem.n > 0), "asperities": rough, "punch": problem.m > 0}[body]
 
 
-def _variables(contacts: Contacts, body: str, end: str, crossing: Crossing, found: np.ndarray) -> dict:
+def _variables(contacts: Contacts, body: str, end: str, crossing: Crossing, outcome: np.ndarray) -> dict:
     where, variables = f"at which the {body} first yield{'' if body == 'asperities' else 's'}", {}
     stress, size = contacts.units
     for name in NUMBERS:
@@ -195,13 +195,13 @@ def _variables(contacts: Contacts, body: str, end: str, crossing: Crossing, foun
     variables[f"r{end}"] = labelled(contacts, crossing.r, {"long_name": f"radius of the place {where}, over a"})
     variables[f"z{end}"] = labelled(contacts, crossing.z, {"long_name": f"depth of the place {where}, over a"})
     round_ = np.isin(contacts.problem.shape, ROUND)
-    words = (FOUND if round_.all() else _FOUND_OF_SHAPES) + (_NO_ASPERITIES,) * (body == "asperities")
-    variables[f"found{end}"] = labelled(contacts, found, _flags(f"whether the load {where} was found", words))
-    if found.any():
-        variables[f"P{end}"].attrs["message"] = _message(body, found, crossing.unsolved, round_.all())
+    words = (OUTCOMES if round_.all() else _FOUND_OF_SHAPES) + (_NO_ASPERITIES,) * (body == "asperities")
+    variables[f"found{end}"] = labelled(contacts, outcome, _flags(f"whether the load {where} was found", words))
+    if outcome.any():
+        variables[f"P{end}"].attrs["message"] = _message(body, outcome, crossing.unsolved, round_.all())
     flags = validity_at(contacts, crossing)
     variables[f"validity{end}"] = labelled(contacts, flags, _about_validity(body))
-    sharp = bool(((found == 0) & (crossing.numbers["P"] == 0) & ~round_).any())
+    sharp = bool(((outcome == 0) & (crossing.numbers["P"] == 0) & ~round_).any())
     if comment := ". ".join(text for text in (_SHARP * sharp, sentences_on(flags)) if text):
         variables[f"P{end}"].attrs["comment"] = comment
     return variables
@@ -218,17 +218,17 @@ def _spreads(contacts: Contacts, body: str, end: str, crossing: Crossing, relati
     return variables
 
 
-def _message(body: str, found: np.ndarray, unsolved: np.ndarray, round_: bool) -> str:
+def _message(body: str, outcome: np.ndarray, unsolved: np.ndarray, round_: bool) -> str:
     """The reasons why there is no load, with the number of cases of each."""
     farthest = "a = 0.2 R" if round_ else f"a slope of the shape of {STEEPEST}, or a = 0.2 R of balls"
     need = {"layer": "Y1", "body": "Y2", "punch": "Y_punch", "asperities": "hardness or yield_strength"}
     need = need.get(body) or name_in_stack(int(body.removeprefix("layer ")), "Y")
     reasons = {
-        f"the strength of the {body} is not known: give {need}": found == 2,
-        "the punch is smooth and has no asperities": found == 3,
-        "contacts on the way have no solution, or it yields already at the smallest load examined": (found == 1)
+        f"the strength of the {body} is not known: give {need}": outcome == 2,
+        "the punch is smooth and has no asperities": outcome == 3,
+        "contacts on the way have no solution, or it yields already at the smallest load examined": (outcome == 1)
         & unsolved,
-        f"the {body} does not yield up to {farthest}, or is rigid or absent": (found == 1) & ~unsolved,
+        f"the {body} does not yield up to {farthest}, or is rigid or absent": (outcome == 1) & ~unsolved,
     }
     parts = [f"{where.sum()} of {where.size} cases: {reason}" for reason, where in reasons.items() if where.any()]
     return "; ".join(parts)

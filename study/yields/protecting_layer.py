@@ -12,7 +12,7 @@ from solver.yields.protect import protection
 
 from ..data.body_strengths import strengths
 from ..data.contacts import Contacts
-from ..fields import carried, friction, refuse_both
+from ..fields import friction, refuse_both, with_coordinates_of
 from ..inputs.definition import StudyError
 from ..terminal import shown
 from .first_yield import about_of, labelled
@@ -98,7 +98,7 @@ def h_protect(
             reason = "contacts on the way have no solution" if unsolved.any() else "no such thickness exists"
             about["message"] = f"{name} of {count} of {values.size} cases: {reason}"
         variables[name] = labelled(contacts, values * size, about)
-    return without_control(carried(contacts.dataset, variables), by)
+    return without_control(with_coordinates_of(contacts.dataset, variables), by)
 
 
 _THICKNESS = re.compile(r"layers\.\d+\.h")

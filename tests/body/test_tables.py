@@ -8,7 +8,7 @@ from solver_cases import difference, one
 from solver.body import tables as module
 from solver.body.wave_rule import FILM
 from solver.kernels.two_layers import SAMPLER
-from solver.numerics.kept import Kept
+from solver.numerics.caches import Cache
 from solver.numerics.mesh import mesh_of
 from solver.numerics.quadrature import gauss_legendre
 
@@ -18,7 +18,7 @@ def tables(monkeypatch):
     """No tables yet."""
 
     def emptied(most):
-        monkeypatch.setattr(module, "_tables", Kept(most))
+        monkeypatch.setattr(module, "_tables", Cache(most))
         return module._tables
 
     return emptied

@@ -8,7 +8,7 @@ from solver_cases import layer_of
 from solver import Problem, Status, solve
 from solver.body import film, hankel, tables
 from solver.body.wave_rule import CUT, FILM, quadrature
-from solver.numerics.kept import Kept
+from solver.numerics.caches import Cache
 from solver.numerics.mesh import mesh_of, panel_mesh
 from solver.rough.start import smooth_start
 from solver.scaling import as_cases
@@ -34,7 +34,7 @@ def counted(monkeypatch):
 
     watch(tables.special, "j0", "j0")
     watch(film, "_in_octaves", "c")
-    monkeypatch.setattr(tables, "_tables", Kept(4e8))
+    monkeypatch.setattr(tables, "_tables", Cache(4e8))
     tables._moments.cache_clear()
     return found
 

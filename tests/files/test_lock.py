@@ -8,7 +8,7 @@ import pytest
 from children import PATIENCE, PROCESSES
 
 from study.files import lock
-from study.files.lock import held
+from study.files.lock import lock_file
 
 pytestmark = pytest.mark.skipif(lock.fcntl is None, reason="POSIX locks")
 
@@ -22,16 +22,16 @@ def path(tmp_path):
     ("first", "second", "free"), [(False, False, False), (True, False, False), (False, True, False), (True, True, True)]
 )
 def test_exclusive_and_shared(path, first, second, free):
-    with held(path, shared=first) as mine:
+    with lock_file(path, shared=first) as mine:
         assert mine
-        with held(path, shared=second, wait=False) as other:
+        with lock_file(path, shared=second, wait=False) as other:
             assert other == free
-    with held(path, shared=second, wait=False) as other:
+    with lock_file(path, shared=second, wait=False) as other:
         assert other
 
 
 def hold(path, ready) -> None:
-    with held(path):
+    with lock_file(path):
         ready.set()
         signal.pause()
 
@@ -41,11 +41,11 @@ def test_the_lock_of_a_killed_process_is_free(path):
     process = PROCESSES.Process(target=hold, args=(path, ready))
     process.start()
     assert ready.wait(PATIENCE)
-    with held(path, wait=False) as mine:
+    with lock_file(path, wait=False) as mine:
         assert not mine
     process.kill()
     process.join()
-    with held(path, wait=False) as mine:
+    with lock_file(path, wait=False) as mine:
         assert mine
 
 
@@ -57,23 +57,23 @@ def test_who_waited_for_a_lock_that_was_removed_holds_the_one_that_is_there(path
         waiting.set()
 
     def second():
-        with held(path, waiting=wait) as mine:
+        with lock_file(path, waiting=wait) as mine:
             assert mine
             acquired.set()
             release.wait(PATIENCE)
 
-    with held(path):
+    with lock_file(path):
         thread = threading.Thread(target=second)
         thread.start()
         assert waiting.wait(PATIENCE)
         shutil.rmtree(path.parent)
     assert acquired.wait(PATIENCE)
-    with held(path, wait=False) as third:
+    with lock_file(path, wait=False) as third:
         assert not third
     release.set()
     thread.join()
     assert said == ["waiting"]
-    with held(path, waiting=wait) as mine:
+    with lock_file(path, waiting=wait) as mine:
         assert mine and said == ["waiting"], "there is nothing to wait for"
 
 
@@ -82,5 +82,5 @@ def test_a_file_system_without_locks_counts_as_free(path, monkeypatch):
         raise OSError(95, "Operation not supported")
 
     monkeypatch.setattr(lock.fcntl, "flock", flock)
-    with held(path) as mine, held(path, wait=False) as other:
+    with lock_file(path) as mine, lock_file(path, wait=False) as other:
         assert mine and other

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import study
 from solver import Problem, laws
 from solver.laws import Curve, Law, heights
-from solver.numerics.kept import Kept
+from solver.numerics.caches import Cache
 
 ROUGH = [law for law in laws.BUILT_IN if law.rough]
 GIVEN = {"Nbar": 250_000.0, "Ra": 0.004, "B": 0.1, "beta": 0.53, "sigma": 1e-5, "cut": 3.0}
@@ -80,7 +80,7 @@ def test_distributions_of_the_same_heights_have_tables_of_their_own(monkeypatch)
     p = np.geomspace(1e-6, 1e-2, 7)
 
     def together(order):
-        monkeypatch.setattr(heights, "_kept", Kept(6e7))
+        monkeypatch.setattr(heights, "_cache", Cache(6e7))
         return {i: at(known[i][0], p, cut=known[i][1]).lam for i in order}
 
     first, last = together(range(5)), together(reversed(range(5)))

@@ -8,7 +8,7 @@ import sys
 from itertools import islice
 from pathlib import Path
 
-import kept
+import by_hand
 import pytest
 from conftest import ROOT
 from mutate import drawn, files_of, table
@@ -128,10 +128,10 @@ def test_the_table_has_each_part_and_the_rooms_with_survivors():
 
 
 def test_the_list_by_hand_is_short_and_of_what_the_program_cannot_make():
-    names = [name for name, *_ in kept.read()]
-    assert 50 <= len(names) <= kept.MOST and len(set(names)) == len(names)
+    names = [name for name, *_ in by_hand.read()]
+    assert 50 <= len(names) <= by_hand.MOST and len(set(names)) == len(names)
     makeable = []
-    for name, change in zip(names, kept.changes(), strict=True):
+    for name, change in zip(names, by_hand.changes(), strict=True):
         text = (ROOT / change.file).read_text(encoding="utf-8")
         if change.file.endswith(".py"):
             ast.parse(change.applied(text))

@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from solver.numerics.kept import Kept, once, shared_lock
+from solver.numerics.caches import Cache, once, shared_lock
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
 
@@ -51,7 +51,7 @@ def test_a_property_that_another_thread_computes():
 
 
 @pytest.mark.filterwarnings("ignore:.*multi-threaded.*fork:DeprecationWarning")
-@pytest.mark.parametrize("lock", [shared_lock(), Kept._lock], ids=["new", "of a cache"])
+@pytest.mark.parametrize("lock", [shared_lock(), Cache._lock], ids=["new", "of a cache"])
 def test_a_lock_that_another_thread_holds(lock):
     """The fork waits until it is free."""
     begun = threading.Event()

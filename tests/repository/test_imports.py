@@ -100,16 +100,6 @@ def test_solver_imports_numpy_and_scipy_only(path):
     assert tops(path) - set(sys.stdlib_module_names) <= {"numpy", "scipy", "solver"} | more
 
 
-def test_classes_have_names_of_their_own():
-    """So that one name is one thing in the whole tree."""
-    homes: dict[str, list[str]] = {}
-    for path in SOLVER + STUDY:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ClassDef):
-                homes.setdefault(node.name, []).append(name(path))
-    assert {word: paths for word, paths in homes.items() if len(paths) > 1} == {}
-
-
 @of_each(SOLVER)
 def test_importing_the_solver_does_nothing_to_the_process(path):
     """A library defines names: no call whose effect stays, such as one that makes malloc keep freed memory."""
@@ -349,7 +339,7 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
 
 #: Files with locks -> why a forked process does not wait for one that a thread held which it does not have.
 LOCKS = {
-    "solver/numerics/kept.py": "the fork waits until they are free",
+    "solver/numerics/caches.py": "the fork waits until they are free",
     "solver/numerics/threads.py": "renewed",
     "study/files/access.py": "the fork waits until it is free",
     "study/work/engine.py": "renewed",

@@ -35,7 +35,7 @@ def impatient(monkeypatch):
     """What takes two seconds for people takes a hundredth here."""
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setattr(progress, "SILENT", 0.01)
-    monkeypatch.setattr(progress, "AGAIN", 0.01)
+    monkeypatch.setattr(progress, "UPDATE_INTERVAL", 0.01)
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from same import assert_same_numbers
 
 import study
 from study.__main__ import main
-from study.files.lock import held
+from study.files.lock import lock_file
 from study.store import windows
 from study.store.block_file import Damaged, read_block
 from study.store.blocks import forget_other_exports, gather, inventory, lost_cases, note_export
@@ -67,7 +67,7 @@ def test_clean_of_nothing(file):
 def test_clean_waits_for_no_run_and_disturbs_none(file):
     path = store_block(load(file, **OTHERS), 5, 12)
     opened = load(file)
-    with held(Store(opened.definition, opened.results).lock), pytest.raises(ValueError, match="study is going on"):
+    with lock_file(Store(opened.definition, opened.results).lock), pytest.raises(ValueError, match="study is going on"):
         opened.clean()
     assert path.exists()
 
@@ -146,5 +146,5 @@ def test_of_a_large_study_blocks_that_no_part_needs_are_removed(file, monkeypatc
     kept += f"it is so large that no block is looked for in {folder}"
     assert opened.clean() == [kept, f"{folder}: removed 2 blocks that no part needs"] and opened.clean() == [kept]
     assert [path.name for path in blocks(opened)] == [names[0], names[3]]
-    with held(Store(opened.definition, opened.results).lock), pytest.raises(ValueError, match="study is going on"):
+    with lock_file(Store(opened.definition, opened.results).lock), pytest.raises(ValueError, match="study is going on"):
         opened.clean()

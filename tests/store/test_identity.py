@@ -185,7 +185,7 @@ def test_a_file_of_another_program_besides_is_named_and_never_removed(folder, ca
 
 def test_nothing_is_written_where_nothing_is_to_do(folder, monkeypatch):
     monkeypatch.setattr("study.work.run.check_writable", lambda path: 1 / 0)
-    monkeypatch.setattr("study.work.run.held", lambda *_, **__: 1 / 0)
+    monkeypatch.setattr("study.work.run.lock_file", lambda *_, **__: 1 / 0)
     assert study.load("mine.toml").run().counts == {}
 
 

@@ -7,7 +7,7 @@ import pytest
 from line_study import leftovers, load, store_block
 
 from study.files import lock
-from study.files.lock import held
+from study.files.lock import lock_file
 from study.store import blocks
 from study.store.block_file import read_block
 from study.store.blocks import put
@@ -45,7 +45,7 @@ def once(monkeypatch, name: str, before) -> None:
 
 @pytest.mark.parametrize("other", ["ends the work", "is killed"])
 def test_who_waited_goes_on_with_what_is_there(opened, monkeypatch, computed, other):
-    first, raw, said = held(Store(opened.definition, opened.results).lock), io.BytesIO(), []
+    first, raw, said = lock_file(Store(opened.definition, opened.results).lock), io.BytesIO(), []
     first.__enter__()
 
     def end(_):
@@ -71,7 +71,7 @@ def test_who_waits_says_so_only_to_somebody(opened):
 
 def test_parts_do_not_wait_for_each_other_and_leave_each_others_files_alone(opened, monkeypatch):
     monkeypatch.setattr(running, "say_waiting", lambda _: pytest.fail("waits"))
-    with held(Store(opened.definition, opened.results).lock, shared=True):
+    with lock_file(Store(opened.definition, opened.results).lock, shared=True):
         written = folder_of(opened) / ".half.tmp"
         written.touch()
         report = opened.run(part=(1, 2))
@@ -81,7 +81,7 @@ def test_parts_do_not_wait_for_each_other_and_leave_each_others_files_alone(open
 
 
 def test_a_part_that_ends_while_another_computes_leaves_the_results_to_it(opened):
-    with held(Store(opened.definition, opened.results).lock, shared=True):
+    with lock_file(Store(opened.definition, opened.results).lock, shared=True):
         assert opened.run(part=(1, 2)).computed == 13
         report = opened.run(part=(2, 2))
         assert (report.computed, report.complete, report.path.exists()) == (10, True, False)

@@ -18,7 +18,7 @@ from solver.laws.cell.members import Member
 from solver.laws.cell.rows import of_kernel
 from solver.laws.cell.spot import Cell
 from solver.laws.cell.spot import spots as spots_of
-from solver.numerics.kept import Kept
+from solver.numerics.caches import Cache
 from solver.yields import spots
 from solver.yields.below import felt_spots, spot_table
 from solver.yields.below.felt_cells import FeltCell
@@ -81,7 +81,7 @@ def test_twice_as_many_nodes_change_nothing(monkeypatch):
     problem = Problem.of(P=[1e-5, 1e-4], n=[0.2, 20.0], Nbar=far_apart(6.0), **LAYER)
     solution = solve(problem)
     usual = spots.of_contacts(problem, solution, mu=0.2, residual=[0.0, 0.1])
-    monkeypatch.setattr(spot_table, "_kept", Kept(4e7))
+    monkeypatch.setattr(spot_table, "_cache", Cache(4e7))
     for module, numbers in (
         (spot_table, {"_DEPTHS": 22, "_RADII": 25, "_FEW": 17, "_MORE": (9, 6, 2)}),
         (felt_spots, {"_NODES": 14}),

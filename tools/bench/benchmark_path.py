@@ -81,8 +81,8 @@ def predicted() -> list[dict]:
         for loads in LOADS:
             problem = dimensionless(load_axis(base, loads))
             cases, mesh = as_cases(problem), mesh_of(NODES)
-            found = adaptive.solve_on(evaluate(cases, first_guess(cases, mesh), mesh), 0).at.state.y
-            y, x = np.log(found).reshape(-1, loads, NODES), np.log(cases.value[:loads])
+            y = adaptive.solve_on(evaluate(cases, first_guess(cases, mesh), mesh), 0).at.state.y
+            y, x = np.log(y).reshape(-1, loads, NODES), np.log(cases.value[:loads])
             cubic = [_missed(y, x, [k, k + 4, k + 8, k + 12], k + 6) for k in range(0, loads - 12, 4)]
             parabola = [_missed(y, x, [k, k + 1, k + 2], k + 3) for k in range(loads - 3)]
             row = {"base": base, "loads": loads, "between every fourth": np.median(cubic)}

@@ -22,7 +22,7 @@ RADIUS, THICKNESS, MODULUS = 0.01, (0.01, 10.0), (0.01, 200.0)
 #: Part of the largest stress: more is a place that the search missed.
 MISSED = 1e-6
 #: Points of the dense grid: in a layer, below the last one, along the surface in each length beyond the edge.
-DEPTHS, BELOW, BEYOND = 12, np.geomspace(0.03, 3, 12), np.geomspace(0.05, 8, 14)
+DEPTHS, BELOW, OUTSIDE = 12, np.geomspace(0.03, 3, 12), np.geomspace(0.05, 8, 14)
 
 
 def body(seed: int) -> tuple[Problem, float]:
@@ -43,7 +43,7 @@ def body(seed: int) -> tuple[Problem, float]:
 def dense(problem: Problem, solution, mu: float, tops: np.ndarray) -> dict[str, np.ndarray]:
     """Name -> the largest value of each layer, interface or of the whole, on a dense grid."""
     lengths = np.concatenate([[1.0], np.diff(tops), tops[1:]])
-    near = np.outer(lengths, BEYOND).ravel()
+    near = np.outer(lengths, OUTSIDE).ravel()
     r = np.concatenate([np.linspace(0, 1.6, 25), 1 - near, 1 + near])
     r = np.unique(np.round(r[(r >= 0) & (r < 12 * (1 + tops[-1]))], 6))
     inside = [top + (end - top) * np.linspace(0.02, 0.98, DEPTHS) for top, end in zip(tops[:-1], tops[1:], strict=True)]
@@ -84,12 +84,12 @@ def missed(seed: int) -> tuple[str, float, str]:
     words = f"{len(thickness)} layers, h/a {' '.join(f'{h:.3g}' for h in np.diff(tops))}, mu {mu:g}"
     if solution.status[0] != 0:
         return f"{words}, status {solution.status[0]}", 0.0, ""
-    found, worst, of_what = of_mixture(problem, solution, mu), 0.0, ""
+    largest, worst, of_what = of_mixture(problem, solution, mu), 0.0, ""
     grid = dense(problem, solution, mu, tops)
     size = max(np.abs(values[np.isfinite(values)]).max(initial=0.0) for values in grid.values())
     for name, values in grid.items():
         sign = -1 if name == "sz_interface_min" else 1
-        mine = sign * found[name][0, 0] if DIMENSION[EXTREMES[name][1]] else sign * found[name][:1, 0]
+        mine = sign * largest[name][0, 0] if DIMENSION[EXTREMES[name][1]] else sign * largest[name][:1, 0]
         short = np.nanmax((np.maximum(values, 0.0) - mine) / size, initial=0.0)
         if short > worst:
             worst, of_what = float(short), name

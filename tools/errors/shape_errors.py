@@ -102,7 +102,7 @@ def finer() -> None:
     wave_rule._END, wave_rule._END_MIDDLE = 30.0, 26.0
     wave_rule.quadrature.cache_clear()
     products.has_few = galerkin.has_few = lambda *_: False
-    products._WAVES = products.Kept(products._MOST)
+    products._WAVES = products.Cache(products._MOST)
     few = products.size_of
     galerkin.size_of = maugis.size_of = lambda octave, even: int(1.5 * few(octave, even)) + 6
     contact.Tabulated = type("Untabulated", (), {"of": staticmethod(lambda body: body)})

@@ -74,13 +74,13 @@ class Example:
         if with_results:
             self.path.write_bytes(self.file)
 
-    def check(self, found: xr.Dataset, what: str) -> None:
+    def check(self, contact: xr.Dataset, what: str) -> None:
         """Check that all numbers, coordinates, units and meanings are those that were computed."""
-        if set(found.variables) != set(self.expected.variables):
+        if set(contact.variables) != set(self.expected.variables):
             raise AssertionError(f"{what}: other variables")
         # blocks of other sizes sum in another order: 1e-12; error and residual are differences of nearly equal numbers
         for name in set(self.expected.variables) - {"error", "residual", "model_error"}:
-            values, expected = found[name], self.expected[name]
+            values, expected = contact[name], self.expected[name]
             same = values.dims == expected.dims and repr(values.attrs) == repr(expected.attrs)
             numbers = values.dtype.kind == "f"
             near = (
@@ -90,7 +90,7 @@ class Example:
             )
             if not (same and near):
                 raise AssertionError(f"{what}: {name} is silently wrong")
-        if "status" in found and not np.isfinite(found.a.values[found.status.values == 0]).all():
+        if "status" in contact and not np.isfinite(contact.a.values[contact.status.values == 0]).all():
             raise AssertionError(f"{what}: NaN with status 0")
 
 
@@ -200,5 +200,5 @@ def main(flips: int, seed: int) -> int:
 
 
 if __name__ == "__main__":
-    given = [int(word) for word in sys.argv[1:]]
-    sys.exit(main(*(given + [10_000, 1][len(given) :])))
+    arguments = [int(word) for word in sys.argv[1:]]
+    sys.exit(main(*(arguments + [10_000, 1][len(arguments) :])))

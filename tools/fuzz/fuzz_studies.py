@@ -63,8 +63,8 @@ class Hang(BaseException):
 def bases() -> list[str]:
     """The studies of the repository with few points."""
 
-    def few(found: re.Match) -> str:
-        return f"{found[1]}{min(int(found[2].replace('_', '')), 3)}"
+    def few(match: re.Match) -> str:
+        return f"{match[1]}{min(int(match[2].replace('_', '')), 3)}"
 
     texts = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "studies").glob("*/*.toml"))]
     texts += MORE

@@ -53,9 +53,9 @@ def reading(folder: Path, number: int) -> None:
 
 
 def lazily(folder: Path, number: int) -> None:
-    found = opened_of(folder, "large").open()
-    assert found.p.chunks and right(found.compute())
-    assert float(found.p.max().compute(num_workers=2)) > 0
+    dataset = opened_of(folder, "large").open()
+    assert dataset.p.chunks and right(dataset.compute())
+    assert float(dataset.p.max().compute(num_workers=2)) > 0
 
 
 def asking(folder: Path, number: int) -> None:

@@ -18,12 +18,12 @@ from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
 
-import kept
+import by_hand
 from copies import NIGHT, copy
 from operators import Change, changes
-from trials import LIBRARIES, Verdict, compiled, judged, known_of
+from trials import LIBRARIES, Verdict, compiled, judged, runs_of
 
-ROOT = kept.ROOT
+ROOT = by_hand.ROOT
 WANTED = 0.9  # share of the mistakes in each part that must be noticed
 SUFFIXES = {".py", ".js", ".c", ".h"}
 
@@ -80,13 +80,13 @@ def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
     parser.add_argument("--number", type=int, default=100, metavar="N", help="how many (default: 100)")
     parser.add_argument("--base", metavar="COMMIT", help="of files that have changed since then alone")
     parser.add_argument("--only", metavar="PREFIX", default="", help="of files alone whose path begins so")
-    parser.add_argument("--by-hand", action="store_true", help="those of tests/mutants/kept.toml instead")
+    parser.add_argument("--by-hand", action="store_true", help="those of tests/mutants/by_hand.toml instead")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="how many at a time (default: 2)")
     parser.add_argument("--seconds", type=float, default=NIGHT, metavar="S", help="of tests a mistake (default: all)")
     parser.add_argument("--map", type=Path, metavar="FILE", help="keep here which functions each test runs")
     options = parser.parse_args(arguments)
     files = [name for name in files_of(root, options.base) if name.startswith(options.only)]
-    source = kept.changes(root) if options.by_hand else drawn(root, files, options.seed)
+    source = by_hand.changes(root) if options.by_hand else drawn(root, files, options.seed)
     os.environ |= {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL")}
     for library in libraries:
         import_module(library)
@@ -100,7 +100,7 @@ def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
                 break
             if (changed := compiled(change, root, Path(temporary) / "core")) is not None:
                 chosen[change] = changed
-        runs_of_tests = known_of(folders, options.map)
+        runs_of_tests = runs_of(folders, options.map)
         print(
             f"{len(runs_of_tests['tests'])} tests, of the code as it is failed: {runs_of_tests['failed']}", flush=True
         )

@@ -80,10 +80,10 @@ def _in_python(file: str, text: str) -> Iterator[Change]:
         """The operator between two operands, which parentheses, comments and white space may surround."""
         start, stop = place(left)[1], place(right)[0]
         pattern = rb"not\s+in\b|is\s+not\b|\b(?:in|is|and|or)\b|[<>=!]=|\*\*|//|<<|>>|[<>+\-*/%&|]"
-        gap = re.sub(rb"#[^\n]*", lambda found: b" " * len(found[0]), source[start:stop])
-        if found := re.search(pattern, gap):
-            for new in table.get(re.sub(r"\s+", " ", found[0].decode()), ()):
-                yield Change(file, start + found.start(), start + found.end(), new, kind)
+        gap = re.sub(rb"#[^\n]*", lambda match: b" " * len(match[0]), source[start:stop])
+        if match := re.search(pattern, gap):
+            for new in table.get(re.sub(r"\s+", " ", match[0].decode()), ()):
+                yield Change(file, start + match.start(), start + match.end(), new, kind)
 
     for node, inside in _walked(ast.parse(text)):
         match node:

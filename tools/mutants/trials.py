@@ -156,23 +156,23 @@ def mapped(folders: list[Path], results: Path) -> dict:
 
     def action(folder, top):
         trace = Trace(folder)
-        found = tested(folder, [top], results, plugins=[trace])
-        seen = {node: test | {"seconds": found["seconds"][node]} for node, test in trace.tests.items()}
+        outcome = tested(folder, [top], results, plugins=[trace])
+        seen = {node: test | {"seconds": outcome["seconds"][node]} for node, test in trace.tests.items()}
         seen = {node: test for node, test in seen.items() if "functions" in test}
-        return {"functions": list(trace.functions), "tests": seen, "failed": found["failed"]}
+        return {"functions": list(trace.functions), "tests": seen, "failed": outcome["failed"]}
 
     functions, tests, failed = {}, {}, []
-    for task, found in answers([Task(top, lambda folder, top=top: action(folder, top)) for top in tops], folders):
-        if isinstance(found, str):
-            raise RuntimeError(f"the tests in {task.key} cannot be run: {found}")
-        numbers = [functions.setdefault(tuple(place), len(functions)) for place in found["functions"]]
-        for node, test in found["tests"].items():
+    for task, outcome in answers([Task(top, lambda folder, top=top: action(folder, top)) for top in tops], folders):
+        if isinstance(outcome, str):
+            raise RuntimeError(f"the tests in {task.key} cannot be run: {outcome}")
+        numbers = [functions.setdefault(tuple(place), len(functions)) for place in outcome["functions"]]
+        for node, test in outcome["tests"].items():
             tests[node] = test | {"functions": [numbers[place] for place in test["functions"]]}
-        failed += found["failed"]
+        failed += outcome["failed"]
     return {"functions": list(functions), "tests": tests, "failed": failed}
 
 
-def order(file: str, line: int, text: str, known: dict) -> dict[str, float]:
+def order(file: str, line: int, text: str, runs: dict) -> dict[str, float]:
     """Tests that may notice a change at a line -> their seconds, in the order in which they are tried.
 
     A test counts for all that any test of its file runs: they share fixtures and caches. For the same reason a test
@@ -181,23 +181,23 @@ def order(file: str, line: int, text: str, known: dict) -> dict[str, float]:
     """
     if Path(file).suffix != ".py":
         tops = tuple(f"{top}/" for top in UNSEEN.get(Path(file).suffix, []))
-        passing = {node: test["seconds"] for node, test in known["tests"].items() if node not in known["failed"]}
+        passing = {node: test["seconds"] for node, test in runs["tests"].items() if node not in runs["failed"]}
         within = {node: seconds for node, seconds in passing.items() if node.startswith(tops)}
         return dict(sorted(within.items(), key=lambda item: (left_out(item[0]), item[1])))
     lines = _function(text, line)
-    of_file = {i for i, (at, _) in enumerate(known["functions"]) if at == file}
-    of_function = {i for i in of_file if lines and known["functions"][i][1] in lines}
-    runs = {node: of_file & {*test["functions"]} for node, test in known["tests"].items()}
-    homes = {node.partition("::")[0] for node, here in runs.items() if here}
-    asking = {node for node, test in known["tests"].items() if test.get("results")}
-    shared = any(runs[node] for node in asking) or file in known["computing"]
+    of_file = {i for i, (at, _) in enumerate(runs["functions"]) if at == file}
+    of_function = {i for i in of_file if lines and runs["functions"][i][1] in lines}
+    functions = {node: of_file & {*test["functions"]} for node, test in runs["tests"].items()}
+    homes = {node.partition("::")[0] for node, here in functions.items() if here}
+    asking = {node for node, test in runs["tests"].items() if test.get("results")}
+    shared = any(functions[node] for node in asking) or file in runs["computing"]
     chosen = []
-    for node, test in known["tests"].items():
-        if node not in known["failed"] and (
+    for node, test in runs["tests"].items():
+        if node not in runs["failed"] and (
             node.partition("::")[0] in homes or test["processes"] or (shared and node in asking)
         ):
             last = 4 * left_out(node) + 2 * test["processes"] + (node in asking)
-            chosen.append((last, not of_function & runs[node], not runs[node], test["seconds"], node))
+            chosen.append((last, not of_function & functions[node], not functions[node], test["seconds"], node))
     return {node: seconds for *_, seconds, node in sorted(chosen)}
 
 
@@ -218,17 +218,17 @@ def first(seconds: dict[str, float], most: float) -> dict[str, float]:
     return dict(itertools.islice(seconds.items(), max(1, count)))
 
 
-def known_of(folders: list[Path], kept: Path | None) -> dict:
+def runs_of(folders: list[Path], file: Path | None) -> dict:
     """The functions that each test runs, the files that the studies run, and the folder of their results; from the file
-    `kept`, if it exists."""
+    `file`, if it exists."""
     results = folders[0].with_name("kept-results")
     ((_, computing),) = answers([Task("results", lambda _: results_in(results))], folders[:1])
     if isinstance(computing, str):
         raise RuntimeError(f"the studies of the tests cannot be computed: {computing}")
-    runs_of_tests = json.loads(kept.read_text()) if kept and kept.exists() else mapped(folders, results)
-    if kept:
-        kept.write_text(json.dumps(runs_of_tests))
-    return runs_of_tests | {"computing": computing, "results": results}
+    runs = json.loads(file.read_text()) if file and file.exists() else mapped(folders, results)
+    if file:
+        file.write_text(json.dumps(runs))
+    return runs | {"computing": computing, "results": results}
 
 
 def compiled(change: Change, root: Path, folder: Path) -> dict[str, bytes] | None:
@@ -256,24 +256,24 @@ def compiled(change: Change, root: Path, folder: Path) -> dict[str, bytes] | Non
     return None if done.returncode else {change.file: new.encode(), CORE: built.read_bytes()}
 
 
-def judged(changes: dict[Change, dict[str, bytes]], folders: list[Path], known: dict, most: float) -> Iterator[Verdict]:
+def judged(changes: dict[Change, dict[str, bytes]], folders: list[Path], runs: dict, most: float) -> Iterator[Verdict]:
     """Verdicts as they come. changes : mistake -> the files that it changes; most : seconds of tests for each"""
     tasks = []
     for change, files in changes.items():
         text = (folders[0] / change.file).read_text(encoding="utf-8")
-        seconds = first(order(change.file, change.line(text), text, known), most)
+        seconds = first(order(change.file, change.line(text), text, runs), most)
         if not seconds:
             yield Verdict(change, False, "for no test runs its file")
             continue
         tests = list(dict.fromkeys(node.partition("::")[0] for node in seconds))
-        there = None if change.file in known["computing"] else known["results"]
+        there = None if change.file in runs["computing"] else runs["results"]
 
         def action(folder, seconds=seconds, tests=tests, there=there):
             return tested(folder, tests, there, "-x", plugins=[Chosen(seconds)])
 
         tasks.append(Task(change, action, NIGHT, files))
-    for task, found in answers(tasks, folders):
-        yield judge(task.key, found)
+    for task, outcome in answers(tasks, folders):
+        yield judge(task.key, outcome)
 
 
 def judge(change: Change, outcome) -> Verdict:

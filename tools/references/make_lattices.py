@@ -61,9 +61,9 @@ def series(lattice, b):
     moments = 4 * k * depth * b ** (2.0 * k + 2 * i[:, None] + 1) * arm[:, None] / (2 * k + 2 * i[:, None] + 1)
     shape = [[field[n + j] * comb(n + j, n) ** 2 if n + j <= TERMS else 0.0 for j in orders] for n in orders[1:]]
     powers = np.linalg.solve(np.eye(TERMS) - np.array(shape) @ moments, 0.5 * (k == 1))
-    found = moments @ powers
-    A = (powers * depth * b ** (2.0 * k)).sum() + (field * found).sum()
-    return found[0], A, np.pi * b * b, (powers * depth * 2 * k / (2 * k - 1) * b ** (2.0 * k - 1)).sum() / np.pi
+    even = moments @ powers
+    A = (powers * depth * b ** (2.0 * k)).sum() + (field * even).sum()
+    return even[0], A, np.pi * b * b, (powers * depth * 2 * k / (2 * k - 1) * b ** (2.0 * k - 1)).sum() / np.pi
 
 
 def quarter(lattice, shape):
@@ -111,12 +111,12 @@ def cell(lattice, p, shape, q=None):
 def full_contact(lattice, fine=8):
     """p_max - p at full contact: the pressure that flattens the relief, on grids of `fine`/2 and `fine` times as many
     points as POINTS/2, extrapolated (of second order)."""
-    found = []
+    pressures = []
     for factor in (fine // 2, fine):
         height, wave, _ = quarter(lattice, tuple(factor * np.array(POINTS[lattice]) // 2))
         pressure = -fft.dctn(wave / 2 * fft.dctn(height, type=1), type=1)
-        found.append(pressure[0, 0] / (4 * np.prod(np.array(height.shape) - 1)))
-    return found[1] + (found[1] - found[0]) / 3
+        pressures.append(pressure[0, 0] / (4 * np.prod(np.array(height.shape) - 1)))
+    return pressures[1] + (pressures[1] - pressures[0]) / 3
 
 
 def area(lattice, q):
@@ -157,11 +157,11 @@ def small(lattice, p):
 
 def large(lattice, p):
     """A, lam, p_max on a grid that is refined step by step, and their relative changes in the last step."""
-    fine, q, found = np.array(POINTS[lattice]), None, []
+    fine, q, levels = np.array(POINTS[lattice]), None, []
     for parts in (8, 4, 2, 1):
         *values, q = cell(lattice, p, tuple(fine // parts), q if q is None else finer(q))
-        found.append(values)
-    change = np.abs(np.divide(*found[-2:]) - 1)
+        levels.append(values)
+    change = np.abs(np.divide(*levels[-2:]) - 1)
     return values, change
 
 

@@ -26,11 +26,11 @@ def main() -> None:
     with open(TESTS / "references/moved_spreads.csv", "w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["contact", "result", "point", "spread"])
-        for name, given in CONTACTS.items():
-            found = study.solve(**given | {"rtol": 1e-9}, x=[*AT, 1.0])
-            assert found.status == 0, name
-            for result in [f"{one}_spread" for one in found.data_vars if f"{one}_spread" in found.data_vars]:
-                for point, value in enumerate(np.ravel(found[result])[: len(AT)].tolist()):
+        for name, inputs in CONTACTS.items():
+            contact = study.solve(**inputs | {"rtol": 1e-9}, x=[*AT, 1.0])
+            assert contact.status == 0, name
+            for result in [f"{one}_spread" for one in contact.data_vars if f"{one}_spread" in contact.data_vars]:
+                for point, value in enumerate(np.ravel(contact[result])[: len(AT)].tolist()):
                     table.writerow([name, result.removesuffix("_spread"), point, f"{value:.9g}"])
 
 

@@ -81,24 +81,24 @@ def asperities(x, y, pitch, Ra, summits) -> np.ndarray:
     return np.min([paraboloid(near[0] + i, near[1] + j) for i, j in product((-1, 0, 1), repeat=2)], axis=0)
 
 
-def cell_means(found: Resolved, pitch) -> tuple[np.ndarray, np.ndarray]:
+def cell_means(contact: Resolved, pitch) -> tuple[np.ndarray, np.ndarray]:
     """Distance from the middle, and mean pressure, of each cell of the lattice; ascending distance."""
-    which = np.round(found.middle / pitch).astype(int)
+    which = np.round(contact.middle / pitch).astype(int)
     which -= which.min()
     count = which.max() + 1
     place = (which[:, None] * count + which[None, :]).ravel()
-    load = np.bincount(place, found.p.ravel(), count**2) * found.side**2 / pitch**2
+    load = np.bincount(place, contact.p.ravel(), count**2) * contact.side**2 / pitch**2
     at = (np.arange(count) - (count - 1) / 2) * pitch
     r = np.hypot(at[:, None], at[None, :]).ravel()
     order = np.argsort(r, kind="stable")
     return r[order], load[order]
 
 
-def real_area(found: Resolved) -> float:
+def real_area(contact: Resolved) -> float:
     """Area of the elements with pressure, less their excess over the edge of the contact."""
-    touched = found.p > 0
+    touched = contact.p > 0
     edge = sum(np.count_nonzero(np.diff(touched, axis=axis)) for axis in (0, 1))
-    return (np.count_nonzero(touched) - OUTSIDE * edge) * found.side**2
+    return (np.count_nonzero(touched) - OUTSIDE * edge) * contact.side**2
 
 
 def touched_share(pressure) -> float:

@@ -109,12 +109,13 @@ def predicted(case: Case, over: str) -> xr.Dataset:
     return results
 
 
-def measured(found: Resolved) -> dict[str, float]:
+def measured(contact: Resolved) -> dict[str, float]:
     """The QUANTITIES of one mesh; the area in R². p_max is that of the central spot, whose summit is a corner of
     elements on every mesh; in other spots the distance from the summit to the elements varies with the mesh."""
-    middle = len(found.p) // 2
-    r = np.hypot(found.middle[:, None], found.middle[None, :])
-    return {"D": found.D, "a": width(r, found.p, 1.0), "p_max": found.p[middle, middle], "Ar_An": real_area(found)}
+    middle = len(contact.p) // 2
+    r = np.hypot(contact.middle[:, None], contact.middle[None, :])
+    largest = contact.p[middle, middle]
+    return {"D": contact.D, "a": width(r, contact.p, 1.0), "p_max": largest, "Ar_An": real_area(contact)}
 
 
 def richardson(coarse: float, fine: float, order: int) -> float:

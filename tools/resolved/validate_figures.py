@@ -26,9 +26,9 @@ def draw_means(half_space: xr.Dataset, layer: xr.Dataset, path: Path) -> None:
     with style():
         figure = Figure(figsize=(6.9, 7.8), layout="constrained")
         panels = figure.subplots(4, 3, sharex=True, height_ratios=(2, 1.1, 2, 1.1))
-        for found, rows in ((half_space, panels[:2]), (layer, panels[2:])):
-            for name, (top, below) in zip(found["case"].values, rows.T, strict=True):
-                _means(found.sel(case=name).isel(base=0), top, below)
+        for dataset, rows in ((half_space, panels[:2]), (layer, panels[2:])):
+            for name, (top, below) in zip(dataset["case"].values, rows.T, strict=True):
+                _means(dataset.sel(case=name).isel(base=0), top, below)
                 top.set_title(name, fontsize=8)
             rows[0, 0].set_ylabel("$100\\,p/E_2^*$")
             rows[1, 0].set_ylabel("law less mean, % of $p(0)$", fontsize=7)
@@ -72,14 +72,14 @@ def draw_limits(parts: dict[str, xr.Dataset], path: Path) -> None:
         figure.savefig(path)
 
 
-def _thinner(found: xr.Dataset, panel) -> None:
-    pitch = (found["pitch"] / found["h"]).values
+def _thinner(dataset: xr.Dataset, panel) -> None:
+    pitch = (dataset["pitch"] / dataset["h"]).values
     for name, words, colour, mark in (
         ("D", "depth", "C0", "o"),
         ("a", "width", "C2", "s"),
         ("p_max", "largest pressure", "C1", "^"),
     ):
-        error = 100 * found[f"{name}_error"].sel(law="square_lattice")
+        error = 100 * dataset[f"{name}_error"].sel(law="square_lattice")
         look = {"color": colour, "marker": mark, "markersize": 3.5}
         panel.plot(pitch, error.sel(asperities_on="layer").values, label=words, linestyle="-", **look)
         panel.plot(pitch, error.sel(asperities_on="half_space").values, linestyle=":", fillstyle="none", **look)
@@ -90,9 +90,9 @@ def _thinner(found: xr.Dataset, panel) -> None:
     panel.legend(fontsize=6.5, title=title, title_fontsize=6.5, loc="upper left")
 
 
-def _films(found: xr.Dataset, panel) -> None:
-    some = found.sel(lam=SHOWN)
-    for i, material in enumerate(found["material"].values):
+def _films(dataset: xr.Dataset, panel) -> None:
+    some = dataset.sel(lam=SHOWN)
+    for i, material in enumerate(dataset["material"].values):
         of_material = some.sel(material=material)
         look = {"color": COLOURS[i], "linewidth": 1}
         panel.plot(
@@ -106,17 +106,17 @@ def _films(found: xr.Dataset, panel) -> None:
     panel.legend(fontsize=6.5, title=f"λ = {SHOWN:g}; o cell, — the law", title_fontsize=6.5, loc="upper left")
 
 
-def draw_cells(found: xr.Dataset, path: Path) -> None:
+def draw_cells(dataset: xr.Dataset, path: Path) -> None:
     """Draw the errors of both laws in A and p_max of the cells, over pitch/h."""
     from matplotlib.figure import Figure
 
     with style():
         figure = Figure(figsize=(6.9, 3.1), layout="constrained")
         panels = figure.subplots(1, 2, sharey=True)
-        stiff = sorted({*found["n"].values.tolist()})
+        stiff = sorted({*dataset["n"].values.tolist()})
         for panel, name, symbol in zip(panels, ("A", "p_max"), ("$A$", "$p_{\\max}$"), strict=True):
             for n, colour in zip(stiff, COLOURS[::-1], strict=True):
-                of_stiffness = found.isel(cell=found["n"].values == n)
+                of_stiffness = dataset.isel(cell=dataset["n"].values == n)
                 error = 100 * abs(of_stiffness["error"].sel(quantity=name)).clip(LEAST)
                 at, look = (
                     of_stiffness["pitch_over_h"].values,
@@ -141,9 +141,9 @@ def _plain(panel, ticks: list[float]) -> None:
     panel.set_xticks([], minor=True)
 
 
-def _spheres(found: xr.Dataset, panel) -> None:
-    for i, name in enumerate(found["case"].values):
-        case = found.sel(case=name)
+def _spheres(dataset: xr.Dataset, panel) -> None:
+    for i, name in enumerate(dataset["case"].values):
+        case = dataset.sel(case=name)
         r, law = 1e3 * case["r"].values, 100 * case["law_mean"]
         _resolved(panel, r, 100 * case["mean"].values, 200 * case["unsure"].values, f"C{i}")
         panel.plot(r, law.sel(law="heights").values, color=f"C{i}", linewidth=1, label=name)
@@ -152,9 +152,9 @@ def _spheres(found: xr.Dataset, panel) -> None:
     panel.legend(fontsize=6.5)
 
 
-def _cells(found: xr.Dataset, panel) -> None:
-    for i, spread in enumerate(found["spread"].values):
-        of_spread, depth = found.sel(spread=spread), found["A"].sel(spread=spread)
+def _cells(dataset: xr.Dataset, panel) -> None:
+    for i, spread in enumerate(dataset["spread"].values):
+        of_spread, depth = dataset.sel(spread=spread), dataset["A"].sel(spread=spread)
         unsure = depth.std("draw", ddof=1).values / np.sqrt(depth.sizes["draw"])
         p, law = of_spread["p"].values, of_spread["law_A"].values
         _resolved(panel, p, depth.mean("draw").values, 2 * unsure, f"C{i}")

@@ -8,7 +8,7 @@ from validate_cases import LAWS, LAYERED, QUANTITIES, THIN
 from validate_figures import WORDS
 from validate_heights import CELLS_DRAWN, DRAWS
 
-from solver.laws import LAWS as KNOWN
+from solver.laws import LAWS as BY_NAME
 
 HEADS = {"D": "depth", "a": "width", "p_max": "largest pressure", "Ar_An": "real area"}
 BASES = {"half_space": "", "layered": "", "thin_layer": "thin layer, "}
@@ -34,11 +34,11 @@ def predictions(one: xr.Dataset, over: str = "base") -> list[list[str]]:
     return rows
 
 
-def half_space_table(found: xr.Dataset) -> str:
+def half_space_table(dataset: xr.Dataset) -> str:
     """The errors, by pitch over a."""
     rows = []
-    for name in found["case"].values:
-        one = found.sel(case=name)
+    for name in dataset["case"].values:
+        one = dataset.sel(case=name)
         first = [f"{float(one['pitch'] / one['a0']):.3f}", f"{spots(one):.0f}", f"{float(one['lam0']):.3f}"]
         rows += [(first if i == 0 else [""] * 3) + row for i, row in enumerate(predictions(one))]
     return table(["pitch/a", "spots", "λ(0)", "law", *HEADS.values(), "cell means"], rows)
@@ -52,15 +52,15 @@ def spots(one: xr.Dataset) -> float:
 def off_by(share: float) -> float:
     """λ at which A of the disc cell is larger than A of the square lattice by this share."""
     p = np.geomspace(1e-6, 0.3, 400)
-    disc, lattice = (KNOWN[name].at(p, 1.0, Nbar=1.0, Ra=1.0) for name in ("disc_cell", "square_lattice"))
+    disc, lattice = (BY_NAME[name].at(p, 1.0, Nbar=1.0, Ra=1.0) for name in ("disc_cell", "square_lattice"))
     return float(np.interp(share, disc.A / lattice.A - 1, lattice.lam))
 
 
-def layer_table(found: xr.Dataset) -> str:
+def layer_table(dataset: xr.Dataset) -> str:
     """The errors, by layer."""
     rows = []
     for case in LAYERED:
-        one, layer = found.sel(case=case.name), case.layer
+        one, layer = dataset.sel(case=case.name), case.layer
         bond = "bonded" if layer.bonded else "frictionless"
         ratios = f"h/a = {layer.h / float(one['a0']):.2f}, pitch/h = {case.pitch / layer.h:.2f}"
         spot = f"λ(0) = {float(one['lam0']):.2f}, b(0)/h = {spot_over_h(one):.3f}"
@@ -79,25 +79,25 @@ def spot_over_h(one: xr.Dataset) -> float:
     return float(np.sqrt(one["lam0"] / np.pi) * one["pitch"] / one["h"])
 
 
-def thin_table(found: xr.Dataset) -> str:
+def thin_table(dataset: xr.Dataset) -> str:
     """The errors, by layer and `asperities_on`, with `model_error`."""
     rows = []
     for case in THIN:
-        one = found.sel(case=case.name)
+        one = dataset.sel(case=case.name)
         ratios = f"h/a = {case.layer.h / float(one['a0']):.3f}, pitch/h = {case.pitch / case.layer.h:.2g}"
         first = [case.name, ratios, f"λ(0) = {float(one['lam0']):.2f}, b(0)/h = {spot_over_h(one):.2f}"]
         own = predictions(one, "asperities_on")
         first += [""] * (len(own) - len(first))
-        said = ["", *(f"{float(value):.1%}" for value in one["model_error"].values.ravel())]
-        rows += [[words, *row, error] for words, row, error in zip(first, own, said, strict=True)]
+        cells = ["", *(f"{float(value):.1%}" for value in one["model_error"].values.ravel())]
+        rows += [[words, *row, error] for words, row, error in zip(first, own, cells, strict=True)]
     return table(["layer", "asperities on, law", *HEADS.values(), "cell means", "`model_error`"], rows)
 
 
-def thinner_table(found: xr.Dataset) -> str:
+def thinner_table(dataset: xr.Dataset) -> str:
     """The errors of the lattice law on a half-space and on the layer, by pitch over h."""
     rows = []
-    for name in found["case"].values:
-        one = found.sel(case=name, law="square_lattice")
+    for name in dataset["case"].values:
+        one = dataset.sel(case=name, law="square_lattice")
         row = [f"{float(one['pitch'] / one['h']):.2f}", f"{spot_over_h(one):.2f}"]
         for key in ("D_error", "a_error", "p_max_error", "cell_error"):
             form = "{:.2%}" if key == "cell_error" else "{:+.2%}"
@@ -108,11 +108,11 @@ def thinner_table(found: xr.Dataset) -> str:
     return table(["pitch/h", "b(0)/h", *names], rows)
 
 
-def cell_table(found: xr.Dataset) -> str:
+def cell_table(dataset: xr.Dataset) -> str:
     """The properties of each resolved cell, and the errors of both laws."""
     rows = []
-    for i in range(found.sizes["cell"]):
-        one = found.isel(cell=i)
+    for i in range(dataset.sizes["cell"]):
+        one = dataset.isel(cell=i)
         bond = "bonded" if one["bonded"] else "frictionless"
         row = [
             f"{float(one['pitch_over_h']):g}",
@@ -128,29 +128,31 @@ def cell_table(found: xr.Dataset) -> str:
     return table(["pitch/h", "λ", "lattice", "n, interface", "ν1", "m", *heads], rows)
 
 
-def films_table(found: xr.Dataset) -> str:
+def films_table(dataset: xr.Dataset) -> str:
     """The largest errors over materials and λ, by pitch over h."""
-    largest, rows = abs(found["error"]).max(["material", "lam"]), []
+    largest, rows = abs(dataset["error"]).max(["material", "lam"]), []
     for on, words, digits in (("half_space", "half-space", 2), ("layer", "layer", 3)):
         for name, symbol in (("A", "A"), ("p_max", "p_max")):
             values = largest.sel(on=on, quantity=name).values
             rows.append([f"{words}, {symbol}", *(f"{value:.{digits}%}" for value in values)])
-    return table(["pitch/h", *(f"{pitch:g}" for pitch in found["pitch_over_h"].values)], rows)
+    return table(["pitch/h", *(f"{pitch:g}" for pitch in dataset["pitch_over_h"].values)], rows)
 
 
-def sparse_table(found: xr.Dataset) -> str:
+def sparse_table(dataset: xr.Dataset) -> str:
     """A over that on a half-space, less 1, by n and λ."""
-    columns = zip(found["lam"].values, found["pitch_over_h"].values, strict=True)
+    columns = zip(dataset["lam"].values, dataset["pitch_over_h"].values, strict=True)
     heads = [f"λ = {lam:g}, pitch/h = {pitch:.1f}" for lam, pitch in columns]
-    rows = [[f"n = {n:g}", *(f"{value:+.1%}" for value in found["change"].sel(n=n).values)] for n in found["n"].values]
+    rows = [
+        [f"n = {n:g}", *(f"{value:+.1%}" for value in dataset["change"].sel(n=n).values)] for n in dataset["n"].values
+    ]
     return table(["", *heads], rows)
 
 
-def heights_table(found: xr.Dataset) -> str:
+def heights_table(dataset: xr.Dataset) -> str:
     """The errors of the law and of one height, and the scatter of the draws."""
     rows, names = [], ("D", "a", "Ar_An", "p_max")
-    for case in found["case"].values:
-        one = found.sel(case=case)
+    for case in dataset["case"].values:
+        one = dataset.sel(case=case)
         scatter = [
             f"± {value / np.sqrt(DRAWS):.2%}, scatter {value:.1%}"
             for value in one["scatter"].sel(quantity=list(names)).values
@@ -164,63 +166,64 @@ def heights_table(found: xr.Dataset) -> str:
     return table(["heights", "", *(HEADS[name] for name in names), "rings"], rows)
 
 
-def cells_table(found: xr.Dataset) -> str:
+def cells_table(dataset: xr.Dataset) -> str:
     """The errors of the mean field, by σ and p."""
     rows = []
-    for spread in found["spread"].values:
-        one = found.sel(spread=spread)
+    for spread in dataset["spread"].values:
+        one = dataset.sel(spread=spread)
         row = [f"σ = {spread:g} A*"]
-        for p in found["p"].values:
+        for p in dataset["p"].values:
             own = one.sel(p=p)
             unsure = float(own["A"].std("draw", ddof=1)) / np.sqrt(CELLS_DRAWN)
             share = float(own["law_lam"] / own["lam"].mean("draw")) - 1
             row.append(f"{float(own['law_A'] - own['A'].mean('draw')):+.3f} ± {unsure:.3f}, λ {share:+.1%}")
         rows.append(row)
-    return table(["", *(f"p = {p:g}" for p in found["p"].values)], rows)
+    return table(["", *(f"p = {p:g}" for p in dataset["p"].values)], rows)
 
 
-def layer_cells_table(found: xr.Dataset) -> str:
+def layer_cells_table(dataset: xr.Dataset) -> str:
     """The errors of the mean field on a half-space and on the layer, by layer, σ and p."""
     rows = []
-    for layer, spread in product(found["layer"].values, found["spread"].values):
-        some = found.sel(layer=layer, spread=spread)
+    for layer, spread in product(dataset["layer"].values, dataset["spread"].values):
+        some = dataset.sel(layer=layer, spread=spread)
         for on, words in (("half_space", "half-space"), ("layer", "layer")):
             row = [f"{layer}, σ = {spread:g} A*", words]
-            for p in found["p"].values:
+            for p in dataset["p"].values:
                 one = some.sel(p=p)
                 unsure = float(one["A"].std("draw", ddof=1)) / np.sqrt(CELLS_DRAWN)
                 off = float(one["law_A"].sel(on=on) - one["A"].mean("draw"))
                 share = float(one["law_lam"].sel(on=on) / one["lam"].mean("draw")) - 1
                 row.append(f"{off:+.3f} ± {unsure:.3f}, λ {share:+.1%}")
             rows.append(row)
-    return table(["layer", "asperities on", *(f"p = {p:g}" for p in found["p"].values)], rows)
+    return table(["layer", "asperities on", *(f"p = {p:g}" for p in dataset["p"].values)], rows)
 
 
-def thick_table(found: xr.Dataset) -> str:
+def thick_table(dataset: xr.Dataset) -> str:
     """The difference of A from the half-space of the layer's material, also over L(Gh) - 1, by pitch over h."""
-    off, over = (found[name].sel(quantity="A") for name in ("thick", "over"))
+    off, over = (dataset[name].sel(quantity="A") for name in ("thick", "over"))
     rows = []
-    for n in found["n"].values:
+    for n in dataset["n"].values:
         rows.append([f"A, n = {n:g}", *(f"{value:+.1e}" for value in off.sel(n=n).values)])
         rows.append(["over L(Gh) - 1", *(f"{value:.4f}" for value in over.sel(n=n).values)])
-    return table(["pitch/h", *(f"{pitch:g}" for pitch in found["thick_pitch"].values)], rows)
+    return table(["pitch/h", *(f"{pitch:g}" for pitch in dataset["thick_pitch"].values)], rows)
 
 
-def alike_table(found: xr.Dataset) -> str:
+def alike_table(dataset: xr.Dataset) -> str:
     """The differences of p, A and p_max from those of the body, by n - 1."""
     rows = [
-        [name, *(f"{value:+.1e}" for value in found["alike"].sel(quantity=name).values)] for name in ("p", "A", "p_max")
+        [name, *(f"{value:+.1e}" for value in dataset["alike"].sel(quantity=name).values)]
+        for name in ("p", "A", "p_max")
     ]
-    return table(["n - 1", *(f"{more:g}" for more in found["more"].values)], rows)
+    return table(["n - 1", *(f"{more:g}" for more in dataset["more"].values)], rows)
 
 
-def thin_rates_table(found: xr.Dataset) -> str:
+def thin_rates_table(dataset: xr.Dataset) -> str:
     """The differences of p, A and p_max from those of the body alone, by pitch over h."""
     rows = []
-    for n in found["n"].values:
+    for n in dataset["n"].values:
         for name in ("p", "A", "p_max"):
-            off = found["thin"].sel(n=n, quantity=name).values
+            off = dataset["thin"].sel(n=n, quantity=name).values
             left = [f"{value:+.2%}" + (f", x {value / before:.2f}" if before else "")
                     for before, value in zip([0.0, *off[:-1]], off, strict=True)]  # fmt: skip
             rows.append([f"{name}, n = {n:g}", *left])
-    return table(["pitch/h", *(f"{pitch:g}" for pitch in found["thin_pitch"].values)], rows)
+    return table(["pitch/h", *(f"{pitch:g}" for pitch in dataset["thin_pitch"].values)], rows)

@@ -18,11 +18,11 @@ PLAIN |= {"bonding": "bonded"}
 HERTZ = {"base": "half_space", "micro": "smooth"}
 
 
-def seconds(given: dict, loads: list) -> float:
+def seconds(inputs: dict, loads: list) -> float:
     """Processor time of a call for each of the loads, one after the other."""
     begun = time.process_time()
     for P in loads:
-        study.solve(**given, P=P)
+        study.solve(**inputs, P=P)
     return time.process_time() - begun
 
 

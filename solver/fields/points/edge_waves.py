@@ -12,7 +12,7 @@ only with the number of octaves between a and h.
 import numpy as np
 
 from ...numerics import special
-from ...numerics.kept import Kept
+from ...numerics.caches import Cache
 from ..pressure import edge_rule
 
 #: In each octave above LEAST f is the polynomial through _NODES Chebyshev points. Its error is at most 4e-11 of the
@@ -25,7 +25,7 @@ MIDDLE, LAST = LEAST + 4.5 * _WIDTH, LEAST + 9 * _WIDTH
 #: Terms of the asymptotic series of H_0 and H_1, from x = 100 on.
 _TERMS = 7
 #: The tables of f that were formed, at most 50 MB.
-_tables = Kept(5e7)
+_tables = Cache(5e7)
 
 
 def have_edge_waves(mesh):
@@ -35,13 +35,13 @@ def have_edge_waves(mesh):
 
 def of_edge(pressure, k):
     """f (B, K) at ascending k >= LEAST."""
-    made, octave = np.empty((len(pressure.values), len(k)), dtype=complex), np.floor(np.log2(k / LEAST)).astype(int)
+    waves, octave = np.empty((len(pressure.values), len(k)), dtype=complex), np.floor(np.log2(k / LEAST)).astype(int)
     for number in np.unique(octave):
         some, first = octave == number, LEAST * 2.0**number
         nodal = _tables.get((pressure.mesh, number), lambda: _table(pressure.mesh, first))  # noqa: B023
         rows = np.polynomial.chebyshev.chebvander(2 * k[some] / first - 3, _NODES - 1) @ _INVERSE
-        made[:, some] = (pressure.values @ nodal.T) @ rows.T
-    return made if pressure.A is None else made - 1j * pressure.A[:, None] / k
+        waves[:, some] = (pressure.values @ nodal.T) @ rows.T
+    return waves if pressure.A is None else waves - 1j * pressure.A[:, None] / k
 
 
 def transform(pressure, k):
@@ -64,11 +64,11 @@ def _table(mesh, first):
     `first`."""
     k = first * (1.5 + 0.5 * _AT)
     s, weight = edge_rule(mesh, first)
-    x, made = np.sqrt((1 - s) * (1 + s)), np.zeros((_NODES, mesh.n), dtype=complex)
+    x, table = np.sqrt((1 - s) * (1 + s)), np.zeros((_NODES, mesh.n), dtype=complex)
     for part in np.array_split(np.arange(len(s)), len(s) // 2000 + 1):
         z = k[:, None] * x[part]
-        made += ((special.j0(z) + 1j * special.y0(z)) * (weight * s)[part]) @ mesh.basis(s[part])
-    return made * np.exp(-1j * k)[:, None]
+        table += ((special.j0(z) + 1j * special.y0(z)) * (weight * s)[part]) @ mesh.basis(s[part])
+    return table * np.exp(-1j * k)[:, None]
 
 
 def longer(k):

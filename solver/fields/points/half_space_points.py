@@ -68,17 +68,17 @@ def _integrals(pressure, r, z, halvings, most):
     """∫ p^ k^(j+1) e^(-kz) J_m dk, (most + 3, 4, P) over m, j and the points; `pressure` has one case for each."""
     nodes = Nodes.of_each(pressure, r, halvings)
     ζ = z[:, None] - 1j * nodes.t
-    real = z[:, None] ** 2 - nodes.beyond * (nodes.t + r[:, None])
+    real = z[:, None] ** 2 - nodes.gap * (nodes.t + r[:, None])
     ρ = np.sqrt(real - 2j * z[:, None] * nodes.t)
     once = 1 / ρ
     g, twice = r[:, None] / (ρ + ζ), once * once
-    made, power = np.empty((most + 3, 4, len(r))), np.ones_like(ρ)
+    integrals, power = np.empty((most + 3, 4, len(r))), np.ones_like(ρ)
     fall = ζ * twice
     for m in range(most + 3):
         before, now = power / max(m, 1), power * once
-        made[m, 0] = np.einsum("pt,pt->p", nodes.weight, now.imag)
+        integrals[m, 0] = np.einsum("pt,pt->p", nodes.weight, now.imag)
         for j in range(3):
             before, now = now, (2 * j + 1) * fall * now - (j * j - m * m) * twice * before
-            made[m, j + 1] = np.einsum("pt,pt->p", nodes.weight, now.imag)
+            integrals[m, j + 1] = np.einsum("pt,pt->p", nodes.weight, now.imag)
         power = power * g
-    return made
+    return integrals

@@ -14,11 +14,11 @@ from ...kernels.transfer import (
     Bodies,
     StatePart,
     antiplane,
-    carried,
     decaying,
     derivative,
     growing,
     radial_sum,
+    state_below,
     thick_waves,
     thin_surface,
 )
@@ -70,24 +70,24 @@ class OctaveWaves(NamedTuple):
 
     def state(self, load, kind, case, z, end):
         """State (4 of (P, end)) there under the first waves, times p, and the antiplane pair."""
-        k, h, bodies, made = self.k[:end], self.h[case, None], self.bodies, self.loads[load]
+        k, h, bodies, constants = self.k[:end], self.h[case, None], self.bodies, self.loads[load]
         X, x, middle = k * h, k * z[:, None], min(self.thin, end)
         nu1, p = bodies.nu1[case], self.p[case, :end]
         if kind == StatePart.BODY:
-            v = decaying(x - X, bodies.nu2[case], *(part[case, :end] for part in made.base))
+            v = decaying(x - X, bodies.nu2[case], *(part[case, :end] for part in constants.base))
         else:
             low, high, thick = slice(None, middle), slice(middle, end), slice(0, end - middle)
             parts = []
             if middle:
-                state = carried(x[:, low], nu1, [part[case, :middle] for part in made.surface])
+                state = state_below(x[:, low], nu1, [part[case, :middle] for part in constants.surface])
                 if kind == StatePart.DIFFERENCE:
                     less = decaying(x[:, low], nu1, *(s * p[:, low] for s in load))
                     state = [a - b for a, b in zip(state, less, strict=True)]
                 parts.append(state)
             if end > middle:
-                down = made.down_less if kind == StatePart.DIFFERENCE else made.down
+                down = constants.down_less if kind == StatePart.DIFFERENCE else constants.down
                 falls = decaying(x[:, high], nu1, *(part[case, thick] for part in down))
-                rises = growing((X - x)[:, high], nu1, *(part[case, thick] for part in made.up))
+                rises = growing((X - x)[:, high], nu1, *(part[case, thick] for part in constants.up))
                 parts.append([a + b for a, b in zip(falls, rises, strict=True)])
             v = parts[0] if len(parts) == 1 else [np.concatenate(pair, axis=1) for pair in zip(*parts, strict=True)]
         if load[1] == 0:
@@ -149,7 +149,7 @@ def _constants(bodies, h, k, thin, p, load):
     surface = np.stack(np.broadcast_arrays(*thin_surface(bodies, X[:, low], *load))) * p[:, low]
     down, up = (np.stack(v) for v in thick_waves(bodies, X[:, high], *load))
     whole, nu = (down + np.array(load)[:, None, None]) * p[:, high], bodies.nu1
-    thin = carried(X[:, low], nu, surface)[2:]
+    thin = state_below(X[:, low], nu, surface)[2:]
     thick = zip(decaying(X[:, high], nu, *whole), growing(0.0, nu, *(up * p[:, high])), strict=True)
     thick = [falls + rises for falls, rises in thick][2:]
     S, T = (np.concatenate(parts, axis=1) for parts in zip(thin, thick, strict=True))
@@ -165,7 +165,7 @@ def sums(waves, integrands, load, orders, kind, case, r, z):
     orders : of the Bessel function of each integrand
     kind : where all points are: :class:`~solver.kernels.transfer.StatePart`, or in which region of the stack
     """
-    made = np.empty((JET, len(orders), len(r)))
+    integrals = np.empty((JET, len(orders), len(r)))
     reach = waves.reach(kind, case, z)
     order = np.argsort(-reach)
     ends = np.searchsorted(waves.k, END / reach[order])
@@ -175,11 +175,11 @@ def sums(waves, integrands, load, orders, kind, case, r, z):
         while stop < len(order) and (stop + 1 - start) * ends[stop] <= _AT_ONCE:
             stop += 1
         some = order[start:stop]
-        made[..., some] = _of_some(
+        integrals[..., some] = _of_some(
             waves, integrands, load, orders, kind, case[some], r[some], z[some], int(ends[stop - 1])
         )
         start = stop
-    return made
+    return integrals
 
 
 def _of_some(waves, integrands, load, orders, kind, case, r, z, end):
@@ -196,14 +196,14 @@ def _of_some(waves, integrands, load, orders, kind, case, r, z, end):
         window = edge_waves.shorter(k, octave)[which]
         J = edge_waves.bessels(k, r, waves.f[case, :end] * window, max(orders))
     slopes = {m: _slopes(J, m, k) for m in set(orders)}
-    made = np.empty((JET, len(orders), len(r)))
+    integrals = np.empty((JET, len(orders), len(r)))
     for i, m in enumerate(orders):
         f, down, twice = (row[i] for row in rows)
         across, bent = slopes[m]
         pairs = (f, J[m]), (f, across), (down, J[m]), (f, bent), (down, across), (twice, J[m])
         for j, (values, wave) in enumerate(pairs):
-            made[j, i] = np.einsum("pk,pk->p", values, wave)
-    return made
+            integrals[j, i] = np.einsum("pk,pk->p", values, wave)
+    return integrals
 
 
 def _slopes(J, m, k):

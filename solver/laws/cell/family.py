@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from ...numerics.kept import Kept
+from ...numerics.caches import Cache
 from .rows import of_kernel
 from .spot import FEW, POINTS, Cell, pieces, spots
 
@@ -57,7 +57,7 @@ _SETTLES, _TURNED = 4.0, 0.25
 #: Number of entries of the matrices that are solved at a time.
 _AT_ONCE = 2**20
 #: The families in use, at most this many bytes, which is some 10,000 of them.
-_kept = Kept(2e7)
+_cache = Cache(2e7)
 
 #: The numbers of a family before its series, in this order:
 #: scale : b/h over b/Bbar
@@ -81,7 +81,7 @@ class Family(NamedTuple):
     pitch : pitch over h
     reach : the largest radius, in l
     P, G, Q : Chebyshev coefficients, (N,) each; inverse : (GUESS,)
-    known : False if no law can use the family, for example because its pitch is above MOST
+    usable : False if no law can use the family, for example because its pitch is above MOST
     disc : whether its cells are disc cells
     digest : a whole number that no other family has
     numbers : the NUMBERS
@@ -93,7 +93,7 @@ class Family(NamedTuple):
     G: np.ndarray
     Q: np.ndarray
     inverse: np.ndarray
-    known: bool = True
+    usable: bool = True
     disc: bool = False
     digest: float = 0.0
     numbers: np.ndarray | None = None
@@ -127,7 +127,7 @@ class Family(NamedTuple):
         bends = along**2 * np.array(orders[1]) + slopes / (1 + beta**2)
         settles = max(_SETTLES, np.abs(bends).max() / _TURNED)
         widths = 1 / np.arcsinh(scale * end), 1 / np.arcsinh(scale * end_r)
-        most = 2 / np.pi * end_r**3 if self.known else 0.0
+        most = 2 / np.pi * end_r**3 if self.usable else 0.0
         turn = _turn(scale, end, self.P) if self.disc else (end, 0.0)
         numbers = scale, widths[0], end, widths[1], end_r, *slopes, *bends, settles, most, *turn, self.digest
         return self._replace(numbers=np.array(numbers))
@@ -190,7 +190,7 @@ def family(key, kernel, m, i):
     def make():
         return Family(*_fields(key[0], key[2], kernel.take([i]), float(m[i])), digest=digest).with_numbers()
 
-    return _kept.get(key, make)
+    return _cache.get(key, make)
 
 
 def rounded(pitch):

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from ...numerics.kept import Kept
+from ...numerics.caches import Cache
 from .family import different, family
 from .peak import peaks, summit_peaks
 from .rows import of_kernel
@@ -12,20 +12,20 @@ from .summits import SUMMIT
 __all__ = ["Member", "members", "peaks_of"]
 
 #: The peaks in use, at most this many bytes: some 2,000 families whose largest pressure leaves the middle.
-_peaks = Kept(2e7)
+_peaks = Cache(2e7)
 
 
 class Member(NamedTuple):
     """A family: the key that tells it from others, its :class:`~.spot.Cell`, and its largest radius, in l.
 
-    known : False if no law can use the family
+    usable : False if no law can use the family
     alone : whether its spots have loads of their own (:mod:`.summits`)
     """
 
     key: tuple
     cell: Cell
     reach: float
-    known: bool
+    usable: bool
     alone: bool = False
 
 
@@ -39,7 +39,7 @@ def members(lattice, pitch, kernel, m):
     for key, i in first:
         solved = family(key, kernel, m, i)
         cell = Cell(lattice, key[2], of_kernel(kernel.take([i]), float(m[i])))
-        distinct.append(Member((*key, alone), cell, solved.reach, solved.known, alone))
+        distinct.append(Member((*key, alone), cell, solved.reach, solved.usable, alone))
     return distinct, index
 
 

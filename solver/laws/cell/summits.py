@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...numerics.kept import Kept
+from ...numerics.caches import Cache
 from .family import REACH, chebyshev_series, in_groups
 from .rows import of_kernel
 from .spot import Cell, CellSpots, kernels, pieces, points, spots
@@ -40,7 +40,7 @@ SERIES = ("G", "P", "Q", "B", "F", "D")
 _TERMS, _ENOUGH, _SMALL = ((2.0, 16), (24.0, 28), (np.inf, 56)), 130, 1e-7
 #: Polynomials of a lookup: number for each term of the series, and degree. They are right to 1e-9.
 _PIECES, _DEGREE = 6, 5
-_summits = Kept(2e7)
+_summits = Cache(2e7)
 #: `cell` of the :class:`~solver.laws.law.Law` of random heights.
 SUMMIT = "summit"
 
@@ -77,7 +77,7 @@ def summit(key, disc, kernel, m, i):
 def _series_of(disc, kernel, m):
     """The series of a :class:`Summit`."""
     none = np.zeros((len(SERIES), 1))
-    if not disc.known:
+    if not disc.usable:
         return none
     cell = Cell("disc", disc.pitch, of_kernel(kernel, m))
     of_lattice, lone = pieces(cell, disc.reach), pieces(cell._replace(lattice="lone"), disc.reach)

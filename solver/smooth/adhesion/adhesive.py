@@ -48,8 +48,8 @@ def solve(part, shape, body, x, ends=True):
     if part.control == "a":
         state = law.at(part.value)
     else:
-        asked, at_turn = _asked(part, curve, search)
-        state = curve.at(asked, every)[0]
+        place, at_turn = _place_of_control(part, curve, search)
+        state = curve.at(place, every)[0]
     pulls = {"P_off": turn.state.P, "D_off": turn.state.D, "a_off": np.where(turn.at_axis, 0.0, turn.state.a)}
     pulls |= {"P_in": np.where(search.holder.load, 0.0, jumped.P), "a_in": jumped.a}
     off, scales = _off(turn.state), _scales(law, turn.state, state)
@@ -155,7 +155,7 @@ def _off(state):
     return state.P_error / np.maximum(np.abs(state.P), P) + state.D_error / np.maximum(np.abs(state.D), D)
 
 
-def _asked(part, curve, pulls):
+def _place_of_control(part, curve, pulls):
     """x (B,) of the given branch for a given P or D, NaN if that branch has no such state; and whether the control is
     at its minimum (B,). The largest radius with the value of the control belongs to the stable branch if it is above
     the :class:`~.pull.Turn` of the holder of the punch."""

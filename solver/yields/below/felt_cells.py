@@ -74,7 +74,7 @@ def felt_cells(scaled, a, lam, p0):
         different, which = members(part.known.laws[micro].cell, pitch[rows] / part.h, layers, part.m)
         largest = largest_radius(part, body, lam[rows, 0], p0[rows])
         for place, (i, member, b) in enumerate(zip(rows, (different[j] for j in which), largest, strict=True)):
-            if member.known:
+            if member.usable:
                 others = np.zeros(0) if member.alone or np.isnan(lam[i]).any() else lam[i, 1:]
                 radii = np.append(b, np.sqrt(np.maximum(others, _LEAST) / np.pi))
                 cells[i] = FeltCell(member, radii, p0[i] / unit[i], layers.take([place]), pitch[i] / a[i], unit[i])

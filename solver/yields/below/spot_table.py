@@ -14,7 +14,7 @@ from numpy.polynomial.chebyshev import chebvander
 from ...fields.below_spots import ROUGH, below_spot
 from ...laws.cell.peak import may_leave_the_middle
 from ...laws.cell.spot import pieces, spots
-from ...numerics.kept import Kept
+from ...numerics.caches import Cache
 from ..peaks import chebyshev_nodes
 
 #: Number of radii b of the table up to _SMALL h, where the series are in b; and beyond, where they are in ln b, the
@@ -27,7 +27,7 @@ _DEPTHS, _DEEP, _RADII = 14, 1.5, 17
 #: The reach and the limit are the same if they differ by less than this part.
 _SAME = 1e-12
 #: The tables in use, at most this many bytes: some 200 tables with radii off the axis.
-_kept = Kept(4e7)
+_cache = Cache(4e7)
 
 
 class Table(NamedTuple):
@@ -83,7 +83,7 @@ def table_of(felt):
     if member.alone:
         rho, z = _places(member.cell, felt.b[0])
         return One(felt.stresses(felt.b[0], felt.b[0] * rho, z, 0, ROUGH))
-    return _kept.get(member.key, lambda: _table(member.cell, felt.layers, member.reach))
+    return _cache.get(member.key, lambda: _table(member.cell, felt.layers, member.reach))
 
 
 def _places(cell, b):

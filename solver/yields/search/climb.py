@@ -31,15 +31,15 @@ def climb(jets, value, start, half, low, high, scale):
     trial, promised = centre.copy(), np.full(len(start), np.inf)
     active = np.arange(len(start))
     for _ in range(_MOST):
-        made = jets(active, *trial[active].T)
-        reached = value(active, made[0][..., None])[:, 0]
+        stresses = jets(active, *trial[active].T)
+        reached = value(active, stresses[0][..., None])[:, 0]
         better = reached > best[active]
         if np.isfinite(best[active]).any():
             wrong = np.abs(reached - promised[active]) > _RIGHT * np.abs(promised[active] - best[active])
             step = np.abs(trial[active] - centre[active])
             half[active] = _resized(half[active], widest[active], step, wrong, better)
         some = active[better]
-        best[some], centre[some], models[..., some] = reached[better], trial[some], made[..., better]
+        best[some], centre[some], models[..., some] = reached[better], trial[some], stresses[..., better]
         ends = np.maximum(centre - half, low)[active], np.minimum(centre + half, high)[active]
         trial[active], promised[active] = _highest(active, value, models[..., active], centre[active], *ends)
         gain = promised[active] - best[active]

@@ -102,10 +102,10 @@ class Jets:
                         loaded.pressure, here, nu, r[near], np.maximum(v[near], LEAST)
                     )
             fields |= load.fields(whole, loaded.mu)
-        made = stresses_of(fields, loaded.mu, loaded.signs, side)
+        stresses = stresses_of(fields, loaded.mu, loaded.signs, side)
         if not body and not loaded.bare:
-            made[0, :2] += loaded.residual[case]
-        return made
+            stresses[0, :2] += loaded.residual[case]
+        return stresses
 
     def _is_near(self, case, z):
         return z < NEAR * self.loaded.h[case]
@@ -157,8 +157,8 @@ def of_surface(load, pressure, nu, case, u, root, outside):
     low, high = (-np.inf, 0.0) if outside else (0.0, 1.0)
     middle = np.clip(u, low + _STEP, high - _STEP)
     points = np.concatenate([u, middle - _STEP, middle, middle + _STEP])
-    made = _on_surface(load, pressure, nu, np.tile(case, 4), points, np.tile(root, 4), outside)
-    values, before, at, after = np.split(made, 4, axis=1)
+    integrals = _on_surface(load, pressure, nu, np.tile(case, 4), points, np.tile(root, 4), outside)
+    values, before, at, after = np.split(integrals, 4, axis=1)
     first, second = (after - before) / (2 * _STEP), (after - 2 * at + before) / _STEP**2
     none = np.zeros_like(values)
     return np.stack([values, first + second * (u - middle), none, second, none, none])

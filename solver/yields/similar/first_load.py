@@ -16,9 +16,9 @@ _THICK, _BEFORE = -5, 0.7
 _GROWS = {"layer": 1.0, "body": 3.0, "punch": 1.0}
 
 
-def put_first_loads(made, problem, index, strength, sought, reach):
-    """Put the crossings of the cases `index` into `made`, a :class:`~..crossing.Crossing`. NaN of the strength or of
-    the start, or a start beyond the end: nothing is looked for.
+def put_first_loads(crossing, problem, index, strength, sought, reach):
+    """Put the crossings of the cases `index` into `crossing`, a :class:`~..crossing.Crossing`. NaN of the strength or
+    of the start, or a start beyond the end: nothing is looked for.
 
     problem : B cases, of which those of the `index` are :func:`~.unit_contacts.are_similar`
     strength : (B,), in the unit of E2
@@ -39,14 +39,14 @@ def put_first_loads(made, problem, index, strength, sought, reach):
     place = first_place(table, line._replace(first=_not_thick(table, line)))
     radius = h - place.log_t
     there = np.flatnonzero(radius <= np.log(last[index]))
-    made.unsolved[index] = place.unsolved
-    made.crossed[index[there]], made.at[index[there]] = True, np.exp(radius[there])
-    made.r[index], made.z[index] = np.where(radius <= np.log(last[index]), [place.r, place.z], np.nan)
+    crossing.unsolved[index] = place.unsolved
+    crossing.crossed[index[there]], crossing.at[index[there]] = True, np.exp(radius[there])
+    crossing.r[index], crossing.z[index] = np.where(radius <= np.log(last[index]), [place.r, place.z], np.nan)
     numbers = _numbers(part, scaled, there, radius[there])
     for name in NUMBERS:
-        made.numbers[name][index[there]] = numbers[name]
+        crossing.numbers[name][index[there]] = numbers[name]
     if slopes:
-        _put_slopes(made, index, part, there, radius, (table, line), numbers)
+        _put_slopes(crossing, index, part, there, radius, (table, line), numbers)
 
 
 def _not_thick(table, line):
@@ -72,12 +72,12 @@ def _numbers(part, scaled, rows, radius):
     return {name: values[name] * scale[name] for name in NUMBERS}
 
 
-def _put_slopes(made, index, part, there, radius, searched, numbers):
-    """Put `by_strength` into `made`, by contacts a little beyond the crossings."""
+def _put_slopes(crossing, index, part, there, radius, searched, numbers):
+    """Put `by_strength` into `crossing`, by contacts a little beyond the crossings."""
     table, line = searched
-    beyond = radius[there] + np.log1p(ASIDE)
-    log_t = line.size[there] - beyond
-    value = np.log(table.at(there, log_t).mises) + beyond - line.strength[there]
-    after = _numbers(part, table.scaled, there, beyond)
+    log_a = radius[there] + np.log1p(ASIDE)
+    log_t = line.size[there] - log_a
+    value = np.log(table.at(there, log_t).mises) + log_a - line.strength[there]
+    after = _numbers(part, table.scaled, there, log_a)
     for name in NUMBERS:
-        made.by_strength[name][index[there]] = np.log(after[name] / numbers[name]) / value
+        crossing.by_strength[name][index[there]] = np.log(after[name] / numbers[name]) / value

@@ -63,20 +63,20 @@ class Place(NamedTuple):
 def first_place(table, line):
     """:class:`Place` of the cases of a :class:`~.stress_table.StressTable` along a :class:`Line`."""
     size = len(line.size)
-    made = Place(*np.full((3, size), np.nan), np.zeros(size, dtype=bool))
+    place = Place(*np.full((3, size), np.nan), np.zeros(size, dtype=bool))
     way = np.where(line.last >= line.first, 1, -1)
     over, failed = _first_over(table, line, way)
-    made.unsolved[:] = failed & (over == _NONE)
+    place.unsolved[:] = failed & (over == _NONE)
     index = np.flatnonzero(over != _NONE)
     if not len(index):
-        return made
+        return place
     nodes = over[index, None] + way[index, None] * _STENCIL
     shares = _shares(table, line, np.repeat(index, len(_STENCIL)), nodes.ravel()).reshape(nodes.shape)
     enclosed = (shares[:, 1] < 0) & (shares[:, 2] >= 0)
-    made.unsolved[index[~enclosed]] = True
+    place.unsolved[index[~enclosed]] = True
     index, shares = index[enclosed], shares[enclosed]
-    _closer(made, table, line, (index, over[index], way[index]), _smooth(shares))
-    return made
+    _closer(place, table, line, (index, over[index], way[index]), _smooth(shares))
+    return place
 
 
 #: In place of a node where there is none.
@@ -102,9 +102,9 @@ def _first_over(table, line, way):
         shares = part.share(thickness(nodes), table.octaves(active, octave[active]))
         down = way[active] < 0
         nodes[down], shares[down] = nodes[down, ::-1], shares[down, ::-1]
-        beside = (nodes - part.first[:, None]) * way[active, None] < 0
-        beside |= (nodes - part.last[:, None]) * way[active, None] > 0
-        shares[beside] = -np.inf
+        outside = (nodes - part.first[:, None]) * way[active, None] < 0
+        outside |= (nodes - part.last[:, None]) * way[active, None] > 0
+        shares[outside] = -np.inf
         column = _refined(table, line, active, nodes, shares)
         there = column < EACH
         over[active[there]] = nodes[there, column[there]]
@@ -119,18 +119,18 @@ def _first_over(table, line, way):
 def _refined(table, line, active, nodes, shares):
     """The first columns (b,) whose `shares` (b, EACH) are not below 0, EACH where there are none. Where coarse ones are
     close to 0 the stresses themselves take their places first."""
-    known, columns = ~np.isfinite(shares), np.arange(EACH)
+    exact, columns = ~np.isfinite(shares), np.arange(EACH)
     while True:
         column = np.where((shares >= 0).any(axis=1), np.argmax(shares >= 0, axis=1), EACH)
         away = columns - column[:, None]
-        wanted = (shares >= np.log1p(-_MISSED)) & (away <= 0) & ~known
+        wanted = (shares >= np.log1p(-_MISSED)) & (away <= 0) & ~exact
         some = wanted.any(axis=1, keepdims=True) & (column < EACH)[:, None]
-        wanted |= some & (away >= _STENCIL[0]) & (away <= _STENCIL[-1]) & ~known
+        wanted |= some & (away >= _STENCIL[0]) & (away <= _STENCIL[-1]) & ~exact
         if not wanted.any():
             return column
         rows, places = np.nonzero(wanted)
         shares[rows, places] = _shares(table, line, active[rows], nodes[rows, places])
-        known |= wanted
+        exact |= wanted
 
 
 def _smooth(shares):
@@ -140,8 +140,8 @@ def _smooth(shares):
     return np.where(np.isfinite(shares).all(axis=1, keepdims=True), shares, straight)
 
 
-def _closer(made, table, line, cases, shares):
-    """Put the places into `made`.
+def _closer(place, table, line, cases, shares):
+    """Put the places into `place`.
 
     cases : index, first node over the strength, and way there, (b,) each
     shares : (b, 4), at the nodes of the polynomial
@@ -170,11 +170,11 @@ def _closer(made, table, line, cases, shares):
         done = close | (np.abs(value) <= _SAME)
         at[active] = np.where(inside, there, (low[active] + high[active]) / 2)
         first[active] = False
-        made.r[rows[done]], made.z[rows[done]] = contact.r[done], contact.z[done]
-        made.log_t[rows[done]] = thickness(node[active] + way[active] * at[active])[done]
+        place.r[rows[done]], place.z[rows[done]] = contact.r[done], contact.z[done]
+        place.log_t[rows[done]] = thickness(node[active] + way[active] * at[active])[done]
         return done
 
-    made.unsolved[index[march(step, np.arange(len(index)), most=_MOST)]] = True
+    place.unsolved[index[march(step, np.arange(len(index)), most=_MOST)]] = True
 
 
 def _root(terms):

@@ -5,14 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...numerics.kept import Kept
+from ...numerics.caches import Cache
 from ...problem import Problem
 from .unit_contacts import Sought, unit_contacts
 
 #: Nodes of an octave of h/a: a step between two is below the largest that is allowed near a strength.
 EACH = 8
 #: Bytes of tables that are kept: some ten thousand octaves.
-_kept = Kept(2_000_000)
+_cache = Cache(2_000_000)
 #: What of a case makes its stress over a/R at one h/a.
 _OF_PAIR = ("n", "nu1", "nu2", "m", "bonding")
 
@@ -58,8 +58,8 @@ class StressTable(NamedTuple):
 
         def make(rows):
             nodes = EACH * number[rows, None] + np.arange(EACH)
-            made = self.at(np.repeat(index[rows], EACH), thickness(nodes).ravel(), coarse=True)
-            return np.log(np.stack([made.mises, made.P], axis=1)).reshape(-1, EACH, 2)
+            contacts = self.at(np.repeat(index[rows], EACH), thickness(nodes).ravel(), coarse=True)
+            return np.log(np.stack([contacts.mises, contacts.P], axis=1)).reshape(-1, EACH, 2)
 
         return Logs(*np.moveaxis(self._looked_up("octave", index, number, make), -1, 0))
 
@@ -67,8 +67,8 @@ class StressTable(NamedTuple):
         """:class:`Logs` (b,) of the cases `index` at `node` (b,), whole numbers."""
 
         def make(rows):
-            made = self.at(index[rows], thickness(node[rows]))
-            return np.log(np.stack([made.mises, made.P], axis=1))
+            contacts = self.at(index[rows], thickness(node[rows]))
+            return np.log(np.stack([contacts.mises, contacts.P], axis=1))
 
         return Logs(*np.moveaxis(self._looked_up("node", index, node, make), -1, 0))
 
@@ -77,12 +77,12 @@ class StressTable(NamedTuple):
         of_pair = [getattr(self.scaled, name)[index].tolist() for name in _OF_PAIR]
         pairs = zip(number.tolist(), self.punch[index].tolist(), *of_pair, strict=True)
         keys = [(kind, self.sought, *pair) for pair in pairs]
-        values = {key: _kept.find(key) for key in keys}
+        values = {key: _cache.find(key) for key in keys}
         rows = {}
         for row, key in enumerate(keys):
             if values[key] is None:
                 rows.setdefault(key, row)
         if rows:
-            made = make(np.array([*rows.values()]))
-            values |= {key: _kept.get(key, value.copy) for key, value in zip(rows, made, strict=True)}
+            columns = make(np.array([*rows.values()]))
+            values |= {key: _cache.get(key, value.copy) for key, value in zip(rows, columns, strict=True)}
         return np.array([values[key] for key in keys])

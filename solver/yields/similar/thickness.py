@@ -29,9 +29,9 @@ class Ends(NamedTuple):
         return self._replace(up=True)
 
 
-def put_thicknesses(made, problem, index, strength, mu, ends):
-    """Put into `made`, a :class:`~..crossing.Crossing`, whether the body first yields under the cases `index`, and the
-    thickness there as `at`.
+def put_thicknesses(crossing, problem, index, strength, mu, ends):
+    """Put into `crossing`, a :class:`~..crossing.Crossing`, whether the body first yields under the cases `index`, and
+    the thickness there as `at`.
 
     problem : B cases under a load, of which those of the `index` are :func:`~.unit_contacts.are_similar`
     strength : (B,), in the unit of E2; mu : >= 0, friction
@@ -55,8 +55,8 @@ def put_thicknesses(made, problem, index, strength, mu, ends):
     contact = unit_contacts(scaled, np.exp(log_t))
     h = np.exp(place.log_t + line.radius(log_t[:, None], np.log(contact.P)[:, None])[:, 0])
     there = (h >= thin) & (h <= thick)
-    made.unsolved[index] = place.unsolved | ((h < thin) if ends.up else (h > thick))  # it is before the first one
-    made.crossed[index], made.at[index] = there, np.where(there, h, np.nan) * part.R
+    crossing.unsolved[index] = place.unsolved | ((h < thin) if ends.up else (h > thick))  # it is before the first one
+    crossing.crossed[index], crossing.at[index] = there, np.where(there, h, np.nan) * part.R
 
 
 #: h/a of a layer below which nothing is felt.

@@ -36,8 +36,8 @@ def extremes_at(problem, a, names, punch=None):
     scaled = dimensionless(problem)
     contact = AtUnitRadius.of(scaled.but(h=scaled.h / (a / problem.R)))
     lost, scale = contact.tensile(), problem.E2 * a / problem.R
-    made = contact.largest(names, 0.0, punch)
-    for values in made.values():
+    extremes = contact.largest(names, 0.0, punch)
+    for values in extremes.values():
         values[0] *= scale
         values[:, lost] = np.nan
-    return made
+    return extremes

@@ -88,19 +88,19 @@ def unit_contacts(scaled, t, sought=None, punch=None, coarse=False):
     punch : (B,), Poisson ratios of the punches, where the stress is theirs
     coarse : the stress is that of the coarse grid, up to 10 % too small, without its place
     """
-    made = UnitContacts(*np.full((7, len(t)), np.nan))
+    contacts = UnitContacts(*np.full((7, len(t)), np.nan))
     for first in range(0, len(t), _TOGETHER):
         some = np.arange(first, min(first + _TOGETHER, len(t)))
         contact = AtUnitRadius.of(scaled.take(some).but(h=t[some]))
-        for values, column in zip(made, contact.numbers(), strict=False):
+        for values, column in zip(contacts, contact.numbers(), strict=False):
             values[some] = column
         if sought is not None:
             nu = punch[some] if sought.body == "punch" else None
             largest = contact.largest((sought.name,), sought.mu, nu, coarse)[sought.name]
-            made.mises[some], made.r[some], made.z[some] = largest
-        for values in made:
+            contacts.mises[some], contacts.r[some], contacts.z[some] = largest
+        for values in contacts:
             values[some[contact.tensile()]] = np.nan
-    return made
+    return contacts
 
 
 class AtUnitRadius(NamedTuple):
@@ -134,11 +134,11 @@ class AtUnitRadius(NamedTuple):
         groups = [*alike(self.problem, none + 1, pressure, mu, none, punch)]
         batches = [loaded for _, loaded in groups]
         answers = [coarsely(loaded, names) for loaded in batches] if coarse else together(batches, names)
-        made = {name: np.full((3, size), np.nan) for name in names}
+        extremes = {name: np.full((3, size), np.nan) for name in names}
         for (rows, _), answer in zip(groups, answers, strict=True):
             for name in names:
-                made[name][:, rows] = answer[name]
-        return made
+                extremes[name][:, rows] = answer[name]
+        return extremes
 
 
 @lru_cache(maxsize=4)

@@ -45,7 +45,7 @@ _TOGETHER = 32
 #: The coarse grid: radii in a; distances beyond the edge, in each length; depths below the top of a layer, in its
 #: thickness and in each length; depths below the last interface, in each length.
 _RADII = np.array([0, 0.2, 0.4, 0.6, 0.75, 0.85, 0.93, 0.98, 1, 1.04, 1.12, 1.25, 1.5])
-_BEYOND = np.array([0.15, 0.3, 0.6, 1, 1.6, 2.5, 4, 6])
+_PAST_EDGE = np.array([0.15, 0.3, 0.6, 1, 1.6, 2.5, 4, 6])
 _OF_LAYER, _OF_LENGTH = np.array([0, 0.12, 0.3, 0.5, 0.7, 0.88, 1]), np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1])
 _BELOW = np.array([0, 0.08, 0.2, 0.35, 0.5, 0.7, 1, 1.4])
 #: A length is dropped unless it exceeds the last one kept by the factor _ALIKE. The regions end at _FARTHEST (a + the
@@ -67,7 +67,7 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
     only : number of the only layer or interface to search, from 0; the others are NaN
     """
     N = max(1, numbers_of(problem.parameters))
-    made = {name: np.full((3, len(problem), N), np.nan) for name in names}
+    extremes = {name: np.full((3, len(problem), N), np.nan) for name in names}
     index = np.flatnonzero(have_fields(problem, solution) & ~are_infinite(problem) & is_stack(problem.base))
     if len(index):
         part = problem.take(index)
@@ -83,10 +83,10 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), 
                 ]
                 for row, values in zip(rows[few], _of_sections(cases, names, coarse, only), strict=True):
                     for name in names:
-                        made[name][:, index[row]] = values[name] * np.array([part.E2[row], 1, 1])[:, None]
+                        extremes[name][:, index[row]] = values[name] * np.array([part.E2[row], 1, 1])[:, None]
         for row in np.flatnonzero(sharp & (part.nu1 < 0.5)):
-            _at_tip(made, index[row], corners(scaled.take([row]), a[[row]])[0])
-    return {name: values if DIMENSION[EXTREMES[name][1]] else values[..., 0] for name, values in made.items()}
+            _at_tip(extremes, index[row], corners(scaled.take([row]), a[[row]])[0])
+    return {name: values if DIMENSION[EXTREMES[name][1]] else values[..., 0] for name, values in extremes.items()}
 
 
 def mises_in(problem, solution, body, layer, mu, residual, punch=None, coarse=False):
@@ -98,34 +98,34 @@ def mises_in(problem, solution, body, layer, mu, residual, punch=None, coarse=Fa
     if body == "punch":
         return of_one_layer(problem, solution, mu, 0.0, ("mises2",), punch, coarse)["mises2"]
     name = "mises1" if body == "layer" else "mises2"
-    made = of_one_layer(problem, solution, mu, residual[:, 0], (name,), None, coarse)[name]
+    extremes = of_one_layer(problem, solution, mu, residual[:, 0], (name,), None, coarse)[name]
     stacked = is_stack(problem.base)
-    made = np.full_like(made, np.nan) if body == "layer" and layer else made
+    extremes = np.full_like(extremes, np.nan) if body == "layer" and layer else extremes
     if stacked.any():
         name = "mises_layer" if body == "layer" else "mises2"
         only = layer if body == "layer" else None
         values = of_contacts(
             problem.take(stacked), solution.take(stacked), mu, residual[stacked], (name,), coarse, only
         )
-        made[:, stacked] = values[name][..., layer] if body == "layer" else values[name]
-    return made
+        extremes[:, stacked] = values[name][..., layer] if body == "layer" else values[name]
+    return extremes
 
 
-def _at_tip(made, case, radius):
-    """Write the infinite stresses below a sharp tip or corner into `made`."""
-    for name in {"mises_layer", "tresca_layer"} & {*made}:
-        made[name][:, case, 0] = np.inf, radius, 0.0
+def _at_tip(by_name, case, radius):
+    """Write the infinite stresses below a sharp tip or corner into `by_name`."""
+    for name in {"mises_layer", "tresca_layer"} & {*by_name}:
+        by_name[name][:, case, 0] = np.inf, radius, 0.0
 
 
 def _of_sections(cases, names, coarse, only):
     """Of each :class:`~...fields.stacks.section.Section` name -> (3, N)."""
-    made, tasks, boxes = [], {}, []  # tasks -> the names whose starts they are, and the number of the layer
+    answers, tasks, boxes = [], {}, []  # tasks -> the names whose starts they are, and the number of the layer
     for number, case in enumerate(cases):
-        made.append({name: np.full((3, len(case.ends)), np.nan) for name in names})
+        answers.append({name: np.full((3, len(case.ends)), np.nan) for name in names})
         for name, j, grids, values in _on_coarse_grids(case, names, only):
             top = max((v.max() for v in values.values()), default=np.nan)
             if coarse:
-                made[-1][name][0, j] = top
+                answers[-1][name][0, j] = top
             least = top - (1 - _RIVAL) * abs(top) - _ROUGH * np.abs(case.pressure.values).max()
             for region in values if not coarse else ():
                 for at in np.argwhere(are_peaks(values[region]) & (values[region] >= least)).tolist():
@@ -138,16 +138,16 @@ def _of_sections(cases, names, coarse, only):
     jets = [StackJets(case) for case in cases]
     for task, value, place in zip(tasks, *climbed(jets, list(tasks), boxes, scales, cases[0].signs), strict=True):
         for name, j in tasks[task]:
-            best = made[task.batch][name][:, j]
+            best = answers[task.batch][name][:, j]
             if not best[0] >= value:
                 best[:] = value, *place
-    for values, scale in zip(made, scales, strict=True):
+    for values, scale in zip(answers, scales, strict=True):
         for name, best in values.items():
             if name in _MAY_LACK:
                 best[:, best[0] <= _NOTHING * scale] = np.array([0.0, np.nan, np.nan])[:, None]
             if EXTREMES[name][0] == "compression":
                 best[0] *= -1
-    return made
+    return answers
 
 
 def _on_coarse_grids(case, names, only):
@@ -192,8 +192,8 @@ def farthest_of(lengths):
 def _grids(case, place, j, lengths):
     """The coarse grids of a place, by their regions."""
     far, tops = farthest_of(lengths), np.append(0.0, case.ends)
-    beyond = 1 + np.outer(lengths, _BEYOND).ravel()
-    radii = _unlike(np.concatenate([_RADII, beyond[beyond < far]]))
+    past_edge = 1 + np.outer(lengths, _PAST_EDGE).ravel()
+    radii = _unlike(np.concatenate([_RADII, past_edge[past_edge < far]]))
 
     def grid(u, v, low, high, ends=(0.0, far), root=False):
         return SearchGrid(u, np.array([v]), np.array([ends]), np.array([[low, high]]), False, root)

@@ -38,11 +38,11 @@ class StackJets:
                 here = case[near], nu[case[near]], r[near], np.maximum(v[near], LEAST)
                 whole[..., near] += load.in_closed_form(stacked.pressure, *here)
             fields |= load.fields(whole, stacked.mu)
-        made = stresses_of(fields, stacked.mu, stacked.signs, side)
+        stresses = stresses_of(fields, stacked.mu, stacked.signs, side)
         if stacked.is_graded(number):
-            made[:, :2] = _at_their_depth(stacked, made, number, sublayers, v)
-        made[0, :2] += np.append(stacked.residual, 0.0)[number]
-        return made
+            stresses[:, :2] = _at_their_depth(stacked, stresses, number, sublayers, v)
+        stresses[0, :2] += np.append(stacked.residual, 0.0)[number]
+        return stresses
 
     def _of_waves(self, load, sublayers, near, r, v):
         whole, reach = np.zeros((6, len(load.orders), len(r))), reach_of(r)

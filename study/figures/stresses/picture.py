@@ -137,17 +137,17 @@ def _draw_sections(panels, contact: xr.Dataset, shown: Stresses, largest: dict[s
             if np.isfinite(shown.largest[NAMES[name]])
             else "infinite at the cross"
         )
-        said = [f"{'layers' if name == 'layer' and shown.inner else name}: {limit}"]
+        title = [f"{'layers' if name == 'layer' and shown.inner else name}: {limit}"]
         if np.isfinite(Y):
-            said.append(f"yields at {Units.of(contact, Y, units.sliding).text(Y)}")
+            title.append(f"yields at {Units.of(contact, Y, units.sliding).text(Y)}")
         if shown.largest[NAMES[name]] > Y:
             outline(axes, region, Y, units)
         if name == "layer" and region.z[-1] < shown.h:
-            said.append(f"interface at $z$ = {shown.h:.3g}$\\,a$")
+            title.append(f"interface at $z$ = {shown.h:.3g}$\\,a$")
         for depth in shown.inner if name == "layer" else ():
             axes.axhline(depth * units.a, color="black", linewidth=1.0)
         mark(axes, shown.largest, NAMES[name], units)
-        axes.set_title(", ".join(said), loc="left")
+        axes.set_title(", ".join(title), loc="left")
         if not one_scale:
             axes.figure.colorbar(filled, ax=axes, label=units.stress("von Mises stress"), aspect=15, pad=0.02)
     if one_scale:

@@ -19,7 +19,7 @@ _NEAR = np.linspace(0, 0.4, 17) ** 2 / 0.4
 #: Radii of the picture in a. They include 1, where the pressure ends, and are closer to each other there.
 _RADII = np.unique(np.concatenate([np.linspace(0, 2, 51), 1 - _NEAR, 1 + _NEAR]).round(12))
 _LAYER, _BODY = 41, 49  # number of depths in each
-_BESIDE = 1e-9  # distance below an interface between layers, over its depth
+_JUST_BELOW = 1e-9  # distance below an interface between layers, over its depth
 _AT_INTERFACE = "trz_above", "sz_above", "sr_above", "sr_below"
 DEPTH = 1.6  # of the body, in a: the largest stress of a half-space, at 0.48, is in the upper third
 THICKEST = 3.0  # thickest layer that is shown completely, in a; below a thicker one, interface and body are not shown,
@@ -80,7 +80,7 @@ def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tu
     whole = h is not None and (h <= THICKEST or bool(largest["sr_interface1"] > _BENT * largest["mises1"]))
     within = np.linspace(0, h if whole else THICKEST, _LAYER) if h else np.zeros(0)
     inner = tuple(end for end in ends[:-1] if end < (h if whole else THICKEST))
-    within = np.unique([*within, *inner, *(end * (1 + _BESIDE) for end in inner)])
+    within = np.unique([*within, *inner, *(end * (1 + _JUST_BELOW) for end in inner)])
     below = (h or 0.0) + np.linspace(0, DEPTH, _BODY) if not h or whole and not rigid else np.zeros(0)
     inside = within[:-1] if whole else within  # stresses at the interface are read from each side
     fields = stress_fields(contacts, r, np.concatenate([inside, below[1:] if h else below]), mu, sigma_res)

@@ -201,12 +201,12 @@ def mistakes_of_choice(grid: Grid, sections: Any) -> list[str]:
     if "asperities_on" not in sections:
         return []
     base, micro, on = np.broadcast_arrays(*(along(grid, name) for name in ("base", "micro", "asperities_on")))
-    known = grid.lexicon.known.laws
-    can, layer, messages = can_feel("layered", micro, known), on == "layer", []
+    laws = grid.lexicon.known.laws
+    can, layer, messages = can_feel("layered", micro, laws), on == "layer", []
     if (wrong := ~can & (layer if can.any() else on != "auto")).any():
-        laws = " or ".join(shown(name) for name, law in known.items() if law.on_body)
-        way_out = f"leave it out, or take micro = {laws}"
-        messages.append(f"{_with(on[wrong], 'micro', micro[wrong])}, {_why(known[str(micro[wrong][0])])}: {way_out}")
+        choices = " or ".join(shown(name) for name, law in laws.items() if law.on_body)
+        way_out = f"leave it out, or take micro = {choices}"
+        messages.append(f"{_with(on[wrong], 'micro', micro[wrong])}, {_why(laws[str(micro[wrong][0])])}: {way_out}")
     if (thin := layer & can & ~one_of(base, FELT)).any():
         way_out = 'take base = "layered" or "stack", or asperities_on = "auto"'
         messages.append(f"{_with(on[thin], 'base', base[thin])}, on which they press on a half-space: {way_out}")

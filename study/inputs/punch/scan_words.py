@@ -171,13 +171,13 @@ def _texts(values: np.ndarray) -> np.ndarray:
 def _named_apart(bodies: list[tuple[dict, np.ndarray]], grid: Grid) -> list[tuple[str, np.ndarray]]:
     """The end of the word of each body, "" of a lone one, and its cases."""
 
-    def said(body: dict, name: str) -> str:
+    def text_of(body: dict, name: str) -> str:
         is_length = grid.lexicon.rows[name].powers == (0, 1)
         return f"{name} = {_text(1e6 * body[name])} um" if is_length else f"{name} = {_text(body[name])}"
 
     names = list(dict.fromkeys(name for body, _ in bodies for name in body))
     differing = [name for name in names if len({_text(body.get(name)) for body, _ in bodies}) > 1]
-    ends = [", ".join(said(body, name) for name in differing if name in body) for body, _ in bodies]
+    ends = [", ".join(text_of(body, name) for name in differing if name in body) for body, _ in bodies]
     several = len(bodies) > 1
     return [(f" ({end or 'half-space'})" * several, cases) for end, (_, cases) in zip(ends, bodies, strict=True)]
 

@@ -27,9 +27,9 @@ def adhesive(grid: Grid) -> np.ndarray:
 def mistakes(grid: Grid, sections: Any) -> list[str]:
     """Messages about inputs of adhesion that do not go together."""
     if "w_adhesion" not in sections:
-        given = [name for name in OF_ADHESION if name in sections]
+        present = [name for name in OF_ADHESION if name in sections]
         return [
-            f"{name} is given without w_adhesion, the work of adhesion: the surfaces do not adhere" for name in given
+            f"{name} is given without w_adhesion, the work of adhesion: the surfaces do not adhere" for name in present
         ]
     values, sticks = partial(along, grid), adhesive(grid)
     messages = []
@@ -37,12 +37,13 @@ def mistakes(grid: Grid, sections: Any) -> list[str]:
         if name in grid.values and not sticks.any() and (values(name) <= 0).any():
             messages.append(f"{name} must be > 0 where w_adhesion is 0")
     maugis, dmt = sticks & (values("adhesion") == "maugis"), sticks & (values("adhesion") == "dmt")
-    given = {name: ~np.isnan(values(name)) for name in ("sigma0", "z0")}
-    both, none = (maugis & given["sigma0"] & given["z0"]).any(), (maugis & ~given["sigma0"] & ~given["z0"]).any()
+    present = {name: ~np.isnan(values(name)) for name in ("sigma0", "z0")}
+    both = (maugis & present["sigma0"] & present["z0"]).any()
+    none = (maugis & ~present["sigma0"] & ~present["z0"]).any()
     if both or none:
         number = "not both" if both else "one of them is missing"
         messages.append(f'adhesion = "maugis" needs exactly one of sigma0 and z0 (sigma0 = w/(0.97 z0)): {number}')
-    extra = [name for name, there in given.items() if (dmt & there).any()]
+    extra = [name for name, there in present.items() if (dmt & there).any()]
     messages += [f'{name} is given with adhesion = "dmt", which does not use it' for name in extra]
     if (dmt & (values("shape") != "paraboloid")).any():
         messages.append(f'adhesion = "dmt" is for shape = "paraboloid", not {_first(values("shape"), "paraboloid")}')

@@ -46,7 +46,7 @@ def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict, dict]:
         if entry.is_wrong:
             continue
         try:
-            texts, *columns, known = of_names(body, entry.values if entry.array is None else entry.array)
+            texts, *columns, strength_rows = of_names(body, entry.values if entry.array is None else entry.array)
         except LookupError as error:
             errors.append(str(error.args[0]))
             continue
@@ -54,8 +54,8 @@ def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict, dict]:
         for name, column in zip(follows, columns, strict=False):
             inputs[name] = replace(entry, name=name, values=list(column), array=None)
         names[body] = "".join(entry.dims), list(texts)
-        if any(strength == strength for strength, *_ in known):
-            strengths[body] = "".join(entry.dims), list(known)
+        if any(strength == strength for strength, *_ in strength_rows):
+            strengths[body] = "".join(entry.dims), list(strength_rows)
     return inputs, names, strengths
 
 

@@ -271,7 +271,7 @@ def moving_tables(scene: Scene) -> list[str]:
     words = [np.ravel(np.array(scene.parameters.get(name, ""), dtype=object)).tolist() for name in ("micro", "shape")]
     tables = [str(word) for word in sum(words, []) if str(word).startswith(PREFIX)]
     lengths = (in_metres, laws_in_metres)
-    table = next((word for word in tables if not any(given(word, scene.lexicon) for given in lengths)), "")
+    table = next((word for word in tables if not any(have_unit(word, scene.lexicon) for have_unit in lengths)), "")
     moved = sorted({"R", "R1", "R2"} & {*scene.spreads})
     if not (table and moved):
         return []

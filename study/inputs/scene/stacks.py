@@ -17,7 +17,7 @@ from ..vocabulary import FIRST_LAYER, OF_A_LAYER, name_in_stack, suggest
 WORDS = LayerWords(
     keys=OF_A_LAYER,
     first=FIRST_LAYER,
-    beside=("h", "n", "nu1", "bonding", "E1", "layer"),
+    conflicts=("h", "n", "nu1", "bonding", "E1", "layer"),
     rigid=("E2", "body"),
     example='[{"h": "2 um", "material": "DLC a-C:H", "bonding": "bonded"}, ...], the layer at the surface first',
     shown=shown,
@@ -71,15 +71,15 @@ def in_tables(tables: dict, errors: list[str]) -> tuple[dict, dict]:
     names = [name for part in places for name in part]
     if "layers" not in tables and not any(map(is_of_layers, names)):
         return tables, {}
-    beside = WORDS.beside_list(names) if "layers" in tables else []
-    errors += beside
+    conflicts = WORDS.conflicts_among(names) if "layers" in tables else []
+    errors += conflicts
     for part in places:
         errors += WORDS.twice(part)
     parts, rows = dict(zip(parts, _short(parts.values()), strict=True)), _short(rows)
     listed = WORDS.list_of(tables["layers"]) if "layers" in tables else None
     rows = _with_the_list(rows, listed[0] if listed else {})
     places = [parts.get("axes", {}), parts.get("sample", {}), *(row for row in rows if isinstance(row, dict))]
-    source = parts["model"] | ({"layers": tables["layers"]} if "layers" in tables and not beside else {})
+    source = parts["model"] | ({"layers": tables["layers"]} if "layers" in tables and not conflicts else {})
     flat = WORDS.flat(source, errors, {name for part in places for name in part}, listed)
     if isinstance(parts["axes"].get("base"), list):
         parts["axes"] = parts["axes"] | {"base": base_of_layers(parts["axes"]["base"], errors)}

@@ -12,7 +12,7 @@ from ...arrays.labelled import Labelled
 from ...data.dataset import validity_of_rows
 from ...in_words.fits import NAMES_OF_SHIFTS
 from ...in_words.sentences import assumed
-from ...in_words.stated_inputs import given
+from ...in_words.stated_inputs import input_lines
 from ...inputs.checks import OWNER
 from ...inputs.punch.micro_laws import results_of
 from ...inputs.scene.scene import Scene, with_unit
@@ -266,10 +266,11 @@ def _judged(question: Question, value: np.ndarray, x: np.ndarray, radii: np.ndar
         numbers = with_unit(at, tuple(-power for power in ROWS[control].powers), scene.unit, scene.R)
         return scene.lexicon.problem(scene.parameters, **{control: numbers})
 
-    by_x, known = problem(model.x, x), np.isfinite(radii)
-    pieces = [(np.flatnonzero(~known), solve(by_x.take(~known)))] if not known.all() else []
-    if known.any():
-        pieces.append((np.flatnonzero(known), solve_at_radii(problem("a", radii).take(known), np.array([0.0, 1.0]))))
+    by_x, at_radius = problem(model.x, x), np.isfinite(radii)
+    pieces = [(np.flatnonzero(~at_radius), solve(by_x.take(~at_radius)))] if not at_radius.all() else []
+    if at_radius.any():
+        contacts = solve_at_radii(problem("a", radii).take(at_radius), np.array([0.0, 1.0]))
+        pieces.append((np.flatnonzero(at_radius), contacts))
     solution = Solution.join(len(x), 2, pieces)
     results = results_of(by_x.known.laws, by_x.micro, felt=bool(by_x.feels_layer().any()))
     of_two = {name: scene.values[name] / scene.R + 0 * x for name in ("R1", "R2") if name in scene.values}
@@ -315,9 +316,9 @@ def words_of(question: Question, fitted: xr.Dataset) -> dict[str, str]:
     contact = unsolved("fit", question.call)
     free = [name for name in question.free if name in fitted]  # none of a plan: these are its assumed values
     for name in free:  # the assumptions depend on how soft the layer is
-        known = fitted[name].values[np.isfinite(fitted[name].values)]
-        if len(known):
-            contact[name] = contact[name].copy(data=np.median(known))
-    words = {"given": "\n".join(given(contact, free))}
+        values = fitted[name].values[np.isfinite(fitted[name].values)]
+        if len(values):
+            contact[name] = contact[name].copy(data=np.median(values))
+    words = {"given": "\n".join(input_lines(contact, free))}
     doubts = [f"Assumed: {sentence}" for sentence in assumed(contact)]
     return words | ({"assumed": "\n".join(doubts)} if doubts else {})

@@ -82,7 +82,7 @@ def _walk(
     p, inside = begin[0].copy(), begin[0][every, which]
     height = np.sqrt(np.maximum(begin[1] - start, 0.0))
     top = np.sqrt(np.maximum(limit - start, 0.0))
-    outside, beyond, open_ = np.full(len(p), np.nan), np.full(len(p), np.nan), np.zeros(len(p), bool)
+    outside, outer_height, open_ = np.full(len(p), np.nan), np.full(len(p), np.nan), np.zeros(len(p), bool)
     step, done = np.maximum(step, 1e-6), ~np.isfinite(limit)
     for _ in range(_OUTWARD):
         if done.all():
@@ -91,7 +91,7 @@ def _walk(
         trial = np.where(side > 0, np.minimum(trial, bound), np.maximum(trial, bound))
         p, h = _inner(of, p, which, trial, start, ~done)
         out = ~done & (h > top)
-        outside, beyond = np.where(out, trial, outside), np.where(out, h, beyond)
+        outside, outer_height = np.where(out, trial, outside), np.where(out, h, outer_height)
         at_bound = ~done & ~out & (trial == bound)
         open_ |= at_bound
         moving = ~done & ~out
@@ -105,20 +105,20 @@ def _walk(
         left = crossed & (width > _PRECISE * np.abs(outside - best.p[every, which]))
         if not left.any():
             break
-        share = np.clip(_share(top, height, beyond), 0.05, 0.95)
+        share = np.clip(_share(top, height, outer_height), 0.05, 0.95)
         trial = inside + share * (outside - inside)
         p, h = _inner(of, p, which, trial, start, left)
         out = left & (h > top)
-        outside, beyond = np.where(out, trial, outside), np.where(out, h, beyond)
+        outside, outer_height = np.where(out, trial, outside), np.where(out, h, outer_height)
         inside, height = np.where(left & ~out, trial, inside), np.where(left & ~out, h, height)
-    share = np.clip(_share(top, height, beyond), 0.0, 1.0)
+    share = np.clip(_share(top, height, outer_height), 0.0, 1.0)
     return np.where(crossed, inside + share * (outside - inside), place), open_
 
 
-def _share(top: np.ndarray, height: np.ndarray, beyond: np.ndarray) -> np.ndarray:
-    """The share of the way from `height` to `beyond` at which a straight line reaches the top."""
+def _share(top: np.ndarray, height: np.ndarray, outer_height: np.ndarray) -> np.ndarray:
+    """The share of the way from `height` to `outer_height` at which a straight line reaches the top."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        share = (top - height) / (beyond - height)
+        share = (top - height) / (outer_height - height)
     return np.where(np.isfinite(share), share, 0.5)
 
 

@@ -12,7 +12,7 @@ from solver.kernels.stack import Stack
 from solver.kernels.two_layers import TwoLayers
 from solver.laws import LAWS, cell_rows
 from solver.laws.cell import cell_law, family
-from solver.numerics.kept import Kept
+from solver.numerics.caches import Cache
 
 LATTICES = {"square_lattice": "square", "hex_lattice": "hex", "disc_cell": "disc"}
 
@@ -167,7 +167,7 @@ def test_one_family_serves_a_body_at_all_radii(monkeypatch):
     solved = []
     make = family._fields
     monkeypatch.setattr(family, "_fields", lambda *case: solved.append(case[:2]) or make(*case))
-    monkeypatch.setattr(family, "_kept", Kept(2e7))
+    monkeypatch.setattr(family, "_cache", Cache(2e7))
     R = np.random.default_rng(0).uniform(0.1, 9.0, 200)
     same = {"n": 3.0, "nu1": 0.2, "nu2": 0.3, "bonded": True, "m": 0.0}
     kernel = layers({name: np.full(200, value) for name, value in same.items()})
@@ -185,11 +185,11 @@ def test_a_case_has_the_same_bits_in_any_company_and_thread():
     y = np.geomspace(1e-3, 1.0, 5) * np.ones((6, 1))
 
     def curves(_):
-        family._kept.get("nothing", lambda: np.zeros(1))
+        family._cache.get("nothing", lambda: np.zeros(1))
         return np.stack(bound_of("square_lattice", cases).evaluate(y))
 
     together = curves(0)
-    family._kept._values.clear()
+    family._cache._values.clear()
     with ThreadPoolExecutor(4) as pool:
         for of_thread in pool.map(curves, range(8)):
             assert (of_thread == together).all()
@@ -199,8 +199,8 @@ def test_a_case_has_the_same_bits_in_any_company_and_thread():
 
 
 def test_families_are_kept_within_bounds_and_the_law_travels(monkeypatch):
-    kept = Kept(20_000)
-    monkeypatch.setattr(family, "_kept", kept)
+    kept = Cache(20_000)
+    monkeypatch.setattr(family, "_cache", kept)
     cases = random_cases(30, (0.1, 1.0), seed=11)
     bound_of("hex_lattice", cases)
     assert 5 < len(kept.values()) < 30 and kept.nbytes <= 20_000

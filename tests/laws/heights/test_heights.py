@@ -13,7 +13,7 @@ import study
 from solver import Problem, solve
 from solver.known import register
 from solver.laws import disc_cell, heights, spread
-from solver.numerics.kept import Kept
+from solver.numerics.caches import Cache
 from study.studies.literature.formulas import GREENWOOD_TRIPP
 
 pytestmark = pytest.mark.usefixtures("forgetful")
@@ -182,7 +182,7 @@ def test_the_tables_do_not_depend_on_company(monkeypatch):
     sigma = A_STAR * np.geomspace(0.01, 10, 30)
     given = CASE | {"P": 1e-5, "base": "half_space", "micro": "normal_heights", "rtol": 1e-4}
     many = solve(Problem.of(**given, sigma=sigma))
-    monkeypatch.setattr(heights, "_kept", Kept(1e7))
+    monkeypatch.setattr(heights, "_cache", Cache(1e7))
     alone = solve(Problem.of(**given, sigma=sigma[17]))
     assert_allclose(many.D[17], alone.D[0], rtol=1e-11)
     assert (np.diff(many.D) > 0).all()
@@ -253,3 +253,13 @@ def test_a_histogram_that_is_none(tmp_path, text, words):
     file.write_text(text)
     with pytest.raises(study.StudyError, match=words):
         study.solve(P=1e-5, Nbar=250_000.0, Ra=0.004, base="half_space", micro=f"table:{file}")
+
+
+def test_places_are_looked_up_some_at_a_time(monkeypatch):
+    """To the same bits, however many: also one at a time, and a last part that is shorter."""
+    table = np.log(np.cumsum(np.random.default_rng(0).random((3, spread.KNOTS)), axis=1))
+    y, group = np.geomspace(1e-5, 1e8, 7 * 5).reshape(7, 5), np.array([0, 2, 1, 1, 0, 2, 2])
+    whole = spread.look_up(table, group, y)
+    for most in (1, 10):
+        monkeypatch.setattr(spread, "_LOOKED_UP", most)
+        assert all(map(np.array_equal, whole, spread.look_up(table, group, y)))

@@ -8,7 +8,7 @@ from test_extremes import sample
 
 from solver import Problem, Status, solve
 from solver.laws import heights
-from solver.numerics.kept import Kept
+from solver.numerics.caches import Cache
 
 pytestmark = pytest.mark.usefixtures("each_path")
 
@@ -67,7 +67,7 @@ def test_mixed_batches_are_single_cases(monkeypatch, kinds, size, seed):
     order = np.random.default_rng(0).permutation(size)
     shuffled = solve(Problem.of(**{name: v[order] for name, v in case.items()}), x)
     for i in range(size):
-        monkeypatch.setattr(heights, "_kept", Kept(6e7))
+        monkeypatch.setattr(heights, "_cache", Cache(6e7))
         alone = solve(Problem.of(**{name: v[i] for name, v in case.items()}), x)
         for other, j in ((together, i), (shuffled, int(np.flatnonzero(order == i)[0]))):
             assert other.status[j] == alone.status[0]
@@ -83,10 +83,10 @@ def test_a_table_of_heights_is_the_same_in_any_company(monkeypatch):
     rng, p = np.random.default_rng(0), np.geomspace(1e-6, 1e-1, 200)
     sigma, cut = 10 ** rng.uniform(-6, -1.5, 20), rng.uniform(3, 5, 20)
     case = {"E": 1.0, "Nbar": 250_000.0, "Ra": 0.004}
-    monkeypatch.setattr(heights, "_kept", Kept(6e7))
+    monkeypatch.setattr(heights, "_cache", Cache(6e7))
     together = heights.LAW.at(p[:, None], **case, sigma=sigma, cut=cut)
     for i in range(0, 20, 2):
-        monkeypatch.setattr(heights, "_kept", Kept(6e7))
+        monkeypatch.setattr(heights, "_cache", Cache(6e7))
         alone = heights.LAW.at(p, **case, sigma=sigma[i], cut=cut[i])
         for values, expected in zip(together, alone, strict=True):
             assert_allclose(values[:, i], expected, rtol=1e-12, atol=0)

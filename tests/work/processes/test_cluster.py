@@ -34,7 +34,7 @@ def run_on(address: str, file: Path, results: Path, answers) -> None:
     from study.__main__ import main
 
     engines.CONNECT = engines.ANSWER = PATIENCE
-    engines.AGAIN = 0.1
+    engines.CHECK_INTERVAL = 0.1
 
     with contextlib.redirect_stderr(io.StringIO()) as errors:
         code = main(["run", str(file), "--results", str(results), "--scheduler", address])

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solver import Problem
-from solver.numerics.kept import Kept
+from solver.numerics.caches import Cache
 from solver.yields import first, protect
 from solver.yields.crossing import NUMBERS, Crossing
 from solver.yields.similar import stress_table, unit_contacts
@@ -18,7 +18,7 @@ FILM = {"n": 2.0, "nu1": 0.25, "nu2": 0.3, "m": 0.6, "bonding": "bonded", "micro
 @pytest.fixture
 def fresh(monkeypatch):
     """No table is kept yet."""
-    monkeypatch.setattr(stress_table, "_kept", Kept(2_000_000))
+    monkeypatch.setattr(stress_table, "_cache", Cache(2_000_000))
 
 
 def by_steps(monkeypatch):
@@ -68,7 +68,7 @@ def test_a_pair_of_bodies_needs_one_contact_more_for_each_strength(fresh, monkey
     monkeypatch.setattr(stress_table, "unit_contacts", counted)
     again = first.first_yield(problem, "layer", strengths)
     assert counts[0] == 3 and sum(counts) <= 6
-    monkeypatch.setattr(stress_table, "_kept", Kept(2_000_000))
+    monkeypatch.setattr(stress_table, "_cache", Cache(2_000_000))
     alone = first.first_yield(problem.take([1]), "layer", strengths[1:2])
     for name in NUMBERS:
         assert_allclose(again.numbers[name], together.numbers[name], rtol=1e-10)

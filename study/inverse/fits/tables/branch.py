@@ -109,8 +109,8 @@ def radii(table: TermTable, values: dict[str, np.ndarray], depth: np.ndarray) ->
     with np.errstate(all="ignore"):
         end, cell = _placed(parts, depth)
         cells = _Cells(cell)
-        t, beyond = _place_in_cells([cells.of(parts, 1), cells.of(parts, 3)], depth, cell, end)
-        x = table.begin(values, deepest)[:, None] + STEP * np.where(beyond, np.nan, cell + t)
+        t, outside = _place_in_cells([cells.of(parts, 1), cells.of(parts, 3)], depth, cell, end)
+        x = table.begin(values, deepest)[:, None] + STEP * np.where(outside, np.nan, cell + t)
         return table.terms.radii({name: value[:, 0] for name, value in values.items()}, x)
 
 

@@ -83,7 +83,7 @@ class TermTable:
         x = place[0] * WIDE + STEP * np.arange(_LATTICE)
         if not moved:
             return np.ascontiguousarray(np.swapaxes(self.terms.logarithms(values, x), 1, 2))[None]
-        still = np.swapaxes(self.lattice.made(self.tile, place)[0], 1, 2)
+        still = np.swapaxes(self.lattice.tile_at(self.tile, place)[0], 1, 2)
         changes = [self.terms.moved(name, values, x, still) for name in self.model.moved]
         return np.ascontiguousarray(np.swapaxes(np.array(changes), 2, 3))
 

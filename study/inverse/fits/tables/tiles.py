@@ -98,7 +98,7 @@ class Lattice:
                 rows[len(weights) :, curves] = np.einsum("bc,kilc->kbil", weights[0, curves], changes)
         return rows
 
-    def made(self, tile: Tile, place: tuple[int, ...], moved: bool = False) -> np.ndarray:
+    def tile_at(self, tile: Tile, place: tuple[int, ...], moved: bool = False) -> np.ndarray:
         """The tile at a place."""
         if (moved, *place) not in self.tiles:
             self.tiles[moved, *place] = tile(place, moved)
@@ -108,7 +108,7 @@ class Lattice:
         """Consecutive tiles along the abscissa."""
         key = (moved, count, *place)
         if key not in self.stacks:
-            tiles = [self.made(tile, (place[0] + k, *place[1:]), moved) for k in range(count)]
+            tiles = [self.tile_at(tile, (place[0] + k, *place[1:]), moved) for k in range(count)]
             self.stacks[key] = np.concatenate(tiles, axis=2) if count > 1 else tiles[0]
         return self.stacks[key]
 

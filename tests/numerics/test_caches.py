@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.testing import assert_array_equal
 
-from solver.numerics.kept import Kept
+from solver.numerics.caches import Cache
 
 
 def array(number, size=10):
@@ -11,7 +11,7 @@ def array(number, size=10):
 
 
 def test_the_oldest_go_and_those_in_use_stay():
-    kept, made = Kept(250.0), []
+    kept, made = Cache(250.0), []
 
     def get(number):
         return kept.get(number, lambda: made.append(number) or array(number))
@@ -26,7 +26,7 @@ def test_the_oldest_go_and_those_in_use_stay():
 
 
 def test_several_are_made_at_once_if_they_are_not_kept():
-    kept, made = Kept(1000.0), []
+    kept, made = Cache(1000.0), []
 
     def make(missing):
         made.append(missing)
@@ -40,7 +40,7 @@ def test_several_are_made_at_once_if_they_are_not_kept():
 
 
 def test_one_that_is_larger_than_all_is_kept_alone():
-    kept = Kept(1.0)
+    kept = Cache(1.0)
     first = kept.get("first", lambda: array(1))
     assert kept.get("first", lambda: array(2)) is first
     kept.get("second", lambda: array(2))
@@ -48,7 +48,7 @@ def test_one_that_is_larger_than_all_is_kept_alone():
 
 
 def test_what_several_share_counts_once_until_the_last_has_gone():
-    kept, shared = Kept(1000.0), array(0)
+    kept, shared = Cache(1000.0), array(0)
     for number in range(3):
         kept.get(number, lambda number=number: (shared, [array(number)], None, "text"))
     assert kept.nbytes == 80 * 4
@@ -60,7 +60,7 @@ def test_what_several_share_counts_once_until_the_last_has_gone():
 
 
 def test_what_is_not_kept_is_not_found():
-    kept = Kept(100.0)
+    kept = Cache(100.0)
     assert kept.find("first") is None
     first = kept.get("first", lambda: array(1))
     assert kept.find("first") is first

@@ -41,7 +41,7 @@ class once:
         return value
 
 
-class Kept:
+class Cache:
     """A cache: key -> value. It keeps the values used last, as long as their arrays together take at most `most` bytes,
     and always at least one value. An array that several values share counts once. Several threads may use a cache at
     the same time."""

@@ -1,4 +1,4 @@
-"""Mistakes written by hand, of kinds that operators.py does not make: tests/mutants/kept.toml."""
+"""Mistakes written by hand, of kinds that operators.py does not make: tests/mutants/by_hand.toml."""
 
 import tomllib
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ MOST = 150  # a longer list tells no more, and each entry must follow the code
 def read(root: Path = ROOT) -> Iterator[tuple[str, str, str, str]]:
     """Name, file, old and new text of each mistake of a tree: [PACKAGE.ROOM.MODULE.NAME], in the file MODULE.py, or in
     the `file` that the entry names."""
-    return _within(tomllib.loads((root / "tests/mutants/kept.toml").read_text(encoding="utf-8")), ())
+    return _within(tomllib.loads((root / "tests/mutants/by_hand.toml").read_text(encoding="utf-8")), ())
 
 
 def _within(tables: dict, path: tuple[str, ...]) -> Iterator[tuple[str, str, str, str]]:

@@ -239,7 +239,7 @@ def _is_wyko(table: NumberTable) -> bool:
 
 
 def _wyko(table: NumberTable) -> tuple[float, str] | None:
-    """Heights of Wyko are in wavelengths (in nm) times Mult. None: they are in nm, by the second number of its line 1."""
+    """Heights of Wyko are in wavelengths (in nm) times Mult. None: in nm, by the second number of line 1."""
     text = "\n".join(line for _, line in table.heading)
     values = [re.search(rf"^{key}\s+\d+\s+\d+\s+({_NUMBER})", text, re.MULTILINE) for key in ("Wavelength", "Mult")]
     if _wyko_in_nm(table):

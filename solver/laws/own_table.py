@@ -89,7 +89,7 @@ def read(name):
         raise ValueError(f"{file}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:
         raise ValueError(f"{file}: is not UTF-8 (byte {error.start}): save it with the encoding UTF-8") from None
-    except (ValueError, RuntimeError, csv.Error) as error:  # RuntimeError: ~name/ of a user who does not exist
+    except (ValueError, csv.Error) as error:
         raise ValueError(f"{file}: {error}") from None
 
 

@@ -44,8 +44,12 @@ def words_of(study_file):
 
 def place(file):
     """The path of a file that a word such as "table:FILE" names: in the folder of the study file that is being read, if
-    it is there; otherwise from the working folder. RuntimeError: ~name/ of a user who does not exist."""
-    path, folder = Path(file).expanduser(), _folder.get()
+    it is there; otherwise from the working folder. Raises ValueError for ~name/ of a user who does not exist."""
+    folder = _folder.get()
+    try:
+        path = Path(file).expanduser()
+    except RuntimeError as error:
+        raise ValueError(str(error)) from None
     return folder / path if folder is not None and (folder / path).exists() else path
 
 

@@ -89,14 +89,13 @@ def scan_in(word: str, path: Path | None = None) -> Scan:
     table = f'compute the law with its arguments, roughcoat scan {file} ... --law law.csv: micro = "table:law.csv"'
     if not file:
         raise ValueError('names no file: "scan:wafer.sdf"')
-    path = _place(file) if path is None else path
     try:
-        scan = read(path)
+        scan = read(path or _place(file))
     except OSError as error:
         raise ValueError(f"{file}: cannot be read: {error.strerror or error}") from None
     except (ValueError, ImportError) as error:
         named = str(error) if str(error).startswith(Path(file).name) else f"{file}: {error}"
-        raise ValueError(f"{named}; or {table}") from None
+        raise ValueError(f"{named.removesuffix('.')}; or {table}") from None
     if scan.z.ndim != 2:
         raise ValueError(f"{file}: is a profile: the law of a scan needs a map of heights")
     return scan
@@ -104,10 +103,7 @@ def scan_in(word: str, path: Path | None = None) -> Scan:
 
 def _place(file: str) -> Path:
     """The path of the scan that a word names. Raises ValueError for ~name/ of a user who does not exist."""
-    try:
-        return samples.scan() if file == _SAMPLE else place(file)
-    except RuntimeError as error:
-        raise ValueError(f"{file}: {error}") from None
+    return samples.scan() if file == _SAMPLE else place(file)
 
 
 def content_of(scan: Scan) -> str:

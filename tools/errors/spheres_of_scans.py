@@ -2,9 +2,9 @@
 
     python tools/errors/spheres_of_scans.py
 
-The real area and p_max of the surface itself, at p = 0.1 h'E* (h' is its rms slope), over those of `normal_heights` with
-the numbers of `measure`; the error that the law of the surface states at this pressure; the same ratios and λ h'E*/p with
-four times as many points along each side. It takes half a minute of a processor.
+The real area and p_max of the surface itself, at p = 0.1 h'E* (h' is its rms slope), over those of `normal_heights`
+with the numbers of `measure`; the error that the law of the surface states at this pressure; the same ratios and
+λ h'E*/p with four times as many points along each side. It takes half a minute of a processor.
 """
 
 import numpy as np
@@ -23,8 +23,8 @@ _HEADING = """\
 
 
 def surfaces() -> dict[str, roughness.Scan]:
-    """Self-affine surfaces by Hurst exponent and shortest wave, of 128 × 128 points 0.1 µm apart. On the last two single
-    points stand out."""
+    """Self-affine surfaces by Hurst exponent and shortest wave, of 128 × 128 points 0.1 µm apart. On the last two
+    single points stand out."""
     smooth, fine = surface("0.8 um", hurst=0.8, seed=2), surface("0.4 um", hurst=0.8, seed=3)
     return {
         "H = 0.8, from 1.6 µm": surface("1.6 um", longest="12 um", hurst=0.8, seed=1),

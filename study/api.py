@@ -15,6 +15,7 @@ from .inputs.lexicon import with_known
 from .inputs.places import study_file
 from .inputs.reading import read
 from .scan_laws.words import with_rows
+from .store.blocks import laws_in
 from .store.clean import clean
 from .store.window_files import glance, verified
 from .store.windows import Store
@@ -90,7 +91,8 @@ class Study:
         """The definition, with the laws of its scans where a case may have to be computed."""
         if not self.definition.scans or (not options.get("retry") and self.status()["state"] == "done"):
             return self.definition
-        return with_rows(self.definition, options.get("stream") or screen_of(options.get("progress")))
+        stream = options.get("stream") or screen_of(options.get("progress"))
+        return with_rows(self.definition, stream, laws_in(self._store))
 
     def dry_run(self, workers: int | None = None, yes: bool = False, force: bool = False) -> Estimate:
         """The cost of `run`, the number of cases that it would find computed, and the error in which it would end.

@@ -111,12 +111,14 @@ def compute_results(folder: Path) -> None:
     from study.files.examine import examine
     from study.files.results_file import write
     from study.inputs.reading import from_tables
+    from study.scan_laws.words import with_rows
     from study.studies.evidence.tradeoff import WAYS, measure
     from study.work.run import run
 
     for toml in STUDIES:
         text = toml.read_text(encoding="utf-8")
-        run(from_tables(shrunken(tomllib.loads(text)), toml.stem, text, toml.name), folder)
+        definition = from_tables(shrunken(tomllib.loads(text)), toml.stem, text, toml.name)
+        run(with_rows(definition), folder)
     most = {"intervals": 2}  # the paper's way is slow
     ways = {name: replace(way, settings=way.settings[:1], most=most.get(way.varied, 5)) for name, way in WAYS.items()}
     measured = entry("measured", "tradeoff")

@@ -15,11 +15,10 @@ import json
 import re
 from dataclasses import replace
 from functools import lru_cache, partial
-from pathlib import Path
 
 import numpy as np
 
-from ..numerics.userfile import NoFile, TooLarge, content
+from ..numerics.userfile import NoFile, TooLarge, content, place
 from ..parameters import Parameter
 from . import heights
 from .law import Law
@@ -85,12 +84,12 @@ def read(name):
     try:
         if "\n" in file:
             raise ValueError("the path has a line break; give the file another name")
-        return _of_text(name, _text_of(Path(file).expanduser()))
+        return _of_text(name, _text_of(place(file)))
     except OSError as error:
         raise ValueError(f"{file}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:
         raise ValueError(f"{file}: is not UTF-8 (byte {error.start}): save it with the encoding UTF-8") from None
-    except (ValueError, RuntimeError, csv.Error) as error:  # RuntimeError: ~name/ of a user who does not exist
+    except (ValueError, csv.Error) as error:
         raise ValueError(f"{file}: {error}") from None
 
 

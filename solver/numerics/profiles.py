@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .userfile import content
+from .userfile import content, place
 
 __all__ = ["GRADED", "PREFIX", "WORDS", "Profile", "identity", "read"]
 
@@ -36,7 +36,7 @@ def read(word):
     """
     path = word.removeprefix(PREFIX)
     try:
-        text = io.StringIO(content(path, _LARGEST).decode("utf-8-sig"), newline="")
+        text = io.StringIO(content(place(path), _LARGEST).decode("utf-8-sig"), newline="")
         lines = [line for line in csv.reader(text) if line and not line[0].lstrip().startswith("#")]
         lines = lines[1:] if lines and not is_number(lines[0][0]) else lines
         rows = np.array([[float(cell) for cell in line] for line in lines[: _ROWS + 1]])

@@ -4,6 +4,7 @@ memory.
 Tables, curves, scans, lists of materials and study files are opened here (tests/repository/test_user_files.py).
 """
 
+import contextlib
 import errno
 import gzip
 import io
@@ -11,6 +12,7 @@ import os
 import stat
 import zipfile
 import zlib
+from contextvars import ContextVar
 from pathlib import Path
 
 #: Most bytes of a text, unpacked. Its rows take some ten times as much memory while they are read.
@@ -18,6 +20,8 @@ LARGEST_TEXT = 200_000_000
 #: Most bytes of a file of an instrument, and of everything packed in it.
 LARGEST = 2_000_000_000
 _GZIP, _ZIP = b"\x1f\x8b", b"PK\x03\x04"
+#: The folder of the study file that this thread is reading.
+_folder: ContextVar[Path | None] = ContextVar("folder", default=None)
 
 
 class NoFile(ValueError):
@@ -26,6 +30,27 @@ class NoFile(ValueError):
 
 class TooLarge(ValueError):
     """A file has more bytes than its reader takes."""
+
+
+@contextlib.contextmanager
+def words_of(study_file):
+    """Inside it `place` looks for the files that words name in the folder of a study file first."""
+    token = _folder.set(Path(study_file).parent)
+    try:
+        yield
+    finally:
+        _folder.reset(token)
+
+
+def place(file):
+    """The path of a file that a word such as "table:FILE" names: in the folder of the study file that is being read, if
+    it is there; otherwise from the working folder. Raises ValueError for ~name/ of a user who does not exist."""
+    folder = _folder.get()
+    try:
+        path = Path(file).expanduser()
+    except RuntimeError as error:
+        raise ValueError(str(error)) from None
+    return folder / path if folder is not None and (folder / path).exists() else path
 
 
 def opened(path, most=LARGEST):

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..numerics import batch
 from ..numerics.profiles import is_number
-from ..numerics.userfile import content
+from ..numerics.userfile import content, place
 from ..parameters import Parameter
 from .lines import Series, series_of
 from .shape import Kind, column, load_by_quadrature
@@ -174,7 +174,7 @@ def _bound(rows, table_unit, size):
 def _rows(word):
     path = word.removeprefix(PREFIX)
     try:
-        reader = csv.reader(io.StringIO(content(path, _LARGEST).decode("utf-8-sig"), newline=""))
+        reader = csv.reader(io.StringIO(content(place(path), _LARGEST).decode("utf-8-sig"), newline=""))
         lines = [(reader.line_num, line) for line in reader if line and not line[0].lstrip().startswith("#")]
     except (OSError, ValueError, csv.Error) as error:
         message = f"cannot be read: {error}" if path else 'names no file: "table:tip.csv"'

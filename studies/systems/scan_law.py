@@ -18,7 +18,7 @@ def scan_law(panels) -> Columns:
     """A scan and its law: (a) heights of a random self-affine surface; (b) where it touches a flat body at the nominal
     pressure 0.004 E1*, pressures from light to dark; (c) contact fraction and largest pressure of the scan itself
     (lines) and of spheres with the heights that are measured on it (dashes, `normal_heights`), which touch less
-    from some ten spots on."""
+    from some ten spots on; dots: the pressure of (b)."""
     scan = roughness.self_affine(**SURFACE)
     of_scan = roughness.law(scan, periodic="given", form="mean", progress=False)
     of_spheres = spheres(scan, of_scan.p)
@@ -38,6 +38,7 @@ def scan_law(panels) -> Columns:
     ):
         curves.loglog(of_scan.p, values_of_scan, color=colour, linestyle="-", label=f"{label}, scan")
         curves.loglog(of_scan.p, values_of_spheres, color=colour, linestyle="--", label=f"{label}, spheres")
+    curves.axvline(PRESSURE, ymin=0.45, color="0.6", linewidth=0.8, linestyle=":", label="$p$ of (b)")
     curves.set(xlabel="$p/E_1^*$")
     curves.set_title("(c)", fontsize=9, loc="left")
     curves.set_box_aspect(1)

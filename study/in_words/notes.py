@@ -25,7 +25,7 @@ _SMALL = 0.005
 #: On spheres with random heights, as from a scan: measured on six surfaces (docs/roughness.md, Which law when).
 _SPHERES = (
     "If the asperities come from a scan, these spheres touch about two thirds of the area of the scan, and their pmax "
-    "is up to 1.4 times too small, and up to 9 times where single points stand out. rc.roughness.law(scan), or "
+    "is up to 1.4 times too small, and some 9 times where single points stand out. rc.roughness.law(scan), or "
     "`roughcoat scan FILE --law OUT.csv`, is the law of the scan itself (docs/roughness.md)."
 )
 _SHARP_EDGE = "The pressure is infinite at the edge of a flat punch: shape = rounded_flat has a rounded edge."

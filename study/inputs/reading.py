@@ -8,7 +8,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from solver.numerics.userfile import NoFile, opened
+from solver.numerics.userfile import NoFile, opened, words_of
 
 from ..terminal import on_one_line, shown
 from .definition import Definition, StudyError, definition_of
@@ -36,8 +36,10 @@ _NO_QUOTES = re.compile(r"=[\s\[{]*+(?:[-+.\d][-+.\deE_]*+\s*+)?(?:[^\W\d_]|±)"
 
 
 def read(path) -> Definition:
-    """Definition of a study file. Raises StudyError with all its mistakes."""
-    return from_tables(*parsed(path))
+    """Definition of a study file, in whose folder the files that it names are looked for first. Raises StudyError with
+    all its mistakes."""
+    with words_of(path):
+        return from_tables(*parsed(path))
 
 
 def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:

@@ -113,7 +113,7 @@ def _heights(file: Any, variable: Any, arguments: dict, name: str, maps: tuple) 
     order = [axes.index(axis) for axis in ("y", "x") if axis in axes]
     z, axes = z.transpose(order), [axes[i] for i in order]
     axis_positions = {axis: _positions(file, axis, points, name) for axis, points in zip(axes, z.shape, strict=True)}
-    stated = _stated_units(file, variable, axes, name)
+    stated, of_units = _stated_units(file, variable, axes, arguments, name)
     lacking = [axis for axis in axes if axis_positions[axis] is None]
     units = _units(stated, lacking, arguments, name)
     overruling = {key: value for key, value in arguments.items() if stated.get(key, not lacking)}
@@ -127,7 +127,7 @@ def _heights(file: Any, variable: Any, arguments: dict, name: str, maps: tuple) 
         steps.append(axis_of_file[0] if axis_of_file else number(f"{name}: d{axis}", step, units[0]) * size)
         positions.append(axis_of_file[1] if axis_of_file else steps[-1] * np.arange(points))
     lengths = overruled(positions, steps, units, overruling, name)
-    notes = (f"channel {variable.name!r}" + f" of {', '.join(map(repr, maps))}" * (len(maps) > 1),)
+    notes = (f"channel {variable.name!r}" + f" of {', '.join(map(repr, maps))}" * (len(maps) > 1), *of_units)
     return Heights(z, lengths.positions, lengths.steps, lengths.units, notes + lengths.notes)
 
 
@@ -151,17 +151,27 @@ def _positions(file: Any, axis: str, points: int, name: str) -> tuple[float, np.
     return length / points if rounded else abs(step), x
 
 
-def _stated_units(file: Any, variable: Any, axes: list[str], name: str) -> dict[str, str | None]:
-    """The unit of the positions, `unit`, and that of the heights, `height_unit`; None where the file has none."""
-    units = {axis: _unit(file, axis, name) for axis in axes}
-    lateral = {unit for unit in units.values() if unit}
+def _stated_units(
+    file: Any, variable: Any, axes: list[str], arguments: dict, name: str
+) -> tuple[dict[str, str | None], tuple[str, ...]]:
+    """The unit of the positions, `unit`, and that of the heights, `height_unit`; None where the file has none. And a
+    note where x and y have two units, of which the call has decided.
+
+    Raises ValueError: x and y have two units, and the call has neither `unit` nor dx.
+    """
+    units, notes = {axis: _unit(file, axis, name) for axis in axes}, ()
+    lateral = [units[axis] for axis in ("x", "y") if units.get(axis)]
     if len({metres(unit, name) for unit in lateral}) > 1:
-        raise ValueError(f"{name}: x is in {units['x']}, y in {units['y']}: write both in one unit")
+        in_words = f"x is in {units['x']}, y in {units['y']}"
+        decides = next((key for key in ("dx", "unit") if key in arguments), None)
+        if decides is None:
+            raise ValueError(f"{name}: {in_words}: write both in one unit, or give unit, which holds for both")
+        notes = (f"{in_words} in the file: {decides} of the call holds for both",)
     unit = next(iter(lateral), None)
     height = _unit_of(variable, name)
     if height is None and unit and hasattr(file.variables.get("x"), "unit"):  # of SurfaceTopography: of all lengths
         height = unit
-    return {"unit": unit, "height_unit": height}
+    return {"unit": unit, "height_unit": height}, notes
 
 
 def _units(stated: dict[str, str | None], lacking: list[str], arguments: dict, name: str) -> tuple[str, str]:

@@ -63,8 +63,8 @@ def read(
     path : of the file
     unit : unit of x, y, dx, dy and crop: m, mm, um, nm, pm or angstrom. Text and .npy have none, so it must be given.
     height_unit : unit of z; None: as `unit`
-    dx, dy : distance between points, in unit; dy defaults to dx. Where a file states its lengths, unit, height_unit,
-        dx and dy of the call override them, and the notes say what the file states
+    dx, dy : distance between points, in unit; dy defaults to dx. Where a file or its heading states lengths, unit,
+        height_unit, dx and dy of the call override them, and the notes say what the file states
     columns : the columns to read, counted from 0: (x, z), (x, y, z), or (z,) with dx
     channel : name of the channel to read; None: the first channel of heights. The notes of the scan name it
     crop : the part to keep, (x0, x1) or (x0, x1, y0, y1) of x and y of the file, else from 0; in unit, m, or texts
@@ -129,18 +129,17 @@ def _of_stated(name: str, z, steps, arguments: dict, channel: str | None, crop, 
 
 def _of_text(name: str, text: str, arguments: dict, channel: str | None, crop, how: dict) -> Scan:
     """The scan in a text: a format that states its lengths, or a table of numbers."""
-    surface = stated(text, name)
-    table = None if surface else table_of(text, name, channel)
-    pixel = None if surface else _zygo_pixel(table, "dx" in arguments, name)
-    if surface:
+    if surface := stated(text, name):
         return _of_stated(name, *surface, arguments, channel, crop, how)
-    if not pixel:
+    table = table_of(text, name, channel)
+    if not (pixel := _zygo_pixel(table, "dx" in arguments, name)):
         return _of_table(name, table, arguments, crop, how)
     if "columns" in arguments:
         raise ValueError(f"{name}: the file states its lengths itself; leave out columns")
-    lengths = overruled([np.arange(2.0)] * 2, [pixel] * 2, ("m", "um"), arguments, name)
-    units_used = {"unit": lengths.units[0], "height_unit": lengths.units[1]}
-    scan = _of_table(name, table, units_used | dict(zip(("dy", "dx"), lengths.steps or (), strict=False)), crop, how)
+    height_unit = arguments.pop("height_unit", "um")  # what the heading has besides is said by `_of_table`
+    lengths = overruled([np.arange(2.0)] * 2, [pixel] * 2, ("m", height_unit), arguments, name)
+    steps = dict(zip(("dy", "dx"), lengths.steps or (), strict=False))
+    scan = _of_table(name, table, {"unit": lengths.units[0], "height_unit": height_unit} | steps, crop, how)
     return replace(scan, notes=lengths.notes + scan.notes)
 
 
@@ -166,21 +165,22 @@ def _of_table(name: str, table: NumberTable, arguments: dict, crop, how: dict) -
     cleaned, holes = without_holes(table.numbers)
     table = replace(table, numbers=cleaned, notes=table.notes + holes)
     columns, places = columns_of(table, arguments, name)
-    dx = number(f"{name}: dx", arguments["dx"], unit) if "dx" in arguments else None
-    dy = number(f"{name}: dy", arguments["dy"], unit) if "dy" in arguments else dx
-    check_units(table, unit, height_unit, places, name)
-    size, notes = height_metres(table, height_unit, name)
+    dx = arguments.get("dx")
+    steps = dx if dx is None else [number(f"{name}: {k}", arguments.get(k, dx), unit) for k in ("dx", "dy")][::-1]
+    notes = check_units(table, arguments, places, name)
+    size, of_factors = height_metres(table, arguments, name)
     z, more = without_no_data(table, columns if columns.shape[1] >= FEWEST else columns[:, -1], name)
-    notes += table.notes + more + (f"channel {table.channel!r}",) * bool(table.channel)
+    notes += of_factors + table.notes + more + (f"channel {table.channel!r}",) * bool(table.channel)
     z = z * (size / metres(height_unit, name))
     if z.ndim == 2:
-        positions = [step * np.arange(points) for step, points in zip((dy, dx), z.shape, strict=True)]
-        notes += extent_notes(table, (dy, dx), unit, name)
+        positions = [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
+        notes += extent_notes(table, steps, unit, name)
     elif columns.shape[1] == 3:
-        z, positions = on_grid(columns, z, None if dx is None else (dy, dx), name)
+        z, positions, more = on_grid(columns, z, arguments, name)
+        notes += more
     else:
-        positions = [columns[:, 0] if dx is None else dx * np.arange(len(z))]
-    steps = None if dx is None else [dy, dx][-z.ndim :]
+        positions = [columns[:, 0] if steps is None else steps[1] * np.arange(len(z))]
+    steps = steps and steps[-z.ndim :]
     return scan_of(name, z, positions, steps=steps, units=(unit, height_unit), crop=crop, notes=notes, how=how)
 
 

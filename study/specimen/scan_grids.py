@@ -115,10 +115,10 @@ def _refuse_positions(heights: np.ndarray, name: str) -> None:
             )
 
 
-def on_grid(columns: np.ndarray, z: np.ndarray, steps: tuple | None, name: str) -> tuple[np.ndarray, list]:
-    """Heights (y, x) of points x, y in any order, NaN where there is none, and the positions [y, x] of the grid.
+def on_grid(columns: np.ndarray, z: np.ndarray, arguments: dict, name: str) -> tuple[np.ndarray, list, tuple]:
+    """Heights (y, x) of points x, y in any order, NaN where there is none, the positions [y, x] of the grid, and notes.
 
-    steps : (dy, dx) where x and y are numbers of points; None: x and y are lengths
+    With dx in `arguments` x and y may be numbers of points; positions at other distances are overridden.
 
     Raises ValueError: the points are on no grid, in a single line, or two of them are at one place.
     """
@@ -145,11 +145,13 @@ def on_grid(columns: np.ndarray, z: np.ndarray, steps: tuple | None, name: str) 
         raise ValueError(f"{rows}, x, y and z: x = {x[i % len(x)]:g}, y = {y[i // len(x)]:g} stands there twice")
     heights = np.full((len(y), len(x)), np.nan)
     heights[row, column] = z
-    if steps is not None:
-        if not all(np.isclose(np.diff(axis), 1, rtol=0, atol=1e-6).all() for axis in (x, y)):
-            raise ValueError(f"{rows}, x, y and z, have their distances: leave out dx and dy")
-        x, y = x * steps[1], y * steps[0]
-    return heights, [y, x]
+    if arguments.keys().isdisjoint(("dx", "dy")):
+        return heights, [y, x], ()
+    if "dx" in arguments and all(np.isclose(np.diff(axis), 1, rtol=0, atol=EQUAL).all() for axis in (x, y)):
+        return heights, [y * arguments.get("dy", arguments["dx"]), x * arguments["dx"]], ()
+    steps, unit = [float(axis[1] - axis[0]) for axis in (y, x)], arguments["unit"]
+    lengths = overruled([y, x], steps, (unit, unit), arguments | {"height_unit": unit}, name)
+    return heights, lengths.positions, lengths.notes
 
 
 def _axis(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:

@@ -4,6 +4,7 @@ Three text formats state every length in their heading: SDF (ISO 25178-71), SMD 
 """
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -70,7 +71,7 @@ _EXTENT = re.compile(
 _ROUNDED = 1e-3
 
 
-def extent_notes(table: NumberTable, steps: tuple[float, float], unit: str, name: str) -> tuple[str, ...]:
+def extent_notes(table: NumberTable, steps: Sequence[float], unit: str, name: str) -> tuple[str, ...]:
     """Notes where the heading of a map states distances between points other than the steps (dy, dx) in `unit`.
 
     The width in Gwyddion is that of N steps, not of the N - 1 from the first point to the last.
@@ -95,28 +96,51 @@ def length(word: str) -> float | None:
     return spelt(word) or {"A": 1e-10}.get(word)
 
 
-def check_units(table: NumberTable, unit: str, height_unit: str, places: list, name: str) -> None:
-    """Raise ValueError for a unit that contradicts the units in the heading ("x [mm] z [nm]"), if it has any.
+def check_units(table: NumberTable, arguments: dict, places: list, name: str) -> tuple[str, ...]:
+    """Notes where `unit` or `height_unit` of the call differs from a unit in the heading ("x [mm] z [nm]").
 
+    What the call gives holds. Without height_unit heights are in `unit`, unless the heading has another unit for them.
     Where the heading has a unit for each column, those at `places` count: first of the positions, last of the heights.
     A place is None where a distance stands for the positions; a single unit is then the unit of the heights.
+
+    Raises ValueError: heights in another unit where the call has no height_unit; a unit that is no length, such as V.
     """
-    width = table.numbers.shape[1]
+    unit, width = arguments["unit"], table.numbers.shape[1]
+    height_unit = arguments.get("height_unit", unit)
     columns, line = _column_units(table, width)
     of_heights, height_line = _value_unit(table)
-    if of_heights and length(of_heights) is None and any(f.search(line) for _, line in table.heading for f in _FACTORS):
+    has_factor = any(pattern.search(line) for _, line in table.heading for pattern in _FACTORS)
+    converted = has_factor and length(stated_height_unit(table) or "") == metres(height_unit, name)
+    if has_factor and (converted or length(of_heights) is None):
         of_heights = ""  # "data unit=rad" before the factor that converts it to metres
+    notes: list[str] = []
     for i, place in enumerate(places):
-        argument, value = ("height_unit", height_unit) if i == len(places) - 1 else ("unit", unit)
-        words, quoted = ([of_heights], height_line) if of_heights and argument == "height_unit" else (columns, line)
-        if place is None and len(words) in (1, width):
+        heights, each = i == len(places) - 1, len(columns) == width
+        argument, used = ("height_unit", height_unit) if heights else ("unit", unit)
+        if place is None and len(columns) in (1, width):
             continue
-        words = [words[place]] if len(words) == width else words
-        if words and metres(value, name) not in [length(word) for word in words]:
-            raise ValueError(
-                f'{name}: {argument} is {value}, but the heading has {" and ".join(words)}: "{quoted[:80]}". Give unit '
-                "and height_unit as the heading has them, or take its units out of it."
-            )
+        stated = [([of_heights], height_line)] if heights and of_heights else []
+        if not stated or (each and width > 1):
+            stated.append(([columns[place]] if each and columns else columns, line))
+        for words, quoted in stated:
+            if not words or metres(used, name) in [length(word) for word in words]:
+                continue
+            if argument not in arguments or not any(map(length, words)):
+                raise ValueError(f"{name}: {_contradiction(argument, used, words, quoted)}")
+            subject = "heights are" if heights else "positions are"
+            notes.append(f"{subject} in {used}, as {argument} says; the heading has {' and '.join(words)}")
+    return tuple(dict.fromkeys(notes))
+
+
+def _contradiction(argument: str, used: str, words: list[str], line: str) -> str:
+    """A sentence on a unit of the call that is not the one in a line of the heading, and what to do."""
+    lengths = [word for word in words if length(word)]
+    way_out = (
+        f"Give {argument}={lengths[-1]!r}, or {argument}={used!r} if the heading is wrong."
+        if lengths
+        else "This is no unit of length: choose another column or channel, or take the unit out of the heading."
+    )
+    return f'{argument} is {used}, but the heading has {" and ".join(words)}: "{line[:80]}". {way_out}'
 
 
 def _column_units(table: NumberTable, width: int) -> tuple[list[str], str]:
@@ -140,6 +164,8 @@ def _value_unit(table: NumberTable) -> tuple[str, str]:
     keyence = any("xy calibration" in line.lower() for _, line in table.heading)
     if table.heading and table.heading[0][1].startswith("Zygo XYZ"):
         return "um", table.heading[0][1]
+    if _wyko_in_nm(table):
+        return "nm", table.heading[0][1]
     for _, line in table.heading:
         match = _VALUE_UNIT.match(line) or (keyence and _KEYENCE_UNIT.match(line))
         if match:
@@ -147,32 +173,47 @@ def _value_unit(table: NumberTable) -> tuple[str, str]:
     return "", ""
 
 
-def height_metres(table: NumberTable, height_unit: str, name: str) -> tuple[float, tuple[str, ...]]:
-    """The height in metres that the number 1 stands for, and a note if a factor of the heading was applied.
+def height_metres(table: NumberTable, arguments: dict, name: str) -> tuple[float, tuple[str, ...]]:
+    """The height in metres that the number 1 stands for, and notes on the factors of the heading.
 
     A factor that the heading states with its unit ("height conversion factor (-> m)=6.3e-008", "Bit2nm = 0.012") is
-    applied where height_unit is this unit. Any other line that looks like a scale raises ValueError.
+    applied where the unit of heights is this unit. If height_unit of the call is another one, this holds, and the
+    factor is not applied.
+
+    Raises ValueError: any other line that looks like a scale; another unit where the call has no height_unit, or where
+    the numbers without the factor are no lengths; two factors.
     """
-    size, notes, value_unit = metres(height_unit, name), (), _value_unit(table)[0]
+    height_unit = arguments.get("height_unit", arguments["unit"])
+    size, notes, value_unit, applied = metres(height_unit, name), (), _value_unit(table)[0], False
+    no_lengths = bool(value_unit) and length(value_unit) is None
     has_column_unit = any(re.search(rf"\(\s*{_UNIT}\s*\)", line) for _, line in table.heading)
     for number, line in table.heading:
         if has_column_unit and line.lstrip('#%" ').startswith("\\"):  # of a Nanoscope, whose table has "Height(nm)"
             continue
         at, conversion = f'{name}, line {number}: "{line[:80]}"', _factor(table, line, value_unit)
         if not conversion:
-            _no_scale(line[:300], size, at)
+            if not _is_wyko(table):
+                _no_scale(line[:300], size, at)
             continue
         factor, unit = conversion
         if np.isclose(factor * length(unit), metres(height_unit, name), rtol=1e-9, atol=0):
             continue
-        if length(unit) != metres(height_unit, name):
+        if length(unit) == metres(height_unit, name):
+            if applied or factor == 0:
+                raise ValueError(f"{at}: the heading has two factors of the heights, or 0: take out what does not hold")
+            size, applied = factor * length(unit), True
+            notes += (f"heights are multiplied by {factor:g} {unit}, as line {number} says",)
+        elif "height_unit" in arguments and not no_lengths:
+            notes += (
+                f"heights are in {height_unit}, as height_unit says; the factor in line {number} of the heading, "
+                f"{factor:g} {unit}, is not applied",
+            )
+        else:
+            multiplied = "take the line out" if no_lengths else f"height_unit={height_unit!r}"
             raise ValueError(
                 f"{at} makes {unit} of the heights, but height_unit is {height_unit}: give height_unit={unit!r}, and "
-                "it is applied; or take the line out if the heights have been multiplied"
+                f"it is applied; or {multiplied} if the heights have been multiplied"
             )
-        if notes or factor == 0:
-            raise ValueError(f"{at}: the heading has two factors of the heights, or 0: take out what does not hold")
-        size, notes = factor * length(unit), (f"heights are multiplied by {factor:g} {unit}, as line {number} says",)
     return size, notes
 
 
@@ -185,22 +226,31 @@ def stated_height_unit(table: NumberTable) -> str | None:
 
 def _factor(table: NumberTable, line: str, value_unit: str) -> tuple[float, str] | None:
     """The factor that a line states, and the unit that it leads to."""
-    if table.heading[0][1].startswith("Wyko ASCII"):
-        return _wyko(table) if re.match(r"wavelength\s", line, re.IGNORECASE) else (1.0, "nm")
+    if _is_wyko(table):
+        return _wyko(table) if re.match(r"wavelength\s", line, re.IGNORECASE) else None
     match = next((match for pattern in _FACTORS if (match := pattern.search(line))), None)
     if not match or (match["unit"] == "nm" and "2nm" in line.lower() and value_unit):
         return None  # SPIP leaves open whether the heights of a file with a z-unit have been multiplied
     return float(match["factor"].replace(",", ".")), match["unit"]
 
 
-def _wyko(table: NumberTable) -> tuple[float, str]:
-    """Heights of Wyko are in wavelengths (in nm) times Mult, or in nm if the second number of its first line is 1."""
+def _is_wyko(table: NumberTable) -> bool:
+    return bool(table.heading) and table.heading[0][1].startswith("Wyko ASCII")
+
+
+def _wyko(table: NumberTable) -> tuple[float, str] | None:
+    """Heights of Wyko are in wavelengths (in nm) times Mult. None: in nm, by the second number of line 1."""
     text = "\n".join(line for _, line in table.heading)
     values = [re.search(rf"^{key}\s+\d+\s+\d+\s+({_NUMBER})", text, re.MULTILINE) for key in ("Wavelength", "Mult")]
-    in_nm = re.match(r"\D*\d+\s+1\b", text)
-    if not in_nm and not all(values):
+    if _wyko_in_nm(table):
+        return None
+    if not all(values):
         return float("nan"), "nm"
-    return (1.0 if in_nm else float(values[0][1]) / float(values[1][1])), "nm"
+    return float(values[0][1]) / float(values[1][1]), "nm"
+
+
+def _wyko_in_nm(table: NumberTable) -> bool:
+    return _is_wyko(table) and bool(re.match(r"\D*\d+\s+1\b", table.heading[0][1]))
 
 
 def _no_scale(line: str, size: float, at: str) -> None:

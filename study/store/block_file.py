@@ -54,6 +54,18 @@ def write_block(path: Path, block: Block) -> None:
         seal(temporary)
 
 
+def read_facts(path: Path) -> dict:
+    """The facts of a block alone. Raises as `read_block`."""
+    check_regular(path)
+    try:
+        if not is_whole(path):
+            raise ValueError("it was not written completely")
+        with open(path, "rb") as file:
+            return dict(json.loads(str(np.load(file, allow_pickle=False)))["facts"])
+    except (ValueError, KeyError, TypeError, EOFError) as error:
+        raise Damaged(f"{path}: is not a complete block: {error}") from error
+
+
 def read_block(path: Path) -> Block:
     """The block in a file. Raises Damaged, Unusable for a folder or a pipe, OSError when it cannot be read, or
     MemoryError."""

@@ -12,6 +12,7 @@ takes a tenth of the time in which they are computed.
 import hashlib
 import json
 import logging
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
@@ -26,10 +27,12 @@ from ..inputs.definition import Definition
 from ..inputs.identity import case_keys, find
 from ..inputs.vocabulary import BY_INPUT, NOT_RUN
 from ..terminal import short_of_memory
-from .block_file import Block, Damaged, read_block, write_block
+from .block_file import Block, Damaged, read_block, read_facts, write_block
 from .windows import Store
 
 log = logging.getLogger(__name__)
+#: The fact of a block with the laws of scans.
+_LAWS = "laws_of_scans"
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +106,23 @@ def count_statuses(status: np.ndarray) -> dict[int, int]:
     """status -> number of cases."""
     values, numbers = np.unique(status, return_counts=True)
     return dict(zip(values.tolist(), numbers.tolist(), strict=True))
+
+
+def laws_in(store: Store) -> dict[str, str]:
+    """version -> table of each law of a scan with which cases in the blocks of a study were computed."""
+    laws = {}
+    for path in store.block_paths() if store.definition.scans else ():
+        with suppress(OSError):  # the law is computed again
+            laws |= read_facts(path).get(_LAWS, {})
+    return laws
+
+
+def _about(definition: Definition) -> dict:
+    """The facts of a block, which has the laws of scans too: they take seconds to compute, and the scan may be gone
+    when somebody opens the blocks."""
+    known, tables = definition.grid.lexicon.known.laws, definition.tables
+    laws = {known[name].version: text for name, text in tables.items()}
+    return facts(definition.x, definition.inputs) | ({_LAWS: laws} if laws else {})
 
 
 def facts(x: np.ndarray, inputs: tuple[str, ...] = ()) -> dict:
@@ -189,7 +209,7 @@ def write_rest(store: Store, stock: Inventory) -> None:
     In a study of many windows they also stay in memory until the window is written: without locks another run may write
     the window before, and remove its blocks.
     """
-    about, places = facts(store.definition.x, store.definition.inputs), list(range(len(store.definition.inputs)))
+    about, places = _about(store.definition), list(range(len(store.definition.inputs)))
     while stock.unwritten:
         number = stock.unwritten[0]
         index, arrays = stock.sources[number].index, stock.sources[number].arrays

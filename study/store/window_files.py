@@ -21,7 +21,7 @@ from ..files.results_file import LAZY, for_users, opened
 from ..files.seal import is_whole
 from ..inputs.definition import Definition, StudyError
 from ..inputs.vocabulary import NOT_RUN
-from .blocks import count_statuses, gather, inventory
+from .blocks import count_statuses, gather, inventory, laws_in
 from .edits import owner_of
 from .windows import Store, Window, divisions, identities, is_large, whole_window, windows_of, within
 
@@ -151,7 +151,9 @@ class WindowFiles:
 
     def partial(self) -> xr.Dataset:
         """The grid with the cases in the blocks of a single window; other cases are NaN with status 127, not run."""
-        definition = self.store.definition
+        definition, laws = self.store.definition, laws_in(self.store)
+        tables = {word.name: laws[word.version] for word in definition.scans if word.version in laws}
+        definition = replace(definition, tables=tables)
         arrays = gather(self.store, inventory(self.store), 0, definition.grid.size)
         return dataset_of(definition, parts(definition, arrays, "partial results"))
 

@@ -152,7 +152,7 @@ def test_study_files_are_valid(page, sizes):
 
 def test_the_table_of_real_systems_has_their_numbers_of_cases():
     rows = re.findall(r"^\| `(\w+)` \| [^|]* \| (\d+) \|$", TEXT["docs/studies.md"], flags=re.MULTILINE)
-    assert len(rows) == 8
+    assert len(rows) == 9
     for name, cases in rows:
         assert read(ROOT / f"studies/systems/{name}.toml").grid.size == int(cases)
 

@@ -186,7 +186,7 @@ def test_what_is_installed_has_every_package_and_the_studies(tmp_path):
         built = {path.relative_to(tmp_path) for path in (tmp_path / package).rglob("*")}
         # the compiled core is another command's (tests/compiled/test_library.py), and nobody needs its sources
         assert {path for path in ours - built if path.suffix not in (".c", ".h", ".so", ".pyd")} == set()
-    assert contents(tmp_path / "study/studies") == contents(ROOT / "studies") and len(STUDIES) == 28
+    assert contents(tmp_path / "study/studies") == contents(ROOT / "studies") and len(STUDIES) == 29
     pages = {path.name for path in (tmp_path / "study/docs").glob("*.md")}
     assert pages == {path.name for path in (ROOT / "docs").glob("*.md")} and len(pages) > 12
     assert {path.name for path in tmp_path.iterdir()} == {"roughcoat", "solver", "study"}

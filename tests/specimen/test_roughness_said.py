@@ -69,8 +69,13 @@ def test_the_page_prints_what_stands_there(tmp_path):
         ("", 1, {"dx": "0.5 um"}, "dx = '0.5 um': must be a number, in um"),
         ("", 20, {"dx": 1, "dy": "2"}, "dy = '2': must be a number, in um"),
         ("", 2, {"dx": "1 um"}, r"20 rows of 2 column\(s\) with dx = 1 um; .* A comma cannot separate columns and"),
-        ("x [mm]; z (nm)", 2, {}, 'unit is um, but the heading has mm: "x .mm.; z .nm.". Give'),
-        ("z [um]", 1, {"dx": 1, "height_unit": "nm"}, "height_unit is nm, but the heading has um"),
+        (
+            "x [mm]; z (nm)",
+            2,
+            {},
+            'height_unit is um, but the heading has nm: "x .mm.; z .nm.". Give height_unit=.nm., o',
+        ),
+        ("z [um]", 1, {"dx": 1, "unit": "nm"}, "height_unit is nm, but the heading has um"),
     ],
 )
 def test_units_of_a_scan_are_those_of_its_heading(tmp_path, heading, columns, given, message):
@@ -79,6 +84,26 @@ def test_units_of_a_scan_are_those_of_its_heading(tmp_path, heading, columns, gi
     (tmp_path / "a.csv").write_text(f"{heading}\n{rows}\n", encoding="utf-8")
     with pytest.raises(ValueError, match=f"^a.csv: {message}"):
         roughness.read(tmp_path / "a.csv", **{"unit": "um"} | given)
+
+
+def test_units_of_the_call_hold_against_those_of_a_heading(tmp_path):
+    """They were refused, and the heading had to be mended."""
+    z = np.round(np.sin(np.arange(20.0)), 6)
+    for heading, columns, arguments, steps, notes in (
+        ("x [mm]; z (nm)", 2, {"height_unit": "nm"}, 5e-7, ["positions are in um, as unit says; the heading has mm"]),
+        (
+            "z [um]",
+            1,
+            {"height_unit": "nm", "dx": 1},
+            1e-6,
+            ["heights are in nm, as height_unit says; the heading has um"],
+        ),
+    ):
+        rows = "\n".join(f"{i / 2};{each}" if columns == 2 else f"{each}" for i, each in enumerate(z))
+        (tmp_path / "a.csv").write_text(f"{heading}\n{rows}\n", encoding="utf-8")
+        scan = roughness.read(tmp_path / "a.csv", unit="um", **arguments)
+        np.testing.assert_allclose(scan.z, z * 1e-9, rtol=1e-12)
+        assert scan.steps == (pytest.approx(steps),) and list(scan.notes) == notes
 
 
 def test_a_heading_with_more_units_than_are_read(tmp_path):

@@ -32,7 +32,11 @@ def test_a_factor_that_is_understood_is_applied(tmp_path, heading, height_unit, 
     with pytest.raises(
         ValueError, match=r"^a.txt, line 1: .* of the heights, but height_unit is mm: give height_unit="
     ):
-        read(tmp_path, f"{heading}\n{BODY}", unit="um", height_unit="mm", dx=1.0)
+        read(tmp_path, f"{heading}\n{BODY}", unit="mm", dx=1.0)
+    of_call = read(tmp_path, f"{heading}\n{BODY}", unit="mm", height_unit="mm", dx=100.0, huge=True)
+    assert_allclose(of_call.z, Z * 1e-3, rtol=1e-12)
+    assert "heights are in mm, as height_unit says; the factor in line 1 of the heading, " in of_call.notes[0]
+    assert of_call.notes[0].endswith(", is not applied") and len(of_call.notes) == 1
 
 
 @pytest.mark.parametrize(
@@ -102,9 +106,37 @@ def test_a_scale_that_is_the_unit_is_no_factor(tmp_path):
         ("z [A]", "A"),
     ],
 )
-def test_another_unit_of_heights_is_refused(tmp_path, heading, of_heights):
-    with pytest.raises(ValueError, match=f"^a.txt: height_unit is nm, but the heading has {of_heights}: "):
-        read(tmp_path, f"{heading}\n{BODY}", **MAP)
+def test_the_unit_of_the_call_holds_against_the_heading(tmp_path, heading, of_heights):
+    """Only the call's own height_unit does, not `unit` in its place; and what is in volts has no heights."""
+    if of_heights == "V":
+        with pytest.raises(ValueError, match="^a.txt: height_unit is nm, but the heading has V: .*no unit of length"):
+            read(tmp_path, f"{heading}\n{BODY}", **MAP)
+        return
+    scan = read(tmp_path, f"{heading}\n{BODY}", **MAP)
+    assert_allclose(scan.z, Z * 1e-9, rtol=1e-12)
+    assert scan.notes == (f"heights are in nm, as height_unit says; the heading has {of_heights}",)
+    message = f"^a.txt: height_unit is nm, but the heading has {of_heights}: .*Give height_unit='{of_heights}', or heig"
+    with pytest.raises(ValueError, match=message):
+        read(tmp_path, f"{heading}\n{BODY}", unit="nm", dx=1e3)
+
+
+def test_a_heading_that_contradicts_itself(tmp_path):
+    """Two units or factors of the heights are refused until height_unit decides."""
+    rows = text(table(np.c_[np.arange(200) * 0.25, P]), ";")
+    heading = "Value units: um\nx [um];z [nm]\n"
+    with pytest.raises(ValueError, match=r"^a.txt: height_unit is um, but the heading has nm: "):
+        read(tmp_path, heading + rows, unit="um")
+    for unit, other in (("nm", "um"), ("um", "nm")):
+        scan = read(tmp_path, heading + rows, unit="um", height_unit=unit, steep=True)
+        assert_allclose(scan.z, P * {"nm": 1e-9, "um": 1e-6}[unit], rtol=1e-12)
+        assert scan.notes == (f"heights are in {unit}, as height_unit says; the heading has {other}",)
+    factors = "z unit: 2 nm\nz unit: 3 um\n"
+    with pytest.raises(ValueError, match=r"^a.txt, line 2: .*makes um of the heights, but height_unit is nm"):
+        read(tmp_path, factors + BODY, unit="nm", dx=1e3)
+    scan = read(tmp_path, factors + BODY, **MAP)
+    assert_allclose(scan.z, Z * 2e-9, rtol=1e-12)
+    assert scan.notes[0] == "heights are multiplied by 2 nm, as line 1 says"
+    assert scan.notes[1].endswith("the factor in line 2 of the heading, 3 um, is not applied")
 
 
 @pytest.mark.parametrize(
@@ -122,16 +154,27 @@ def test_units_of_a_heading_as_they_are_spelt(tmp_path, heading, height_unit):
 def test_a_row_of_units_counts_without_brackets(tmp_path, heading):
     rows = text(table(np.c_[np.arange(200) * 0.25, P]), ";")
     with pytest.raises(ValueError, match="^a.txt: height_unit is nm, but the heading has (um|µm|Micrometer): "):
-        read(tmp_path, f"{heading}\n{rows}", **IN)
+        read(tmp_path, f"{heading}\n{rows}", unit="nm")
+    scan = read(tmp_path, f"{heading}\n{rows}", **IN)
+    assert_allclose(scan.z, P * 1e-9, rtol=1e-12)
+    assert len(scan.notes) == 1 and "heights are in nm, as height_unit says; the heading has " in scan.notes[0]
 
 
 def test_units_of_x_y_and_z(tmp_path):
     rows = text(triples(X40, Y40))
-    for units, wrong in (("mm um nm", "mm"), ("um mm nm", "mm"), ("um um mm", "mm")):
+    for units, note in (
+        ("mm um nm", "positions are in um, as unit says; the heading has mm"),
+        ("um mm nm", "positions are in um, as unit says; the heading has mm"),
+        ("um um mm", "heights are in nm, as height_unit says; the heading has mm"),
+    ):
         heading = "X[{}] Y[{}] Z[{}]\n".format(*units.split())
-        with pytest.raises(ValueError, match=f"but the heading has {wrong}"):
-            read(tmp_path, heading + rows, **IN)
-    assert_allclose(read(tmp_path, "X[um] Y[um] Z[nm]\n" + rows, **IN).z, Z * 1e-9, rtol=1e-12)
+        scan = read(tmp_path, heading + rows, **IN)
+        assert scan.notes == (note,)
+        assert_allclose(scan.z, Z * 1e-9, rtol=1e-12)
+        assert_allclose(scan.steps, 1e-6, rtol=1e-12)
+    assert read(tmp_path, "X[um] Y[um] Z[nm]\n" + rows, **IN).notes == ()
+    with pytest.raises(ValueError, match="^a.txt: unit is um, but the heading has s: .*no unit of length"):
+        read(tmp_path, "t[s] Y[um] Z[nm]\n" + rows, **IN)
 
 
 def test_numbers_for_no_data(tmp_path):
@@ -176,8 +219,14 @@ def test_interferometers(tmp_path):
     for in_nm, metres in ((0, 275e-9), (1, 1e-9)):
         scan = read(tmp_path, WYKO.format(in_nm) + text(table(Z), "\t"), "a.asc", unit="um", height_unit="nm", dx=1e3)
         assert_allclose(scan.z, Z * metres, rtol=1e-9)
-    with pytest.raises(ValueError, match="give height_unit='nm'"):
-        read(tmp_path, WYKO.format(0) + text(table(Z), "\t"), "a.asc", unit="um", dx=1e3)
+    for in_nm, message in ((0, "give height_unit='nm'"), (1, "Give height_unit='nm'")):
+        with pytest.raises(ValueError, match=message):
+            read(tmp_path, WYKO.format(in_nm) + text(table(Z), "\t"), "a.asc", unit="um", dx=1e3)
+    for in_nm, said in ((0, "the factor in line 5 of the heading, 275 nm, is not applied"), (1, "the heading has nm")):
+        content = WYKO.format(in_nm) + text(table(Z), "\t")
+        scan = read(tmp_path, content, "a.asc", unit="um", height_unit="angstrom", dx=1e3)
+        assert_allclose(scan.z, Z * 1e-10, rtol=1e-9)
+        assert scan.notes == (f"heights are in angstrom, as height_unit says; {said}",)
     rows = triples(X40 + 10, Y40 + 20, Z * 1e-2)
     rows[3][2] = "No Data"
     scan = read(tmp_path, ZYGO.format("5e-7") + text(rows) + "#\n", "a.xyz", missing="skip")
@@ -191,6 +240,9 @@ def test_interferometers(tmp_path):
     assert scan.notes[0] == (
         "points are dx = 0.4 and dy = 0.4 um apart, as the call says; the file states 5e-07 and 5e-07 m"
     )
+    scan = read(tmp_path, ZYGO.format("5e-7") + text(rows), "a.xyz", height_unit="nm", missing="skip")
+    assert_allclose(scan.z[1:], Z[1:] * 1e-11, rtol=1e-3)
+    assert scan.notes[0] == "heights are in nm, as height_unit says; the heading has um"
     with pytest.raises(ValueError, match="a.xyz: x and y are numbers of pixels, .* give dx and unit"):
         read(tmp_path, ZYGO.format("0") + text(rows), "a.xyz", unit="um")
     assert read(tmp_path, ZYGO.format("0") + text(rows), "a.xyz", unit="um", dx=2.0).steps == (2e-6, 2e-6)

@@ -173,8 +173,13 @@ def test_points_of_a_grid_in_any_order(tmp_path):
     assert_allclose(read(tmp_path, text(more), columns=(0, 2, 3), **IN).z, Z * 1e-9, rtol=1e-12)
     numbered = text(triples(X40 + 3, Y40))
     assert_allclose(read(tmp_path, numbered, dx=0.5, dy=0.25, **IN).steps, (0.25e-6, 0.5e-6), rtol=1e-12)
-    with pytest.raises(ValueError, match="have their distances: leave out dx and dy"):
-        read(tmp_path, text(rows), dx=0.5, **IN)
+    assert read(tmp_path, text(rows), dx=0.5, dy=0.25, **IN).notes == ()
+    other = read(tmp_path, text(rows), dx=2, dy=1, **IN)  # the file has 0.5 and 0.25; this was refused
+    assert_allclose(other.steps, (1e-6, 2e-6), rtol=1e-12)
+    assert_allclose(other.z, Z * 1e-9, rtol=1e-12)
+    assert other.notes == ("points are dx = 2 and dy = 1 um apart, as the call says; the file states 0.5 and 0.25 um",)
+    with pytest.raises(ValueError, match="give dx beside dy"):
+        read(tmp_path, text(rows), dy=1, **IN)
 
 
 @pytest.mark.parametrize(

@@ -77,6 +77,10 @@ def test_the_heading_of_gwyddion_says_the_unit_of_heights(tmp_path):
         roughness.read(file, unit="um", dx=1.0)
     scan = roughness.read(file, unit="um", height_unit="m", dx=1.0)
     np.testing.assert_allclose(scan.z, EGGS * 1e-9, rtol=1e-12)
+    assert "heights are in" not in " ".join(scan.notes)
+    scan = roughness.read(file, unit="um", height_unit="um", dx=1.0, huge=True)
+    np.testing.assert_allclose(scan.z, EGGS * 1e-15, rtol=1e-12)
+    assert "heights are in um, as height_unit says; the heading has m" in scan.notes
     np.savetxt(file, EGGS, header="Value units: V")
     with pytest.raises(ValueError, match="height_unit is um, but the heading has V"):
         roughness.read(file, unit="um", dx=1.0)

@@ -57,7 +57,7 @@ def _means(case: xr.Dataset, top, below) -> None:
 
 
 def draw_limits(parts: dict[str, xr.Dataset], path: Path) -> None:
-    """Draw the contacts on layers that are thin against the pitch, and those with random heights."""
+    """Draw the contacts on layers that are thin compared with the pitch, and those with random heights."""
     from matplotlib.figure import Figure
 
     with style():

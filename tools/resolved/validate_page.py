@@ -62,7 +62,7 @@ result that they feel the layer's. A hard bonded layer has no `thin_layer`.
 With the exact layer and the lattice law the depth is right to {layer_D:.2%}, the width to {layer_a:.2%} and the largest
 pressure to {layer_p_max:.2%}, as well as on a half-space. The real area is right as well as it is known here.
 
-## A layer that is thin against the pitch
+## A layer that is thin compared with the pitch
 
 Asperities may press on a half-space of the layer's material, as in the paper, `asperities_on = "half_space"`, or on the
 [coated body itself](coated_body.md), `"layer"`. `"auto"`, the default, takes the coated body where their pitch is above

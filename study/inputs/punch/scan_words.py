@@ -1,5 +1,7 @@
 """The word "scan:FILE" of `micro`: a scan whose own law is computed before the contacts (study/scan_laws).
 
+"scan:sample" is the scan that comes with roughcoat; a file of this name is "scan:./sample".
+
 Here the file is read and refused, and it is told on which bodies its contacts are, and up to which pressure. Where they
 are on several bodies each has a law of its own, and a word of its own, "scan:FILE (h = 2 um)".
 """
@@ -21,10 +23,12 @@ from solver.kernels.two_layers import layer_modulus
 from solver.known import Known, names_of
 from solver.laws import Law
 from solver.laws.own_table import LAW_UNIT, OF_SCAN, awaiting_rows
+from solver.numerics.userfile import place
 from solver.parameters import CONTROL
 from solver.scaling import dimensionless
 from solver.shapes import PARABOLOID
 
+from ... import samples
 from ...specimen.foreign import plain
 from ...terminal import shown
 from ..grid import Grid, along, columns
@@ -34,6 +38,8 @@ from .pressed_body import told_by
 if TYPE_CHECKING:
     from ...specimen.scan import Scan
 
+#: The name of the scan that comes with roughcoat.
+_SAMPLE = "sample"
 #: In the versions of the laws: raised when the rows of a scan, or the curves near them, change.
 _OF_ROWS = "1"
 #: Most bodies of a study that have a law each: a law takes some ten seconds.
@@ -51,7 +57,8 @@ class ScanWord:
     Attributes
     ----------
     name : of the law, a word of `micro`
-    file : path of the scan
+    file : the scan, as the word names it
+    path : of the scan, from the root
     content : digest of its heights and steps
     version : of the law, made of the content, the body and `top`
     top : pressure over the modulus that is felt, up to which contacts can be pressed; inf: not known
@@ -62,6 +69,7 @@ class ScanWord:
 
     name: str
     file: str
+    path: Path
     content: str
     version: str
     top: float
@@ -70,8 +78,11 @@ class ScanWord:
     metre: float
 
 
-def scan_in(word: str) -> Scan:
-    """The scan of a word "scan:FILE". Raises ValueError for a file that has no map of heights, with its lengths."""
+def scan_in(word: str, path: Path | None = None) -> Scan:
+    """The scan of a word "scan:FILE". Raises ValueError for a file that has no map of heights, with its lengths.
+
+    path : where it is, if that is known
+    """
     from ...specimen.scan_files import read  # few contacts have a scan
 
     file = word.removeprefix(OF_SCAN)
@@ -79,15 +90,20 @@ def scan_in(word: str) -> Scan:
     if not file:
         raise ValueError('names no file: "scan:wafer.sdf"')
     try:
-        scan = read(Path(file).expanduser())
+        scan = read(path or _place(file))
     except OSError as error:
         raise ValueError(f"{file}: cannot be read: {error.strerror or error}") from None
-    except (ValueError, ImportError, RuntimeError) as error:  # RuntimeError: ~name/ of a user that there is not
+    except (ValueError, ImportError) as error:
         named = str(error) if str(error).startswith(Path(file).name) else f"{file}: {error}"
-        raise ValueError(f"{named}; or {table}") from None
+        raise ValueError(f"{named.removesuffix('.')}; or {table}") from None
     if scan.z.ndim != 2:
         raise ValueError(f"{file}: is a profile: the law of a scan needs a map of heights")
     return scan
+
+
+def _place(file: str) -> Path:
+    """The path of the scan that a word names. Raises ValueError for ~name/ of a user who does not exist."""
+    return samples.scan() if file == _SAMPLE else place(file)
 
 
 def content_of(scan: Scan) -> str:
@@ -194,7 +210,8 @@ def _scan_word(grid: Grid, word: str, name: str, index: np.ndarray) -> ScanWord:
     told = {} if bare else {key: values.item() for key, values in told_by(table, np.array(metre), grid.lexicon).items()}
     top, content = _hardest(grid, index), grid.lexicon.known.laws[word].version
     version = hashlib.sha256(json.dumps([_OF_ROWS, content, told, repr(top)], sort_keys=True).encode()).hexdigest()
-    return ScanWord(name, word.removeprefix(OF_SCAN), content, version[:24], top, told or None, case, metre)
+    file = word.removeprefix(OF_SCAN)
+    return ScanWord(name, file, _place(file).absolute(), content, version[:24], top, told or None, case, metre)
 
 
 def _hardest(grid: Grid, index: np.ndarray) -> float:

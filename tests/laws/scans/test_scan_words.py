@@ -141,6 +141,69 @@ def test_a_study_is_checked_without_the_law_and_run_with_it(tmp_path, monkeypatc
     capsys.readouterr()
 
 
+def test_an_unfinished_study_is_solved_again(tmp_path, monkeypatch):
+    """Its law had no rows, and the scan may be gone; another run takes the law from the blocks."""
+    (tmp_path / "ball.toml").write_text(STUDY + "[numerics]\nblock = 1\n")
+    ball = study.load("ball.toml")
+    ball.run(part=(1, 2), workers=1)
+    (tmp_path / "wafer.sdf").rename("moved.sdf")
+    monkeypatch.setattr(words, "_TABLES", type(words._TABLES)(1_000_000))
+    unfinished = ball.open(partial=True)
+    assert unfinished.status.values.tolist() == [0, 127] and rows_in(unfinished).shape[1] >= 8
+    alone = study.extremes(unfinished.sel(P=0.05))
+    monkeypatch.setattr(scan_law, "law_up_to", None)  # it is not computed again
+    assert ball.run(workers=1).computed == 1
+    assert_allclose(study.extremes(ball.open()).mises2.sel(P=0.05), alone.mises2, rtol=1e-12)
+
+
+def test_files_are_looked_for_beside_the_study(tmp_path, monkeypatch):
+    """They were looked for in the working folder alone. What is not there is looked for in the working folder."""
+    folder, here = tmp_path / "mine", tmp_path / "here"
+    folder.mkdir()
+    here.mkdir()
+    (tmp_path / "wafer.sdf").rename(folder / "wafer.sdf")
+    law = roughness.law(roughness.read(folder / "wafer.sdf"), pressures=np.geomspace(1e-4, 1e-2, 6), progress=False)
+    law.to_csv(folder / "law.csv")
+    r = np.linspace(0, 1e-4, 30)
+    np.savetxt(
+        folder / "tip.csv", np.c_[r * 1e6, r**2 / 1e-2 * 1e6], delimiter=",", header="r [um], f [um]", comments=""
+    )
+    (folder / "profile.csv").write_text("0,4\n1,2\n")
+    (folder / "ball.toml").write_text(STUDY)
+    (folder / "table.toml").write_text(STUDY.replace("scan:wafer.sdf", "table:law.csv"))
+    (folder / "tip.toml").write_text(
+        STUDY.replace('R = "5 mm"', 'shape = "table:tip.csv"').replace("scan:wafer.sdf", "smooth")
+    )
+    layers = '[[layers]]\nh = "1 um"\nprofile = "table:profile.csv"\nbonding = "bonded"\nnu = 0.3\n'
+    (folder / "graded.toml").write_text(
+        STUDY.replace('base = "half_space"\n', "").replace("scan:wafer.sdf", "smooth") + layers
+    )
+    monkeypatch.chdir(here)
+    for name in ("ball", "table", "tip", "graded"):
+        assert study.load(f"../mine/{name}.toml").definition.grid.size == 2
+    loaded = study.load("../mine/ball.toml")
+    monkeypatch.chdir(tmp_path)
+    loaded.run()
+    assert loaded.open().micro.item() == WORD
+    with pytest.raises(StudyError, match="micro: wafer.sdf: cannot be read"):  # no study: the working folder alone
+        study.solve(**BALL, base="half_space", micro=WORD)
+    (folder / "wafer.sdf").rename("wafer.sdf")
+    assert study.load("mine/ball.toml").definition.digest == loaded.definition.digest
+
+
+def test_the_sample(tmp_path):
+    contact = study.solve(**BALL, base="half_space", micro="scan:sample")
+    law = roughness.law(
+        roughness.read(study.samples.scan()), pressures=rows_in(contact, "scan:sample")[0][:5], progress=False
+    )
+    assert_allclose(rows_in(contact, "scan:sample")[1][:5], law.A, rtol=1e-6)
+    assert contact.status == 0 and contact.micro == "scan:sample"
+    (tmp_path / "wafer.sdf").rename("sample")
+    assert refused(micro="scan:./no") == "solve: micro: ./no: cannot be read: No such file or directory"
+    other = study.solve(**BALL, base="half_space", micro="scan:./sample")
+    assert abs(other.D / contact.D - 1) > 0.01
+
+
 def test_a_point(capsys):
     assert main(["point", "R=5 mm", "E2=5 GPa", "P=0.1 N", "base=half_space", f"micro={WORD}"]) == 0
     assert WORD in capsys.readouterr().out

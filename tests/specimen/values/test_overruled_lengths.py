@@ -53,3 +53,14 @@ def test_dx_of_a_file_that_states_the_unit_alone(tmp_path):
         assert_allclose(scan.steps, (UM, UM / 2), rtol=1e-12)
         assert_allclose(scan.z, Z * UM, rtol=1e-12)
         assert len(scan.notes) == 1
+
+
+def test_two_units_of_netcdf_are_settled_by_the_call(tmp_path):
+    dataset(Z, lateral=("mm", "um")).to_netcdf(tmp_path / "a.nc")
+    with pytest.raises(ValueError, match="^a.nc: x is in um, y in mm: write both in one unit, or give unit, which"):
+        roughness.read(tmp_path / "a.nc")
+    for arguments, steps, decides in (({"unit": "um"}, (UM, UM / 2), "unit"), ({"dx": 2}, (2 * UM, 2 * UM), "dx")):
+        scan = roughness.read(tmp_path / "a.nc", **arguments)
+        assert_allclose(scan.steps, steps, rtol=1e-12)
+        assert_allclose(scan.z, Z * UM, rtol=1e-12)
+        assert scan.notes[1] == f"x is in um, y in mm in the file: {decides} of the call holds for both"

@@ -12,7 +12,7 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
-from .heights.memory import present
+from .heights.memory import compressed
 from .heights.missing import treated
 from .heights.spikes import despiked
 from .pictures import of_heights
@@ -330,6 +330,6 @@ def _mean_square_slope(z: np.ndarray, axis: int, step: float) -> float:
     """Mean square of the slopes along an axis of a map; 0 where there is none."""
     slopes = np.diff(z, axis=axis)
     slopes /= step
-    slopes = present(slopes)
+    slopes = compressed(slopes)
     slopes *= slopes
     return float(slopes.mean()) if slopes.size else 0.0

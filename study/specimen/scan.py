@@ -273,7 +273,8 @@ def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str, *, 
     z, notes = treated(z, missing, name, spikes)
     if np.nanmax(z) == np.nanmin(z):
         raise ValueError(f"{name}: all {z.size} heights equal {np.nanmax(z):g}: there is no roughness to measure")
-    scan = Scan(z * vertical, tuple(float(step) * lateral for step in steps), name, notes, bool(huge))
+    z = z * vertical  # the heights of the caller stay; those without spikes and gaps are dropped
+    scan = Scan(z, tuple(float(step) * lateral for step in steps), name, notes, bool(huge))
     units_in_words = f"Lengths were taken to be in {unit}, heights in {height_unit or unit}"
     if not huge:
         _check_size(scan, units_in_words)

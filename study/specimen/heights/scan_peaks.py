@@ -88,11 +88,12 @@ def _gaussian(z: np.ndarray, steps: tuple, cutoff: float) -> np.ndarray:
 
 
 def _along(z: np.ndarray, axis: int, step: float, cutoff: float) -> np.ndarray:
-    """The Gaussian mean along one axis, without its borders, in blocks of lines."""
+    """The Gaussian mean along one axis, without its borders, in blocks of lines; of truths in single precision."""
     reach = math.ceil(min(REACH * cutoff / step, z.shape[axis]))
     inside = slice(reach, max(z.shape[axis] - reach, reach))
     sigma = ALPHA * cutoff / math.sqrt(2 * math.pi) / step
-    means = np.empty([inside.stop - reach if i == axis else n for i, n in enumerate(z.shape)])
+    shape = [inside.stop - reach if i == axis else n for i, n in enumerate(z.shape)]
+    means = np.empty(shape, dtype=np.result_type(z, np.float32))
     lines, answers = (np.atleast_2d(np.moveaxis(array, axis, -1)) for array in (z, means))
     # a window longer than the scan leaves no points, and would take hours if the cutoff has the wrong unit
     for block in row_blocks(lines) if means.size else ():

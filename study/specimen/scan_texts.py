@@ -162,13 +162,17 @@ def _plain_rows(contents: "Lines", dialect: tuple) -> tuple[np.ndarray, np.ndarr
 
     None where numpy cannot: some lines have other words, quotation marks, another length or other marks.
     """
+    fields = len(_fields(contents[0][1], dialect[0]))
+    missing = {word for word in MISSING if word or fields >= FEWEST}  # of fewer, rows of empty fields are none
+    attempts = ({"nan"}, missing)  # the second takes twice the time
+    return next((rows for words in attempts if (rows := _rows_of_numpy(contents, dialect, words))), None)
+
+
+def _rows_of_numpy(contents: "Lines", dialect: tuple, words: set) -> tuple[np.ndarray, np.ndarray] | None:
+    """What `_plain_rows` returns; None also where there are other words for missing points than `words`."""
     separator, mark = dialect
-    is_map = separator is not None and contents[0][1].count(separator) >= FEWEST  # only there a row may be empty fields
-    words = [word for word in MISSING if word or is_map]
-    texts = [_with_nan(content, separator or " ", words) for content in contents.texts]
-    if any(content.replace("nan", "").encode().translate(None, _PLAIN) for content in texts):
-        return None
-    if any("-nan" in content or "+nan" in content or (mark == "," and "." in content) for content in texts):
+    texts = [_with_nan(content, separator, words) for content in contents.texts]
+    if None in texts or (mark == "," and any("." in content for content in texts)):
         return None
     numbers = [number for number, content in contents if content and not content.isspace()]
     numbers_as = (content.replace(",", ".") for content in texts) if mark == "," else texts
@@ -176,22 +180,19 @@ def _plain_rows(contents: "Lines", dialect: tuple) -> tuple[np.ndarray, np.ndarr
         table = np.loadtxt(numbers_as, delimiter=separator, comments=None, ndmin=2)  # it skips lines without fields
     except ValueError:  # the reader of single rows reports the error, if there is one
         return None
-    if len(table) != len(numbers):
-        return None
-    return table[:, : _width(table)], np.array(numbers)
+    return (table[:, : _width(table)], np.array(numbers)) if len(table) == len(numbers) else None
 
 
-def _with_nan(content: str, separator: str, words: list[str]) -> str:
-    """A row with "nan" for each word for a missing point that stands between two separators."""
-    if not content or content.isspace():
+def _with_nan(content: str, separator: str | None, words: set) -> str | None:
+    """A row in which each of the `words` is "nan"; None if it has other words."""
+    row = content.lower() if content.encode().translate(None, _PLAIN) else content
+    if len(words) > 1 and content.strip() and not words.isdisjoint(fields := row.split(separator)):
+        row = (separator or " ").join(["nan" if field in words else field for field in fields])
+    if row is content:
         return content
-    row = content if not content.encode().translate(None, _PLAIN) else content.lower()
-    row = f"{separator}{row}{separator}"
-    row = row.replace("\t", " ") if separator == " " else row
-    for field in (f"{separator}{word}{separator}" for word in words if word != "nan"):
-        while field in row:  # neighbours share a separator
-            row = row.replace(field, f"{separator}nan{separator}")
-    return row[1:-1] if "nan" in row else content
+    rest = row.encode().translate(None, _DIGITS.encode())  # shorter, and so quicker to search
+    has_others = rest.replace(b"nan", b"").translate(None, _PLAIN)
+    return None if has_others or b"-nan" in rest or b"+nan" in rest else row
 
 
 class Lines:

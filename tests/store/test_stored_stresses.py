@@ -1,7 +1,10 @@
 """`[output] stresses = true`: the largest stresses are stored with the cases."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import study
 from study.inputs.identity import case_keys
@@ -32,6 +35,27 @@ def test_results_have_the_extremes(tmp_path):
         assert np.array_equal(found[name].values, array.values, equal_nan=True), name
         assert found[name].attrs["long_name"] == array.attrs["long_name"]
     assert "mises1" not in load(tmp_path, MODEL, stresses="false").definition.stresses
+
+
+def test_blocks_stream_through_a_study(tmp_path):
+    """Six blocks have the stresses of one batch, and take the memory of one: only their results are added."""
+    bare = {"base": '"half_space"', "nu2": "0.3", "micro": '"smooth"'}
+
+    def run(cases):
+        path = written(tmp_path, bare, str(np.geomspace(1e-6, 1e-4, cases).tolist()))
+        path.write_text(path.read_text(encoding="utf-8") + "\n[numerics]\nblock = 4\n", encoding="utf-8")
+        tracemalloc.start()
+        try:
+            file = study.load(path, tmp_path / str(cases))
+            file.run(workers=1)
+            return file.open(), tracemalloc.get_traced_memory()[1]
+        finally:
+            tracemalloc.stop()
+
+    run(2)  # tables
+    one, many = run(4), run(24)
+    assert many[1] - one[1] < 0.25 * one[1], (one[1], many[1])
+    assert_allclose(many[0].mises2 / many[0].p0, one[0].mises2[0] / one[0].p0[0], rtol=1e-9)
 
 
 def test_more_loads_compute_no_case_again_and_have_stresses(tmp_path, monkeypatch):

@@ -70,7 +70,8 @@ def _some(scaled, ended, a, mu, residual, punch):
             if sum(len(index) for index, _ in group) >= _TOGETHER:
                 yield group
                 group = []
-    yield group
+    if group:
+        yield group
 
 
 def _touched(loaded):

@@ -205,7 +205,7 @@ def definition_of(
     title, x, profiles, dtype, with_stresses = settings(tables, errors)
     if with_stresses and not errors and (reason := none_in(grid)):
         errors.append(f"[output] stresses = true: {reason}")
-    block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
+    block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid, with_stresses))
     if type(block) is not int or not 1 <= block <= 1_000_000:
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
     some_feel = not errors and bool(micro_laws.felt(grid).any())
@@ -330,11 +330,16 @@ def profile_points(x, errors: list[str]) -> np.ndarray:
     return radii
 
 
-def usual_block(grid: Grid) -> int:
-    """Number of cases in a block, unless the study says it. The slowest kind of case in the grid decides."""
+def usual_block(grid: Grid, with_stresses: bool = False) -> int:
+    """Number of cases in a block, unless the study says it. The slowest kind of case in the grid decides.
+
+    The largest stresses of a contact take 5 to 50 ms, on stacks half a second.
+    """
     n, rtol, nodes = (along(grid, name) for name in ("n", "rtol", "nodes"))
     layered = np.any(may_be_layered(along(grid, "base")))
     approximated = (along(grid, "scheme") == "picard").any()
     if layered and (approximated or (n > _STIFF).any() or (rtol < _FINE).any()):
         return SLOWEST
+    if with_stresses:
+        return SLOWEST if numbers_of(grid.values) else SLOW
     return SLOW if approximated or (nodes > _MANY_NODES).any() or micro_laws.many_bodies(grid) else USUAL

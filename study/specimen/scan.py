@@ -12,7 +12,7 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
-from .heights.memory import present
+from .heights.memory import compressed
 from .heights.missing import treated
 from .heights.spikes import despiked
 from .pictures import of_heights
@@ -273,7 +273,8 @@ def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str, *, 
     z, notes = treated(z, missing, name, spikes)
     if np.nanmax(z) == np.nanmin(z):
         raise ValueError(f"{name}: all {z.size} heights equal {np.nanmax(z):g}: there is no roughness to measure")
-    scan = Scan(z * vertical, tuple(float(step) * lateral for step in steps), name, notes, bool(huge))
+    z = z * vertical  # the heights of the caller stay; those without spikes and gaps are dropped
+    scan = Scan(z, tuple(float(step) * lateral for step in steps), name, notes, bool(huge))
     units_in_words = f"Lengths were taken to be in {unit}, heights in {height_unit or unit}"
     if not huge:
         _check_size(scan, units_in_words)
@@ -330,6 +331,6 @@ def _mean_square_slope(z: np.ndarray, axis: int, step: float) -> float:
     """Mean square of the slopes along an axis of a map; 0 where there is none."""
     slopes = np.diff(z, axis=axis)
     slopes /= step
-    slopes = present(slopes)
+    slopes = compressed(slopes)
     slopes *= slopes
     return float(slopes.mean()) if slopes.size else 0.0

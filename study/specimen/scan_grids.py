@@ -48,7 +48,7 @@ def npy_table(path: Path) -> NumberTable:
         raise ValueError(f"{refused}: it is {zipped if head else 'empty'}")
     try:
         with opened(path) as file:
-            numbers = np.load(file, allow_pickle=False).astype(float, casting="same_kind")
+            numbers = np.load(file, allow_pickle=False).astype(float, casting="same_kind", copy=False)
     except Exception as error:  # numpy evaluates the header, and allocates as much as it says
         raise ValueError(f"{refused}: {(str(error).splitlines() or [type(error).__name__])[0][:200]}") from error
     if numbers.ndim not in (1, 2) or not numbers.size:
@@ -58,7 +58,7 @@ def npy_table(path: Path) -> NumberTable:
 
 def without_holes(z: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
     """The numbers, with NaN for each that is too large for a height, and a note about these."""
-    holes = np.isfinite(z) & (np.abs(z) >= NO_HEIGHT)
+    holes = np.isfinite(z) & ((z >= NO_HEIGHT) | (z <= -NO_HEIGHT))
     if not holes.any():
         return z, ()
     return np.where(holes, np.nan, z), (

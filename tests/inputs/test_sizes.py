@@ -79,6 +79,14 @@ def test_the_slowest_case_gives_the_usual_block(model, axes, size):
     assert definition.usual_block(from_tables(tables, "s", "", "s").grid) == size
 
 
+def test_blocks_with_stresses_are_shorter():
+    """A contact takes 5 to 50 ms with its largest stresses, one on a stack half a second."""
+    tables = {"model": SMOOTH | LAYER, "axes": {"P": [1e-6, 2e-6]}, "output": {"stresses": True, "profiles": False}}
+    assert from_tables(tables, "s", "", "s").block == 1000
+    stack = {"layers": [{"h": 0.01, "n": 2.0, "nu": 0.3, "bonding": "bonded"}], "axes": tables["axes"]}
+    assert from_tables(stack | {"model": SMOOTH, "output": tables["output"]}, "s", "", "s").block == 100
+
+
 def test_just_allowed_and_just_refused():
     for text, right, wrong in (
         ("block", {"block": 1_000_000}, {"block": 1_000_001}),

@@ -261,8 +261,38 @@ def test_plain_rows_are_those_that_are_read_one_by_one(separator, mark):
     text = "\n".join(["# heights", "width: 3", *rows, ""])
     table = scan_texts.table_of(text, "map.txt")
     assert (table.numbers == heights).all() and table.heading == ((1, "# heights"), (2, "width: 3"))
-    with_word = "\n".join([*rows[:-1], rows[-1].rpartition(separator)[0] + separator + "nan"])
+    with_word = "\n".join([*rows[:-1], rows[-1].rpartition(separator)[0] + separator + '"nan"'])
     several = scan_texts.table_of(with_word, "map.txt").numbers
     assert (several[:-1] == heights[:-1]).all() and np.isnan(several[-1, -1])
     with pytest.raises(ValueError, match="line 20: 19 number"):
         scan_texts.table_of("\n".join([*rows[:-1], rows[-1].rpartition(separator)[0]]), "map.txt")
+
+
+WORDS = ["", "nan", "NaN", "Bad", "***", "--", "-", "-nan", "x", "inf", "nannan", " nan "]
+
+
+@pytest.mark.parametrize("separator, mark", [(s, m) for s, m in product([",", ";", "\t", " "], ".,") if s != m])
+def test_numpy_reads_tables_with_missing_points_as_the_reader_of_single_rows(separator, mark, monkeypatch):
+    """The same numbers, heading and message, and most tables by numpy, whatever stands for a missing point."""
+    by_numpy, random = [], np.random.default_rng(5)
+    plain = scan_texts._plain_rows
+    for _ in range(60):
+        columns, words = random.choice([2, 3, 16, 20]), random.choice(WORDS[:7] if random.random() < 0.8 else WORDS, 2)
+        rows = random.normal(size=(random.choice([3, 9]), columns)).round(3).astype(str)
+        missing = random.random(rows.shape) < random.choice([0, 0.1, 0.3])
+        rows = np.where(missing, random.choice(words, rows.shape), np.char.replace(rows, ".", mark))
+        content = "heading\n" + text(rows, separator) + "\n" * random.choice([0, 1])
+        answers = []
+        for numpy_first in (True, False):
+            monkeypatch.setattr(scan_texts, "_plain_rows", plain if numpy_first else lambda *_: None)
+            try:
+                table = scan_texts.table_of(content, "t.txt")
+                answers.append((np.nan_to_num(table.numbers, nan=9e9).tolist(), table.heading, table.separator))
+            except ValueError as error:
+                answers.append(str(error))
+        assert answers[0] == answers[1], content
+        lines = scan_texts.Lines(content.split("\n")[1:-1], 2)
+        by_numpy.append(
+            isinstance(answers[0], tuple) and plain(lines, (separator.strip(" ") or None, mark)) is not None
+        )
+    assert np.mean(by_numpy) > 0.3

@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import study
 from study.inputs.identity import case_keys
 from study.inputs.reading import read
+from study.work import cases
 
 MODEL = {"h": "0.02", "n": "5.0", "bonding": '"frictionless"', "micro": '"smooth"', "nu2": "0.3"}
 SCENE = {"R": '"5 mm"', "body": '"steel 316L"', "layer": '"DLC a-C:H"', "h": '"20 um"', "bonding": '"bonded"'}
@@ -32,6 +34,25 @@ def test_results_have_the_extremes(tmp_path):
         assert np.array_equal(found[name].values, array.values, equal_nan=True), name
         assert found[name].attrs["long_name"] == array.attrs["long_name"]
     assert "mises1" not in load(tmp_path, MODEL, stresses="false").definition.stresses
+
+
+def test_blocks_stream_through_a_study(tmp_path, monkeypatch):
+    """No more cases than a block has are in memory with their stresses, which are those of one batch."""
+    sizes, real = [], cases.stresses_of
+
+    def stresses_of(problem, *others):
+        sizes.append(len(problem))
+        return real(problem, *others)
+
+    monkeypatch.setattr(cases, "stresses_of", stresses_of)
+    bare, loads = {"base": '"half_space"', "nu2": "0.3", "micro": '"smooth"'}, np.geomspace(1e-6, 1e-4, 10).tolist()
+    path = written(tmp_path, bare, str(loads))
+    path.write_text(path.read_text(encoding="utf-8") + "\n[numerics]\nblock = 4\n", encoding="utf-8")
+    file = study.load(path, tmp_path / "results")
+    file.run(workers=1)
+    assert sizes == [4, 4, 2]
+    batch = study.extremes(base="half_space", nu2=0.3, micro="smooth", P=loads)
+    assert_allclose(file.open().mises2, batch.mises2, rtol=1e-9)
 
 
 def test_more_loads_compute_no_case_again_and_have_stresses(tmp_path, monkeypatch):

@@ -1,5 +1,6 @@
 """The largest stresses, against an independent solution and against grids."""
 
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from solver.fields.invariants import mises
 from solver.fields.pressure import Pressure
 from solver.kernels.two_layers import TwoLayers
 from solver.numerics.mesh import mesh_of
+from solver.yields import contact
 from solver.yields.contact import of_contacts
 from solver.yields.extremes import extremes
 from solver.yields.loaded import Loaded
@@ -85,3 +87,19 @@ def test_a_batch_of_solved_contacts():
         assert made["mises2" if i == 2 else "mises1"][0, i] >= layer * (1 - 1e-12)
         for name in ("mises1", "mises2", "s1_surface"):
             assert_allclose(made[name][0, i], alone[name][0, 0], rtol=1e-7)
+
+
+def test_contacts_are_searched_some_at_a_time(monkeypatch):
+    """Three times as many take no more memory, and a number that the parts divide leaves no part without contacts."""
+    monkeypatch.setattr(contact, "_TOGETHER", 8)
+    problem = Problem.of(P=np.geomspace(1e-6, 1e-4, 24), base="half_space", nu2=0.3, micro="smooth")
+    solution, most = solve(problem), []
+    for rows in (np.arange(8), np.arange(24)):
+        tracemalloc.start()
+        try:
+            largest = of_contacts(problem.take(rows), solution.take(rows))["mises2"]
+            most.append(tracemalloc.get_traced_memory()[1])
+        finally:
+            tracemalloc.stop()
+    assert most[1] < 1.5 * most[0], most
+    assert_allclose(largest[0] / solution.p0, largest[0, 0] / solution.p0[0], rtol=1e-9)

@@ -6,6 +6,8 @@ axes. NaN is a missing point, which every fit leaves out.
 
 import math
 import numbers
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -67,17 +69,20 @@ def _text(radius: float) -> str:
     return ("-" if radius < 0 else "") + readable(float(f"{abs(radius):.3g}"), "m")
 
 
-def _residual(z: np.ndarray, steps: tuple, degree: int) -> np.ndarray:
-    """The heights minus the best-fitting polynomial of this total degree."""
+def _residual(z: np.ndarray, steps: tuple, degree: int, out: np.ndarray | None = None) -> np.ndarray:
+    """The heights minus the best-fitting polynomial of this total degree; in the array `out`, which may be z."""
     x = _lines(z, steps)
     powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i) if z.ndim == 2 or i == 0]
     coefficients = _fitted(z, x, powers, np.eye(len(powers)))
-    if z.ndim == 1:
-        return z - _surface(coefficients, x, powers).reshape(z.shape)
-    rest = np.empty(z.shape)
-    for rows in row_blocks(z):
-        np.subtract(z[rows], _surface(coefficients, [x[0], x[1][rows]], powers), out=rest[rows])
-    return rest
+    return _minus(z, x, lambda x: _surface(coefficients, x, powers), np.empty(z.shape) if out is None else out)
+
+
+def _minus(z: np.ndarray, x: list, surface: Callable[[list], np.ndarray], out: np.ndarray) -> np.ndarray:
+    """The heights minus a surface over coordinates like x, in the array `out`."""
+    grid, rest = (array.reshape(x[1].size, x[0].size) for array in (z, out))
+    for rows in row_blocks(grid):
+        np.subtract(grid[rows], surface([x[0], x[1][rows]]), out=rest[rows])
+    return out
 
 
 def _without_sphere(z: np.ndarray, steps: tuple, curvature: float | None) -> tuple[np.ndarray, float]:
@@ -95,27 +100,30 @@ def _without_sphere(z: np.ndarray, steps: tuple, curvature: float | None) -> tup
     plain = np.eye(len(powers))[: 1 + z.ndim]
     basis = np.concatenate([plain, round_]) if free else plain
     kappa, slopes, settled = (0.0 if free else half * curvature), np.zeros(2), _SETTLED * np.nanstd(z) / half
+    remainder = np.empty(z.shape)
     for _ in range(_STEPS):
-        remainder = z - half * _sphere(x, slopes, kappa).reshape(z.shape)
+        _minus(z, x, partial(_sphere, slopes=slopes, kappa=kappa, size=half), remainder)
         fitted = basis @ _fitted(remainder, x, powers, basis) / half
         change = fitted[1 : 1 + z.ndim]
         slopes = slopes + np.pad(change, (0, 2 - z.ndim))
         kappa -= 2 * fitted[-1] / np.sum(round_) if free else 0.0
         if np.abs(fitted[1:]).max() <= settled:
             break
-    return _residual(z - half * _sphere(x, slopes, kappa).reshape(z.shape), steps, 1), kappa / half
+    _minus(z, x, partial(_sphere, slopes=slopes, kappa=kappa, size=half), remainder)
+    return _residual(remainder, steps, 1, out=remainder), kappa / half
 
 
-def _sphere(x: list, slopes: np.ndarray, kappa: float) -> np.ndarray:
+def _sphere(x: list, slopes: np.ndarray, kappa: float, size: float) -> np.ndarray:
     """Heights of a sphere above its point in the middle of the scan, where its slopes along x and y are `slopes`.
 
-    Without curvature it is a plane. All lengths are in one unit. Outside its equator the sphere goes on as a
-    paraboloid.
+    Without curvature it is a plane. Outside its equator the sphere goes on as a paraboloid.
+
+    x, kappa : coordinates over `size`, and the curvature times `size`
     """
     sines = slopes / math.sqrt(1 + slopes @ slopes)
     squared = sum((kappa * line - sine) ** 2 for line, sine in zip(x, sines, strict=True))
     linear = sum(2 * sine * line - kappa * line**2 for line, sine in zip(x, sines, strict=True))
-    return linear / (np.sqrt(np.maximum(0.0, 1 - squared)) + math.sqrt(1 - sines @ sines))
+    return size * (linear / (np.sqrt(np.maximum(0.0, 1 - squared)) + math.sqrt(1 - sines @ sines)))
 
 
 def _lines(z: np.ndarray, steps: tuple) -> list[np.ndarray]:

@@ -11,7 +11,7 @@ from ..scan import BLUNTEST, FEWEST, FLATTEST, Scan, number
 from . import scan_peaks
 from .form import without_form
 from .measured_asperities import Roughness, length, over
-from .memory import mean
+from .memory import compressed
 from .row_jumps import aligned
 from .scan_doubts import doubts, form_doubts, jump_doubts
 
@@ -177,7 +177,7 @@ def _asperities(scan: Scan, z: np.ndarray, filtered: str, method: str, notes: tu
         "isotropic Gaussian surface",
     }
     deviations = z - np.nanmean(z)
-    iso_Ra = mean(np.abs(deviations, out=deviations))
+    iso_Ra = float(compressed(np.abs(deviations, out=deviations)).mean())
     del deviations
     count = scan_peaks.number_of(z, scan.steps, asperities.density)
     answer = Roughness(

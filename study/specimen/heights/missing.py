@@ -3,7 +3,7 @@
 import itertools
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags, vstack
+from scipy.sparse import csr_matrix, diags
 from scipy.sparse.linalg import cg
 
 from ...terminal import rounded
@@ -74,25 +74,33 @@ def filled(z: np.ndarray, most: int = 3000) -> np.ndarray:
     stiffness has kinks along the edge of the gap, which would count as curvature. After `most` steps, a point that is
     more than `most` points away from the edge of its gap may not have settled.
     """
-    absent = np.isnan(z)
-    place = np.where(absent, np.cumsum(absent).reshape(z.shape) - 1, -1)
-    measured = np.where(absent, 0.0, z - np.nanmean(z))
-    parts, sides = [], []
+    absent, middle = np.isnan(z), np.nanmean(z)
+    square, side = _equations(z, absent, middle)
+    heights, _ = cg(square, side, rtol=1e-8, maxiter=most, M=diags(1 / square.diagonal()))
+    del square  # of many gaps it is as large as the map
+    whole = z.copy()
+    whole[absent] = heights + middle
+    return whole
+
+
+def _equations(z: np.ndarray, absent: np.ndarray, middle: float) -> tuple[csr_matrix, np.ndarray]:
+    """The matrix (N, N) and the right side (N,) whose solution is the N absent heights above `middle`."""
+    count = int(absent.sum())
+    place = np.full(z.shape, -1, dtype=np.int32)
+    place[absent] = np.arange(count, dtype=np.int32)
+    square, side = csr_matrix((count, count)), np.zeros(count)
     for axis, weights in itertools.product(range(z.ndim), (np.array([1, -2, 1]), TENSION * np.array([-1, 1]))):
         length = z.shape[axis] - len(weights) + 1
         windows = [(slice(None),) * axis + (slice(i, i + length),) for i in range(len(weights))]
-        touched = np.any([absent[window] for window in windows], axis=0)
+        touched = np.logical_or.reduce([absent[window] for window in windows])
         unknowns = np.stack([place[window][touched] for window in windows])
-        sides.append(-sum(weight * measured[window][touched] for weight, window in zip(weights, windows, strict=True)))
+        measured = [np.nan_to_num(z[window][touched] - middle) for window in windows]
         which, row = np.nonzero(unknowns >= 0)
-        shape = (unknowns.shape[1], int(absent.sum()))
-        parts.append(csr_matrix((weights[which], (row, unknowns[which, row])), shape=shape))
-    matrix, side = vstack(parts), np.concatenate(sides)
-    square = (matrix.T @ matrix).tocsr()
-    heights, _ = cg(square, matrix.T @ side, rtol=1e-8, maxiter=most, M=diags(1 / square.diagonal()))
-    whole = z.copy()
-    whole[absent] = heights + np.nanmean(z)
-    return whole
+        entries = weights[which], (row, unknowns[which, row])
+        matrix = csr_matrix(entries, shape=(unknowns.shape[1], count))
+        square = square + matrix.T @ matrix
+        side -= matrix.T @ sum(weight * heights for weight, heights in zip(weights, measured, strict=True))
+    return square.tocsr(), side
 
 
 def _place(where: np.ndarray) -> str:

@@ -9,7 +9,7 @@ from ...terminal import rounded
 from . import scan_peaks
 from .form import share_of_polynomial
 from .measured_asperities import length
-from .memory import kurtosis, mean
+from .memory import compressed, kurtosis
 from .row_jumps import jumps
 
 #: Least distance between asperities, in points of the scan. On white noise it is three points: one in nine is a summit.
@@ -91,7 +91,7 @@ def doubts(
         yield f"slopes along one axis are {ratio} times those along the other: asperities are long, not round"
     cubes = z - np.nanmean(z)
     cubes **= 3
-    third = mean(cubes)
+    third = float(compressed(cubes).mean())
     del cubes  # as large as the map
     skewness, alpha = third / float(np.nanstd(z)) ** 3, scan_peaks.bandwidth(scan_peaks.mean_moments(along))
     if asperities.counted is None and (abs(skewness) > SKEWED or alpha < 1.5):

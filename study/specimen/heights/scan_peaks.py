@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from .memory import present
+from .memory import compressed, row_blocks
 from .missing import filled
 
 #: ISO 16610-21: a Gaussian of this width, in cutoffs, halves the amplitude of a wave as long as the cutoff.
@@ -73,21 +73,33 @@ def low_pass(z: np.ndarray, steps: tuple, cutoff: float) -> np.ndarray:
     s(x) = exp(-π (x/(α λc))²)/(α λc), α = √(ln 2/π); along each axis. The border is 0.75 cutoffs wide. Gaps are filled
     first. Where half of the window or more is missing, the filtered height is missing too.
     """
-    absent = np.isnan(z)
-    if not absent.any():
+    measured = np.isfinite(z)
+    if measured.all():
         return _gaussian(z, steps, cutoff)
     means = _gaussian(filled(z, _FILLING), steps, cutoff)
-    return np.where(_gaussian((~absent).astype(float), steps, cutoff) > MEASURED, means, np.nan)
+    means[_gaussian(measured, steps, cutoff) <= MEASURED] = np.nan
+    return means
 
 
 def _gaussian(z: np.ndarray, steps: tuple, cutoff: float) -> np.ndarray:
     for axis, step in enumerate(steps):
-        reach = math.ceil(min(REACH * cutoff / step, z.shape[axis]))
-        inside = np.arange(reach, max(z.shape[axis] - reach, reach))
-        sigma = ALPHA * cutoff / math.sqrt(2 * math.pi) / step
-        # a window longer than the scan leaves no points, and would take hours if the cutoff has the wrong unit
-        z = (gaussian_filter1d(z, sigma, axis=axis, radius=reach) if inside.size else z).take(inside, axis=axis)
+        z = _along(z, axis, step, cutoff)
     return z
+
+
+def _along(z: np.ndarray, axis: int, step: float, cutoff: float) -> np.ndarray:
+    """The Gaussian mean along one axis, without its borders, in blocks of lines; of truths in single precision."""
+    reach = math.ceil(min(REACH * cutoff / step, z.shape[axis]))
+    inside = slice(reach, max(z.shape[axis] - reach, reach))
+    sigma = ALPHA * cutoff / math.sqrt(2 * math.pi) / step
+    shape = [inside.stop - reach if i == axis else n for i, n in enumerate(z.shape)]
+    means = np.empty(shape, dtype=np.result_type(z, np.float32))
+    lines, answers = (np.atleast_2d(np.moveaxis(array, axis, -1)) for array in (z, means))
+    # a window longer than the scan leaves no points, and would take hours if the cutoff has the wrong unit
+    for block in row_blocks(lines) if means.size else ():
+        part = np.asarray(lines[block], dtype=float)
+        answers[block] = gaussian_filter1d(part, sigma, axis=-1, radius=reach)[:, inside]
+    return means
 
 
 def moments(z: np.ndarray, steps: tuple) -> list[Moments]:
@@ -127,7 +139,7 @@ def _squares(z: np.ndarray, axis: int, lag: int, order: int) -> np.ndarray:
         values = -2 * z[lag:-lag]
         values += z[2 * lag :]
         values += z[: -2 * lag]
-    values = present(values)
+    values = compressed(values)
     values *= values
     return values if values.size else np.zeros(1)
 

@@ -51,6 +51,13 @@ def files_in(root: Path) -> list[Path]:
     return [path for folder in chapters(root) for path in sorted(folder.glob("*.toml"))]
 
 
+def chapter(name: str) -> Path | None:
+    """The folder of study files that a user means by a path, or by the name of a chapter; None if there is none."""
+    place = Path(os.path.expanduser(name))
+    folders = [place] if len(place.parts) != 1 else [place, STUDIES / place, packaged() / place]
+    return next((folder for folder in folders if folder.is_dir() and any(folder.glob("*.toml"))), None)
+
+
 def root_of(folder: Path) -> Path:
     """The folder of studies of which this folder is a chapter; the folder itself, if it is no chapter."""
     parent = folder.parent
@@ -92,6 +99,8 @@ def study_file(path, beside: Path | None = None) -> Path:
     """
     text = os.fspath(path)
     place = Path(os.path.expanduser(text))
+    if place.is_dir():
+        raise _not_found(text, place)
     if place.exists():
         return place
     if by_path := place.suffix == ".toml":
@@ -120,6 +129,12 @@ def _not_found(text: str, place: Path) -> Exception:
     from .definition import StudyError
     from .vocabulary import suggest
 
+    if folder := chapter(text):
+        inside = [path.stem for path in sorted(folder.glob("*.toml"))]
+        names = f"its studies are {', '.join(inside)}" if len(inside) > 1 else f"its study is {inside[0]}"
+        return StudyError([f"{text}: is a folder of studies, not a study; {names}"])
+    if place.is_dir():
+        return StudyError([f"{text}: is a folder, not a study file"])
     by_path, beside = place.suffix == ".toml", Path(f"{text}.toml")
     files = (*sorted(place.parent.glob("*.toml")), *files_in(STUDIES))
     paths = list(dict.fromkeys(path.as_posix() for path in files))

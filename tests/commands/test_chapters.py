@@ -55,6 +55,23 @@ def test_chapters_are_listed_and_completed(studies, capsys):  # noqa: F811
     assert proposed("run", "th") == ["thin"] and proposed("run", "studies/f") == ["studies/film/thin.toml"]
 
 
+def test_a_chapter_is_no_study_and_its_studies_are_named(capsys):
+    """The book's by its name, the user's by a path too; `list` shows what is in it."""
+    inside = "load_sweep, main_case, reference_load, spot_density, spot_density_lattice"
+    for words in (["run", "paper"], ["check", "paper"], ["show", "paper"], ["new", "mine", "--from", "paper"]):
+        assert main(words) == 2
+        assert capsys.readouterr().err == f"paper: is a folder of studies, not a study; its studies are {inside}\n"
+    assert main(["run", "studies/film"]) == 2
+    assert capsys.readouterr().err == "studies/film: is a folder of studies, not a study; its study is thin\n"
+    assert main(["plot", "paper"]) == 2
+    assert capsys.readouterr().err.startswith("paper: is a folder of studies, not a figure; its figures are fig01, fig02,")
+    assert main(["table", "film"]) == 2
+    assert capsys.readouterr().err == "film: is a folder of studies, not a table; it has no tables\n"
+    for name, first in (("paper", "load_sweep"), ("film", "thin")):
+        assert main(["list", name]) == 0
+        assert capsys.readouterr().out.split()[0] == first
+
+
 @pytest.mark.parametrize("name", ["../good", "film/../good", "studies/none.toml", "elsewhere/thin.toml", "film/none"])
 def test_what_is_not_there(name, capsys):
     assert main(["check", name]) == 2

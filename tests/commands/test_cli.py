@@ -128,7 +128,7 @@ def test_a_file_of_the_same_name_in_studies_is_meant(studies, capsys):
 def test_a_path_goes_before_a_name(studies, capsys):
     Path("good").mkdir()
     assert main(["check", "good"]) == 2
-    assert capsys.readouterr().err.startswith("good: a study file is called NAME.toml")
+    assert capsys.readouterr().err == "good: is a folder, not a study file\n"
 
 
 def test_version(capsys):

@@ -39,7 +39,7 @@ CORE = Extension(
 class build_core(build_ext):
     """Say in one line that there is no core, which `roughcoat --version` says later.
 
-    The name of the file has no version of Python, since every Python loads it: in a wheel, beside its sources, anywhere.
+    The name of the file has no version of Python, since every Python loads it: in a wheel and beside its sources.
     """
 
     def get_ext_filename(self, fullname):

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-#: Name of the file, the same for every version of Python (setup.py), so that none that was built earlier is found first.
+#: Name of the file, the same for every version of Python (setup.py): what was built last is found.
 FILE = "_core" + EXTENSION_SUFFIXES[-1]
 
 #: Names of the variants of the core, the one with the widest vectors first; and the environment variable that chooses.

@@ -64,7 +64,8 @@ def test_a_chapter_is_no_study_and_its_studies_are_named(capsys):
     assert main(["run", "studies/film"]) == 2
     assert capsys.readouterr().err == "studies/film: is a folder of studies, not a study; its study is thin\n"
     assert main(["plot", "paper"]) == 2
-    assert capsys.readouterr().err.startswith("paper: is a folder of studies, not a figure; its figures are fig01, fig02,")
+    said = "paper: is a folder of studies, not a figure; its figures are fig01, fig02,"
+    assert capsys.readouterr().err.startswith(said)
     assert main(["table", "film"]) == 2
     assert capsys.readouterr().err == "film: is a folder of studies, not a table; it has no tables\n"
     for name, first in (("paper", "load_sweep"), ("film", "thin")):

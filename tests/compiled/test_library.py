@@ -35,7 +35,7 @@ def test_without_a_compiler_nothing_fails(tmp_path):
 
 @pytest.mark.skipif(not compiler(), reason="no C compiler")
 def test_a_compiler_builds_it_beside_its_sources(without, monkeypatch, tmp_path):
-    """`python setup.py build_ext --inplace`: what is loaded then is the new core, not one that an earlier version left."""
+    """`python setup.py build_ext --inplace`: the new core is loaded, not one that an earlier version left."""
     for path in ("setup.py", "pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / path, tmp_path)
     folder, unwanted = tmp_path / "solver/compiled", shutil.ignore_patterns("__pycache__", "*.so")

@@ -86,11 +86,17 @@ def _text(path: Path) -> str:
 
 def is_study(name: str) -> bool:
     """Whether a name or path belongs to a study file, and not to a figure, a table or a results file."""
-    return Path(name).suffix == ".toml" or name in known_studies()
+    return Path(name).suffix == ".toml" or name in known_studies() or bool(_here(name))
+
+
+def _here(name: str) -> Path | None:
+    """The study file NAME.toml in the working folder, as `roughcoat new NAME` writes it."""
+    path = Path(f"{name}.toml")
+    return path if path.is_file() and SECTION.search(_text(path)) else None
 
 
 def study_file(path, beside: Path | None = None) -> Path:
-    """The study file at a path, or with a name, in `studies` or in the book.
+    """The study file at a path, or with a name, in `studies`, in the working folder or in the book.
 
     beside : the folder to search first; then comes the folder of studies of which it is a chapter
 
@@ -109,6 +115,8 @@ def study_file(path, beside: Path | None = None) -> Path:
         roots = [beside, root_of(beside), STUDIES, packaged()] if beside else [STUDIES, packaged()]
     for root in roots if ".." not in place.parts else ():
         if file := _in(root, place.stem if by_path else text):
+            return file
+        if root == STUDIES and not (by_path or beside) and (file := _here(text)):
             return file
     raise _not_found(text, place)
 

@@ -39,13 +39,11 @@ CORE = Extension(
 class build_core(build_ext):
     """Say in one line that there is no core, which `roughcoat --version` says later.
 
-    In a wheel the name of the file has no version of Python, since every Python loads it.
+    The name of the file has no version of Python, since every Python loads it: in a wheel and beside its sources.
     """
 
     def get_ext_filename(self, fullname):
         name = super().get_ext_filename(fullname)
-        if self.inplace or self.editable_mode:
-            return name
         return name.partition(".")[0] + Path(name).suffix
 
     def build_extension(self, ext):

@@ -53,8 +53,8 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("--stresses", type=folder, metavar="FILE", help="also draw its stresses: .png, .pdf or .svg")
     add_columns(sub)
     sub.epilog = (
-        f'for example: {program()} point R="5 mm" punch="steel 52100" h="2 um" layer="DLC a-C:H" body="steel 52100" '
-        'P="10 N" micro=smooth'
+        f'for example: {program()} point R="5 mm" punch="steel 52100" h="2 um" layer="DLC a-C:H" bonding=bonded '
+        'body="steel 52100" P="10 N" micro=smooth'
     )
     sub = command("fitting", "fit", "fit inputs of a contact to a measured curve, with intervals", "FILE")
     sub.usage = "%(prog)s FILE NAME=VALUE ... [--json] [--plot FILE]"
@@ -137,6 +137,9 @@ def main(arguments=None) -> int:
     try:
         commands = parser()
         complete(commands)
+        if not (sys.argv[1:] if arguments is None else arguments):
+            commands.print_help(sys.stderr)
+            commands.exit(2)
         options = commands.parse_args(arguments)
         level = logging.DEBUG if options.verbose else logging.WARNING
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")

@@ -12,7 +12,9 @@ _SHORT = 1e-3
 
 
 def effective_load(t: Any, P: Any, prony: dict[str, Any]) -> np.ndarray:
-    """The load P̃ that gives an elastic body the contact of a creeping body at the time t:
+    """The load P̃ under which an elastic body has the contact of a body that creeps.
+
+    At the time t it is
 
         P̃(t) = E0 ∫ J(t - s) dP(s),   E0 J(t) = J0 + Σ J_i (1 - exp(-t/tau_i)).
 

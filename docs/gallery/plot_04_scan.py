@@ -2,8 +2,8 @@
 From a scan to the real pressure
 ================================
 
-A profile of a rough surface, as an instrument writes it, makes the asperities of a contact: how many, how sharp, and
-how their heights are spread.
+The number, the radius and the heights of the asperities follow from a profile of the surface, as an instrument writes
+it.
 """
 
 import tempfile
@@ -31,7 +31,7 @@ asperities = rc.roughness.measure(rc.roughness.read(file, unit="um", height_unit
 print(asperities)
 
 # %%
-# Spread heights leave fewer spots in contact than equal ones, which are pressed less.
+# If the heights differ, fewer asperities touch, and each of them is pressed harder.
 ball = {"R": "20 mm", "punch": "steel 52100", "body": "brass", "base": "half_space", "P": "5 N"}
 spread = rc.solve(**ball, **asperities.parameters("normal"))
 equal = rc.solve(**ball, **asperities.parameters("equal"))

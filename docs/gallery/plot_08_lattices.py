@@ -2,8 +2,8 @@
 Lattices beside the disc cell
 =============================
 
-The paper's asperity sits in the middle of a disc. Those of a square or hexagonal lattice have their neighbours where
-they are: the laws differ where spots are about to merge.
+In the paper each asperity has a disc of its own, and its neighbours are smeared outside it. In a square or hexagonal
+lattice the neighbours have places. The laws differ where spots are about to merge.
 """
 
 import matplotlib.pyplot as plt
@@ -16,7 +16,7 @@ loads = np.geomspace(1e-7, 1e-3, 25)
 contacts = rc.solve(P=loads, base="half_space", micro=laws, Nbar=250000, Ra=0.004, x=2)
 
 # %%
-# Spots that are apart do not know how their neighbours are placed.
+# Spots that are far apart do not feel how their neighbours are placed.
 ratio = contacts.A0 / contacts.A0.sel(micro="square_lattice")
 assert abs(ratio.sel(micro="disc_cell")[0] - 1) < 0.02 and ratio.sel(micro="disc_cell").max() > 1.05
 

@@ -23,7 +23,7 @@ contacts = rc.solve(
 print(contacts.p_max.data)
 
 # %%
-# What is selected is computed: a slice of the map, and where in it the real pressure is least.
+# Only the selected part is computed: a slice of the map, and the place in it where the real pressure is smallest.
 chosen = contacts.p_max.sel(P=1e-5).compute()
 least = chosen.where(chosen == chosen.min(), drop=True)
 assert chosen.shape == (16, 16) and least.n.item() == contacts.n.min()

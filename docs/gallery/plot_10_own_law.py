@@ -1,9 +1,9 @@
 """
-A law of one's own
-==================
+A law of your own
+=================
 
-A law says how far the asperities yield under a pressure, A[p], which share of the area they touch, and their largest
-pressure. A file with these columns is one, from a measurement or from another program.
+A law says how far the asperities are pressed in under a pressure, A[p], which share of the area they touch, and how
+large the real pressure is. A file with these columns is a law, from a measurement or from another program.
 """
 
 import tempfile
@@ -15,7 +15,7 @@ import numpy as np
 import roughcoat as rc
 
 # %%
-# Here A = 0.1 p^0.5 R: a power law that is known, so that the answer can be compared.
+# Here A = 0.1 p^0.5 R, a power law, so that the answer can be compared with that of the law `power_law`.
 p = np.geomspace(1e-7, 1, 200)
 file = Path(tempfile.mkdtemp()) / "measured.csv"
 table = np.column_stack([p, 0.1 * p**0.5, 0.9 * p**0.5, 2 * p**0.5])

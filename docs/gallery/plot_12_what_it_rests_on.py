@@ -2,7 +2,7 @@
 What a result rests on
 ======================
 
-How much the largest real pressure changes with each input, and which input makes most of its ±.
+How much the largest real pressure changes with each input, and which input contributes most to its ±.
 """
 
 import roughcoat as rc

@@ -2,7 +2,8 @@
 The load at which something yields
 ==================================
 
-Of a steel ball on a coating on steel: layer, body, and a rough ball's asperities, over the thickness of the coating.
+A steel ball presses on a coating on steel: the loads at which the layer, the body and the asperities of a rough ball
+first yield, over the thickness of the coating.
 """
 
 import matplotlib.pyplot as plt

@@ -17,8 +17,8 @@ designed = rc.design({"p_max": "180 MPa"}, by={"h": ("1 um", "1 mm")}, P=loads, 
 print(rc.summary(designed))
 
 # %%
-# Every load has one thickness. Of the largest the ± is nearly as large as the thickness itself, and no thickness is
-# sure to be enough: PTFE that is a standard deviation stiffer presses harder, however thick it is.
+# Every load has one thickness. For the largest load the ± is nearly as large as the thickness itself, and no thickness
+# is sure to be enough: PTFE that is a standard deviation stiffer presses harder, however thick it is.
 h, low, high = (designed[name].isel(solution=0) * 1e6 for name in ("h", "h_low", "h_high"))
 assert (rc.decode(designed.design_status) == "found").all() and np.isnan(high[-1]) and (h.diff("P") > 0).all()
 

@@ -2,8 +2,8 @@
 Pressure against depth
 ======================
 
-A thick soft layer lowers the pressure and sinks. Of 60 contacts those that no other one beats in both are the
-front, of those that keep to limits.
+A thick soft layer lowers the pressure and sinks. The front consists of those among 60 contacts that keep to limits,
+and that no other one beats in both pressure and depth.
 """
 
 import warnings
@@ -24,7 +24,7 @@ good = rc.feasible(contacts, D="< 10 um", validity=0)
 chosen = rc.front(contacts.where(good), least=["p0", "D"])
 
 # %%
-# PTFE has the least pressures, PMMA and PEEK the least depths. Linings of PTFE that yield, by the strength of the
+# PTFE has the smallest pressures, PMMA and PEEK the smallest depths. Linings of PTFE that yield, by the strength of the
 # material, do not count: their `validity` is not 0.
 best = chosen.on_front
 count = dict(zip(layers, best.sum("h").values.tolist(), strict=True))

@@ -2,7 +2,8 @@
 A gel from a force curve
 ========================
 
-A bead on a thin gel on glass: the modulus that the curve has, with its interval, beside what Hertz's formula says.
+A bead on a thin gel on glass: the modulus that follows from the curve, with its interval, and the one that Hertz's
+formula gives.
 """
 
 import numpy as np
@@ -25,7 +26,7 @@ assert fitted.E1_low < 5e3 < fitted.E1_high
 rc.summary(fitted)
 
 # %%
-# Without the glass below, which Hertz's formula does not know, the same curve says twice as much.
+# Hertz's formula takes no account of the glass, and gives twice this modulus for the same curve.
 half_space = {"R": "10 um", "punch": "rigid", "nu2": 0.49, "base": "half_space", "micro": "smooth"}
 hertz = rc.fit(measured, **half_space, free=["E2"])
 assert hertz.E2 > 1.9 * fitted.E1

@@ -2,7 +2,8 @@
 How deep to press, before measuring
 ===================================
 
-A plan: how sure the modulus of a film would be, over how deep one presses, if its thickness is known and if it is not.
+A plan: the uncertainty of the modulus of a film over the depth of the measurement, if its thickness is known and if
+it is not.
 """
 
 import matplotlib.pyplot as plt
@@ -15,7 +16,7 @@ deepest = np.array([50, 100, 200, 400, 800])  # nm
 depths = np.linspace(-0.2, 1, 200) * deepest[:, None]
 
 # %%
-# Points of 10 pN of noise, of a film of 20 kPa and 2 µm. Three things may be known of its thickness.
+# Each point has a noise of 10 pN, the film 20 kPa and 2 µm. Its thickness is known exactly, to 5 %, or not at all.
 spread = {}
 for words, h, free in (
     ("h known", "2 um", ["E1"]),

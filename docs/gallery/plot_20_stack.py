@@ -18,11 +18,11 @@ stack = rc.solve(**ball, layers=[coating, chromium], **thickness, x=2)
 alone = rc.solve(**ball, layers=[coating], x=2)
 
 # %%
-# The adhesion layer does not count where it is thin.
+# A thin adhesion layer hardly changes the contact.
 assert abs(stack.D[0] / alone.D - 1) < 0.05 and stack.D[-1] < 0.8 * stack.D[0]
 
 # %%
-# A lens whose modulus grows from 30 kPa to 1.5 MPa over 20 µm seems the stiffer the deeper one looks.
+# A lens whose modulus grows from 30 kPa to 1.5 MPa over 20 µm seems stiffer, the deeper the bead is pressed in.
 depths = [f"{depth:.3g} um" for depth in np.geomspace(0.05, 5, 7)]
 profile = {"E1": ["30 kPa", "1.5 MPa"], "nu": 0.49, "h": "20 um", "profile": "exponential", "bonding": "bonded"}
 bead = {"R": "50 um", "E2": "1.5 MPa", "nu2": 0.49, "micro": "smooth", "D": depths}

@@ -18,8 +18,8 @@ blunt = rc.solve(**coating, shape="blunt_cone", half_angle="70.3 deg", tip_radiu
 rc.summary(sharp.isel(D=5, h=1))
 
 # %%
-# The modulus of a half-space that is as stiff, (dP/dD)/(2a): in the beginning that of coating and tip, on thin coatings
-# more and more that of the steel. It is the same for each shape at one contact radius.
+# The modulus of a half-space of equal stiffness, (dP/dD)/(2a), is at first that of coating and tip, and tends to that
+# of the steel on thin coatings. At one contact radius it is the same for every shape.
 stiffness = rc.derived.effective_modulus(sharp)
 assert (stiffness.isel(D=-1).diff("h") > 0).all() and (stiffness.isel(D=0).std("h") < 0.05 * stiffness.isel(D=0).mean())
 assert (blunt.P.values[:3] > sharp.P.isel(h=1).values[:3]).all()

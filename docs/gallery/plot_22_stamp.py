@@ -22,7 +22,7 @@ middle = flat.p0 / flat.P * np.pi * flat.a**2
 assert (middle.diff("h") < 0).all() and middle[0] > 1.3 and abs(middle[-1] - 0.5) < 0.05
 
 # %%
-# The edge of radius 1 mm touches a little outside of the flat, where the pressure falls to 0.
+# The edge of radius 1 mm touches a little outside the flat, where the pressure falls to 0.
 assert rounded.a > 100e-6 and np.isfinite(rounded.p).all()
 
 figure, axes = plt.subplots(1, 2, figsize=(9, 4), layout="constrained")

@@ -2,7 +2,8 @@
 A bead that adheres to a gel
 ============================
 
-A bead jumps into contact with a gel and comes off elsewhere. How hard it holds depends on the glass below the gel.
+A bead jumps into contact with a gel and comes off at another depth. How strongly it adheres depends on the glass
+below the gel.
 """
 
 import matplotlib.pyplot as plt
@@ -17,13 +18,13 @@ curve = rc.solve(**gel, h="5 um", a=radii, k_machine="0.05 N/m")
 half_space = -1.5 * np.pi * 1e-3 * 5e-6
 
 # %%
-# The larger radius of each depth is stable. The cantilever of 0.05 N/m lets go at the point.
+# Of the two radii at one depth the larger one is stable. On a cantilever of 0.05 N/m the bead comes off at the point.
 stable = curve.stable.values
 assert stable[-1] and not stable[0] and (np.diff(stable.astype(int)) >= 0).all()
 
 # %%
-# Johnson, Kendall and Roberts' load on a half-space, 1.5 π w R, is that of no layer whose thickness is near the radius
-# of contact. On a gel that is thin against it the bead holds up to twice as hard.
+# The pull-off load of Johnson, Kendall and Roberts on a half-space, 1.5 π w R, does not hold for a layer about as
+# thick as the radius of contact. From a gel that is thinner the bead comes off at up to twice that load.
 layers = rc.solve(**gel, h=[f"{h:.4g} um" for h in np.geomspace(0.2, 100, 12)], P="0 N")
 over = layers.P_off / half_space
 assert over[0] > 1.3 and abs(over[-1] - 1) < 0.05

@@ -25,7 +25,7 @@ felt = ["layer", "half_space"]  # "auto", the default, takes the layer where the
 contacts = rc.solve(R="2 m", P="10 N", **asperities, **body, micro="square_lattice", asperities_on=felt, x=2)
 
 # %%
-# The farther apart they are, the more of the steel is in the pressure of a spot: it grows on a soft coating, and falls
+# The farther apart they are, the more the steel affects the pressure of a spot: it rises on a soft coating, and falls
 # on a hard one. On a coating as stiff as steel nothing changes.
 p_max = contacts.p_max.transpose("coating", "pitch", "asperities_on")
 ratio = p_max.sel(asperities_on="layer") / p_max.sel(asperities_on="half_space")

@@ -3,6 +3,7 @@
 import json
 import re
 import sys
+import warnings
 from importlib.metadata import files
 from pathlib import Path
 
@@ -61,7 +62,7 @@ nitpicky = True
 
 
 #: Sphinx's search fetches a page to quote it below its title; if the site is opened from disk, TEXTS has the page.
-ASIDES = '<a class="headerlink".*?</a>|<div class="sphx-glr-download-link-note.*?</div>'
+ASIDES = '<h1>.*?</h1>|<a class="headerlink".*?</a>|<div class="sphx-glr-download-link-note.*?</div>'
 FETCH = """if (location.protocol === "file:") {
   const root = new URL(document.documentElement.dataset.content_root || "./", location.href).href;
   window.fetch = async (url) => {
@@ -86,6 +87,9 @@ def _pictures(block, block_vars, conf):
             figure.savefig(made[-1])
     return figure_rst(made, conf["src_dir"]) + matplotlib_scraper(block, block_vars, conf, bbox_inches="tight")
 
+
+#: A warning in the output of a script without the folder in which this site is built.
+warnings.formatwarning = lambda message, category, *_: f"{category.__name__}: {message}\n"
 
 sphinx_gallery_conf = {
     "image_scrapers": (_pictures,),
@@ -126,17 +130,17 @@ def _search(app, pagename, templatename, context, doctree) -> None:
 
 
 def _plain(app, what, name, thing, options, lines) -> None:
-    """Docstrings are plain text: E2* begins no emphasis, |x| is no substitution."""
-    lines[:] = [
-        line if line.lstrip().startswith(">>>") else re.sub(r"(?<!`)([*|])(?!`)", r"\\\1", line) for line in lines
-    ]
+    """Docstrings are plain text: E2* begins no emphasis, |x| is no substitution, docs/fit.md is a page."""
+    for number, line in enumerate(lines):
+        if not line.lstrip().startswith(">>>"):
+            lines[number] = reference.pages_linked(re.sub(r"(?<!`)([*|])(?!`)", r"\\\1", line))
 
 
 def _links_out(app, docname, source) -> None:
     source[0] = reference.links_inside(source[0], docname)
-    if docname == "explorer":  # on the page about it, below its first sentence
-        title, command, sentence, rest = source[0].split("\n\n", 3)
-        source[0] = "\n\n".join([title, command, sentence, f"```{{raw}} html\n{EXPLORER}\n```", rest])
+    if docname == "explorer":  # on the page about it, before its table
+        words, table = source[0].split("\n\n| on the page |", 1)
+        source[0] = f"{words}\n\n```{{raw}} html\n{EXPLORER}\n```\n\n| on the page |{table}"
 
 
 def setup(app) -> None:

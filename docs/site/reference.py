@@ -39,10 +39,20 @@ def write(folder: Path) -> None:
             path.write_text(text, encoding="utf-8")
 
 
+def pages_linked(text: str) -> str:
+    """Text of a docstring in which docs/fit.md is a link to that page."""
+    return re.sub(r"(?<![`\w/])docs/(\w+)\.md", r":doc:`/\1`", text)
+
+
 def links_inside(text: str, page: str) -> str:
-    """A page of docs/ without links out of docs/: README becomes the start, other files become their names."""
+    """A page of docs/ without links out of docs/: README becomes the start, other files become their names.
+
+    A link whose words are the name of a page, [fit.md](fit.md), has the title of that page, or of the section, as its
+    words.
+    """
     if page == "index":  # it includes README.md, which stands one folder up
         return text
+    text = re.sub(r"\[(\w+\.md)\]\((\1(?:#[^)]*)?)\)", r"[](\2)", text)
     text = re.sub(r"\]\(\.\./README\.md(#[^)]*)?\)", r"](index.md)", text)
     return re.sub(r"\[([^\]]*)\]\(\.\./([^)]*)\)", r"\1 (`\2`)", text)
 
@@ -100,7 +110,8 @@ def _first_line(thing: Any) -> str:
         return f"``{thing!r}``"
     if isinstance(thing, dict | list | tuple):
         return f"A {type(thing).__name__} of {len(thing)} entries."
-    return re.sub(r"`([^`]*)`", r"``\1``", (inspect.getdoc(thing) or "").split("\n\n")[0].replace("\n", " "))
+    first = (inspect.getdoc(thing) or "").split("\n\n")[0].replace("\n", " ")
+    return pages_linked(re.sub(r"`([^`]*)`", r"``\1``", first))
 
 
 def _under(title: str, line: str) -> str:

@@ -14,9 +14,11 @@ from typing import Any
 
 import numpy as np
 
-#: Name of the file without its suffix; names of the variants of the core, the one with the widest vectors first; and
-#: the environment variable that chooses one.
-NAME, VARIANTS, VARIABLE = "_core", ("avx512", "avx2", "sse2"), "ROUGHCOAT_CORE"
+#: Name of the file, the same for every version of Python (setup.py): what was built last is found.
+FILE = "_core" + EXTENSION_SUFFIXES[-1]
+
+#: Names of the variants of the core, the one with the widest vectors first; and the environment variable that chooses.
+VARIANTS, VARIABLE = ("avx512", "avx2", "sse2"), "ROUGHCOAT_CORE"
 
 #: LAYOUT of batch.h. A core that was built with another layout would read the numbers of this one at wrong places.
 LAYOUT = 4
@@ -114,15 +116,11 @@ def _fits(library: Any) -> bool:
 @lru_cache(maxsize=1)
 def _library() -> Any:
     """The library; None if it was not built, cannot be loaded, or has another :func:`layout`."""
-    for suffix in EXTENSION_SUFFIXES:
-        path = Path(__file__).with_name(NAME + suffix)
-        if path.exists():
-            try:
-                library = CDLL(str(path))
-            except OSError:
-                return None
-            return library if _fits(library) else None
-    return None
+    try:
+        library = CDLL(str(Path(__file__).with_name(FILE)))
+    except OSError:
+        return None
+    return library if _fits(library) else None
 
 
 @lru_cache(maxsize=len(VARIANTS))

@@ -6,6 +6,7 @@ import re
 import sys
 from functools import partial
 from pathlib import Path
+from typing import NoReturn
 
 from ..inputs.places import STUDIES, files_here, files_in, known_studies
 from ..terminal import on_one_line, say
@@ -20,6 +21,10 @@ class Parser(argparse.ArgumentParser):
 
     def _print_message(self, message, file=None) -> None:
         say(message.removesuffix("\n"), file or sys.stderr)
+
+    def error(self, message) -> NoReturn:
+        """End with exit code 2. A command that is called without its words shows its example too."""
+        super().error(f"{message}\n{self.epilog}" if self.epilog and "required" in message else message)
 
 
 class Version(argparse.Action):

@@ -9,7 +9,7 @@ from ..files.examine import Condition, examine
 from ..files.parts_folder import named
 from ..in_words import doubts
 from ..inputs.definition import Definition, StudyError
-from ..inputs.places import STUDIES, files_here, files_in, packaged, study_file
+from ..inputs.places import STUDIES, chapter, files_here, files_in, packaged, study_file
 from ..inputs.vocabulary import NOT_RUN
 from ..terminal import answer, counted, on_one_line, say
 from ..work.cost import Estimate, describe
@@ -22,7 +22,9 @@ def items(options) -> list:
     in `studies`."""
     if options.command != "list":
         return options.items
-    folder = Path(options.folder) if options.folder else STUDIES if STUDIES.is_dir() else packaged()
+    folder = STUDIES if STUDIES.is_dir() else packaged()
+    if options.folder:
+        folder = chapter(options.folder) or Path(options.folder)
     files = files_in(folder) if folder.is_dir() else [folder]
     files = files if options.folder else [*files_here(), *files]
     if not files:

@@ -38,8 +38,9 @@ def items(options) -> list[list[str]]:
 def fit(options, texts: list[str]) -> int:
     """Fit and say it. Exit code 1 if a curve has no fit that can be used."""
     path, *words = texts
-    if "=" in path and not Path(path).exists():
-        raise StudyError([f"{path}: the file of the curve comes first, then the inputs: fit curve.csv {path} ..."])
+    if not Path(path).exists():  # said first, since inputs that are missing too are of no use without it
+        first = f"the file of the curve comes first, then the inputs: fit curve.csv {path} ..."
+        raise StudyError([f"{path}: {first if '=' in path else 'there is no such file'}"])
     reading = _reading([word for word in words if _name(word) in _READING])
     free, settings, parameters = question_of([word for word in words if _name(word) not in _READING])
     picture = options.plot

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from solver.numerics.userfile import LARGEST_TEXT, content
 
 from ..inputs.definition import StudyError
-from ..inputs.places import BOOK, STUDIES, chapters, packaged, root_of
+from ..inputs.places import BOOK, STUDIES, chapter, chapters, packaged, root_of
 from ..inputs.vocabulary import suggest
 from ..terminal import on_one_line
 
@@ -162,6 +162,11 @@ def unknown(kind: str, name: str, registered: list[str]) -> StudyError:
     study_here = [f"{name}.toml"] if Path(f"{name}.toml").is_file() else []
     meant = [f'; did you mean "{text}"?' for text in (*study_here, *numbered)]
     lines = [f'"{name}" is not known{meant[0] if meant else suggest(name, choices)}']
+    if (folder := chapter(name)) and not study_here:
+        entries = _readable(folder / FILE) if (folder / FILE).is_file() else {}
+        inside = [text for kind_of_entry, text in entries if kind_of_entry == kind]
+        names_inside = f"its {kind}s are {', '.join(inside)}" if inside else f"it has no {kind}s"
+        lines = [f"{name}: is a folder of studies, not a {kind}; {names_inside}"]
     for file in (*user_files(), *book_files()):
         try:
             names_in(file)

@@ -51,6 +51,13 @@ def files_in(root: Path) -> list[Path]:
     return [path for folder in chapters(root) for path in sorted(folder.glob("*.toml"))]
 
 
+def chapter(name: str) -> Path | None:
+    """The folder of study files that a user means by a path, or by the name of a chapter; None if there is none."""
+    place = Path(os.path.expanduser(name))
+    folders = [place] if len(place.parts) != 1 else [place, STUDIES / place, packaged() / place]
+    return next((folder for folder in folders if folder.is_dir() and any(folder.glob("*.toml"))), None)
+
+
 def root_of(folder: Path) -> Path:
     """The folder of studies of which this folder is a chapter; the folder itself, if it is no chapter."""
     parent = folder.parent
@@ -79,11 +86,17 @@ def _text(path: Path) -> str:
 
 def is_study(name: str) -> bool:
     """Whether a name or path belongs to a study file, and not to a figure, a table or a results file."""
-    return Path(name).suffix == ".toml" or name in known_studies()
+    return Path(name).suffix == ".toml" or name in known_studies() or bool(_here(name))
+
+
+def _here(name: str) -> Path | None:
+    """The study file NAME.toml in the working folder, as `roughcoat new NAME` writes it."""
+    path = Path(f"{name}.toml")
+    return path if path.is_file() and SECTION.search(_text(path)) else None
 
 
 def study_file(path, folder: Path | None = None) -> Path:
-    """The study file at a path, or with a name, in `studies` or in the book.
+    """The study file at a path, or with a name, in `studies`, in the working folder or in the book.
 
     folder : the folder to search first; then comes the folder of studies of which it is a chapter
 
@@ -92,6 +105,8 @@ def study_file(path, folder: Path | None = None) -> Path:
     """
     text = os.fspath(path)
     place = Path(os.path.expanduser(text))
+    if place.is_dir():
+        raise _not_found(text, place)
     if place.exists():
         return place
     if by_path := place.suffix == ".toml":
@@ -100,6 +115,8 @@ def study_file(path, folder: Path | None = None) -> Path:
         roots = [folder, root_of(folder), STUDIES, packaged()] if folder else [STUDIES, packaged()]
     for root in roots if ".." not in place.parts else ():
         if file := _in(root, place.stem if by_path else text):
+            return file
+        if root == STUDIES and not (by_path or folder) and (file := _here(text)):
             return file
     raise _not_found(text, place)
 
@@ -120,6 +137,12 @@ def _not_found(text: str, place: Path) -> Exception:
     from .definition import StudyError
     from .vocabulary import suggest
 
+    if folder := chapter(text):
+        inside = [path.stem for path in sorted(folder.glob("*.toml"))]
+        names = f"its studies are {', '.join(inside)}" if len(inside) > 1 else f"its study is {inside[0]}"
+        return StudyError([f"{text}: is a folder of studies, not a study; {names}"])
+    if place.is_dir():
+        return StudyError([f"{text}: is a folder, not a study file"])
     by_path, neighbour = place.suffix == ".toml", Path(f"{text}.toml")
     files = (*sorted(place.parent.glob("*.toml")), *files_in(STUDIES))
     paths = list(dict.fromkeys(path.as_posix() for path in files))

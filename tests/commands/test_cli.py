@@ -1,6 +1,7 @@
 """The command line: exit codes, messages, and that nothing heavy is imported before it is needed."""
 
 import os
+import re
 import subprocess
 import sys
 import tomllib
@@ -12,6 +13,7 @@ from conftest import ROOT, STUDIES
 import study
 from study.__main__ import main
 from study.commands.arguments import proposed
+from study.terminal import program
 from study.work import cases
 from study.work import run as running
 
@@ -71,8 +73,12 @@ def test_a_study_that_is_not_there(studies, command, capsys):
     assert not Path("results").exists()
 
 
-def test_a_name_of_a_file_beside_the_studies_is_told_its_path(studies, capsys):
+def test_a_file_in_the_working_folder_is_known_by_its_name(studies, capsys):
+    """One without the sections of a study is another program's, and its path is only told."""
     Path("main.toml").write_text(GOOD, encoding="utf-8")
+    assert main(["check", "main"]) == 0
+    assert capsys.readouterr().out.startswith("main: 3 cases")
+    Path("main.toml").write_text("[tool.other]\nmain = 1\n", encoding="utf-8")
     assert main(["check", "main"]) == 2
     said = 'main: not found (looked for main and studies/main.toml); did you mean "main.toml"?\n'
     assert capsys.readouterr().err == said
@@ -128,7 +134,18 @@ def test_a_file_of_the_same_name_in_studies_is_meant(studies, capsys):
 def test_a_path_goes_before_a_name(studies, capsys):
     Path("good").mkdir()
     assert main(["check", "good"]) == 2
-    assert capsys.readouterr().err.startswith("good: a study file is called NAME.toml")
+    assert capsys.readouterr().err == "good: is a folder, not a study file\n"
+
+
+def test_a_command_without_words_shows_what_it_takes(capsys):
+    """`roughcoat` alone lists the commands; `roughcoat point` alone has an example that can be typed."""
+    with pytest.raises(SystemExit, match="2"):
+        main([])
+    assert re.search(r"point +solve one contact", capsys.readouterr().err)
+    for command in ("point", "fit", "design", "scan"):
+        with pytest.raises(SystemExit, match="2"):
+            main([command])
+        assert f"for example: {program()} {command} " in capsys.readouterr().err
 
 
 def test_version(capsys):

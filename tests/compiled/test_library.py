@@ -1,5 +1,9 @@
 """The core is optional: how it is built, chosen, and done without."""
 
+import shutil
+import subprocess
+import sys
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 
 import pytest
@@ -9,13 +13,13 @@ from solver import solve
 from solver.compiled import library
 
 #: Lines of C: 1,000 for Newton's method, and 150 for loads of curves that stick.
-LINES, LOAD = 1150, library._library  # the function itself: these tests have another in its place
+LINES, LOAD, CORE = 1150, library._library, library.FILE  # the function itself: these tests have another in its place
 
 
 @pytest.fixture
 def without(monkeypatch):
     """As if no core had been built."""
-    monkeypatch.setattr(library, "EXTENSION_SUFFIXES", [".nothing"])
+    monkeypatch.setattr(library, "FILE", "_core.nothing")
     monkeypatch.setattr(library, "_library", LOAD)
     for kept in (LOAD, library._variant):
         kept.cache_clear()
@@ -30,11 +34,22 @@ def test_without_a_compiler_nothing_fails(tmp_path):
 
 
 @pytest.mark.skipif(not compiler(), reason="no C compiler")
-def test_a_compiler_builds_it(tmp_path):
-    (name,) = built(tmp_path)
-    assert name.startswith(f"{library.NAME}.")
-    beside_the_sources = (ROOT / "solver/compiled").glob(f"{library.NAME}*{Path(name).suffix}")
-    assert list(beside_the_sources), "build it: make setup, or python setup.py build_ext --inplace"
+def test_a_compiler_builds_it_beside_its_sources(without, monkeypatch, tmp_path):
+    """`python setup.py build_ext --inplace`: the new core is loaded, not one that an earlier version left."""
+    for path in ("setup.py", "pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / path, tmp_path)
+    folder, unwanted = tmp_path / "solver/compiled", shutil.ignore_patterns("__pycache__", "*.so")
+    shutil.copytree(ROOT / "solver", tmp_path / "solver", ignore=unwanted)
+    (folder / f"_core{EXTENSION_SUFFIXES[0]}").write_text("of an earlier version")
+    command = [sys.executable, "setup.py", "--quiet", "build_ext", "--inplace"]
+    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, timeout=300)
+    monkeypatch.setattr(library, "FILE", CORE)
+    monkeypatch.setattr(library, "__file__", str(folder / "library.py"))
+    assert Path(LOAD()._name) == folder / CORE and library.available()
+
+
+def test_the_core_of_this_folder_is_built():
+    assert not compiler() or (ROOT / "solver/compiled" / library.FILE).exists(), "build it: make setup"
 
 
 def test_without_the_core_numpy_computes(without):
@@ -44,9 +59,9 @@ def test_without_the_core_numpy_computes(without):
 
 
 def test_a_library_that_cannot_be_loaded_is_done_without(without, monkeypatch, tmp_path):
-    monkeypatch.setattr(library, "EXTENSION_SUFFIXES", [".so"])
+    monkeypatch.setattr(library, "FILE", CORE)
     monkeypatch.setattr(library, "__file__", str(tmp_path / "library.py"))
-    (tmp_path / f"{library.NAME}.so").write_text("no library")
+    (tmp_path / CORE).write_text("no library")
     assert library.available() == () and library.core() is None
 
 

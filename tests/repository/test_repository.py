@@ -187,7 +187,7 @@ def test_what_is_installed_has_every_package_and_the_studies(tmp_path):
         # the compiled core is another command's (tests/compiled/test_library.py), and nobody needs its sources
         assert {path for path in ours - built if path.suffix not in (".c", ".h", ".so", ".pyd")} == set()
     assert contents(tmp_path / "study/studies") == contents(ROOT / "studies") and len(STUDIES) == 29
-    pages = {path.name for path in (tmp_path / "study/docs").glob("*.md")}
+    pages = {path.relative_to(tmp_path / "study/docs").as_posix() for path in (tmp_path / "study/docs").rglob("*")}
     assert pages == {path.name for path in (ROOT / "docs").glob("*.md")} and len(pages) > 12
     assert {path.name for path in tmp_path.iterdir()} == {"roughcoat", "solver", "study"}
     assert PROJECT["project"]["scripts"] == {"roughcoat": "roughcoat.__main__:command"}

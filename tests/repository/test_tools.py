@@ -33,9 +33,10 @@ def missing_names(path: Path) -> list[str]:
                 if isinstance(value, type(ast)):
                     modules[alias.asname or alias.name] = value
     for node in ast.walk(tree):
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in modules:
-            if isinstance(node.ctx, ast.Load) and not hasattr(modules[node.value.id], node.attr):
-                lost.append(f"{node.value.id}.{node.attr}")
+        if not (isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in modules):
+            continue
+        if isinstance(node.ctx, ast.Load) and not hasattr(modules[node.value.id], node.attr):
+            lost.append(f"{node.value.id}.{node.attr}")
     return lost
 
 

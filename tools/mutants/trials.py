@@ -12,12 +12,12 @@ import shutil
 import signal
 import subprocess
 import sys
-import sysconfig
 import threading
 from collections import defaultdict
 from collections.abc import Iterator
 from cProfile import Profile
 from dataclasses import dataclass
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 
 from copies import NIGHT, Task, answers
@@ -35,7 +35,7 @@ PATIENCE, SLOWER = 60.0, 10.0  # a test may take so many seconds more than so ma
 BEGIN = {"subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "socket.connect"}
 #: Tests of code that no trace of Python sees: the page of the explorer, and the compiled core.
 UNSEEN = {".js": ["tests/explorer"], ".h": ["tests/compiled", "tests/rough"], ".c": ["tests/compiled"]}
-CORE = "solver/compiled/_core" + sysconfig.get_config_var("EXT_SUFFIX")
+CORE = "solver/compiled/_core" + EXTENSION_SUFFIXES[-1]
 
 
 @dataclass(frozen=True)

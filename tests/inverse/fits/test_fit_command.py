@@ -74,6 +74,8 @@ def test_several_curves_and_one_without_contact(folder, capsys):
     ("words", "message"),
     [
         (["none.csv", *CALL, "free=E1"], "none.csv: there is no such file"),
+        (["none.csv"], "none.csv: there is no such file"),
+        (["none.csv", "part=retraction"], "none.csv: there is no such file"),
         (["curve.csv", *CALL, "free=e1"], 'did you mean "E1"?'),
         (["curve.csv", *CALL, "free=E1", "contactpoint=false"], 'did you mean "contact_point"?'),
         (["curve.csv", *CALL, "free=E1", "plan=true"], "plan is an option of study.fit in Python alone"),

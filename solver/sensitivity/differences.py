@@ -1,7 +1,7 @@
 """Derivatives by moved inputs: each case is solved again with each input a little larger and a little smaller.
 
-:func:`at_radii` is for smooth contacts, with and without adhesion, that :mod:`.step` does not cover. At a given radius
-they follow from one linear system, to 1e-12, without a search for the radius and for pull-off.
+:func:`at_their_radii` is for smooth contacts, with and without adhesion, that :mod:`.step` does not cover. At a given
+radius they follow from one linear system, to 1e-12, without a search for the radius and for pull-off.
 
 :func:`by_differences` takes solutions under the control, which have larger errors. It is for all other cases: flat
 punches, whose radius is given; contacts whose edge stays at a corner of the punch; and cases whose equation
@@ -29,7 +29,7 @@ _OFF = 1e-6
 
 
 def of_radii(problem):
-    """The cases of :func:`at_radii`: a list of indices (b,), those without adhesion and those with it."""
+    """The cases of :func:`at_their_radii`: a list of indices (b,), those without adhesion and those with it."""
     some = by_equation(problem, "basis")
     if not some.any():
         return []
@@ -38,7 +38,7 @@ def of_radii(problem):
     return [np.flatnonzero(where) for where in rows if where.any()]
 
 
-def at_radii(problem, solution, inputs, quantities, x):
+def at_their_radii(problem, solution, inputs, quantities, x):
     """(B,) bool, whether the derivatives are valid; and the three answers of :func:`by_differences`. The cases are
     smooth, and all or none of them have adhesion. `solution` has their radii, loads and depths; it and the problem are
     in units R = E2* = 1."""

@@ -22,7 +22,7 @@ from ..scaling import dimensionless
 from ..solution import Solution
 from ..status import Status
 from .answers import QUANTITIES, derivatives_of
-from .differences import SIGNED, at_radii, by_differences, of_radii
+from .differences import SIGNED, at_their_radii, by_differences, of_radii
 from .inputs import inputs_of
 from .same_mesh import meshes, stacks, without_state
 from .solved_cases import solved_cases
@@ -156,7 +156,7 @@ def _of_solved(scaled, solution, inputs, x):
         shapes[:, :, index[good]] = at_x[:, :, good]
     for index in of_radii(scaled):
         part = now.named.take(index), solution.take(index)
-        good, *derivatives = at_radii(*part, inputs, QUANTITIES, x)
+        good, *derivatives = at_their_radii(*part, inputs, QUANTITIES, x)
         left[index[good]] = False
         _put((logs, shapes, slopes), index, derivatives, good)
     for fine in (False, True):

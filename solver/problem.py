@@ -11,6 +11,7 @@ from . import layers
 from .bases import FELT, is_bare, is_stack
 from .known import Known, default, names_of
 from .laws import Law
+from .numerics.caches import once
 from .parameters import COMMON, CONTROL, Parameter, allowed, among, one_of
 
 #: A pitch that exceeds h only by rounding is not above it, whatever the units: Nbar h² must be below this.
@@ -174,6 +175,10 @@ class Problem:
     def __len__(self):
         return len(self.value)
 
+    # one contact asks for these several times
+    _rough = once(lambda self: ~one_of(self.micro, [word for word, law in self.known.laws.items() if not law.rough]))
+    _felt = once(lambda self: feels(self.base, self.micro, self.asperities_on, self.Nbar, self.h, self.known.laws))
+
     def take(self, index: Any) -> "Problem":
         """Some of the cases.
 
@@ -229,7 +234,7 @@ class Problem:
         >>> Problem.of(P=1e-5, base="half_space", micro="smooth").rough().tolist()
         [False]
         """
-        return np.all([self.micro != name for name, law in self.known.laws.items() if not law.rough], axis=0)
+        return self._rough.copy()
 
     def can_feel(self) -> np.ndarray:
         """Which cases have asperities that can feel the coated body.
@@ -257,7 +262,7 @@ class Problem:
         >>> Problem.of(P=1e-5, h=0.02, n=0.5, Nbar=[250000, 1000], Ra=0.004).feels_layer().tolist()  # pitch < h, > h
         [False, True]
         """
-        return feels(self.base, self.micro, self.asperities_on, self.Nbar, self.h, self.known.laws)
+        return self._felt.copy()
 
     def may_pull(self) -> np.ndarray:
         """Which cases may have a control that is 0 or negative.
@@ -350,12 +355,7 @@ def can_feel(base: ArrayLike, micro: ArrayLike, laws: Mapping[str, Law]) -> np.n
 
 
 def feels(
-    base: ArrayLike,
-    micro: ArrayLike,
-    asperities_on: ArrayLike,
-    Nbar: ArrayLike,
-    h: ArrayLike,
-    laws: Mapping[str, Law],
+    base: ArrayLike, micro: ArrayLike, asperities_on: ArrayLike, Nbar: ArrayLike, h: ArrayLike, laws: Mapping[str, Law]
 ) -> np.ndarray:
     """Whether asperities feel the coated body.
 
@@ -371,7 +371,7 @@ def feels(
     """
     words = np.asarray(asperities_on)
     where = (words == "layer") | (words == "auto") & far_apart(Nbar, h)
-    if not where.any():  # the usual case, of which one contact asks seven times
+    if not where.any():  # the usual case
         return np.zeros(np.broadcast_shapes(where.shape, np.shape(base), np.shape(micro)), dtype=bool)
     return can_feel(base, micro, laws) & where
 

@@ -99,15 +99,14 @@ def _solved(problem, x, extrapolate):
         solution = solution.refused(outside, Status.OUTSIDE_LAW)
     if not extrapolate and felt.any():
         solution = solution.refused(~invalid & beyond_end(problem, solution), Status.OUTSIDE_LAW)
-    solution = replace(solution, model_error=solution.model_error + left_out(problem, solution))
+    new = {"model_error": solution.model_error + left_out(problem, solution)}
     if yields:
-        solution = replace(solution, plastic_share=plastic_share(problem, solution.lam[:, len(x) :]))
+        new["plastic_share"] = plastic_share(problem, solution.lam[:, len(x) :])
     if not extrapolate and felt.any():  # the last of their radii is the centre
-        p_spot, r_spot = pressure_in_spots(problem, solution, solution.lam[:, -1])
-        solution = replace(solution, p_spot=p_spot, r_spot=r_spot)
-    profiles = {name: getattr(solution, name)[:, : len(x)] for name in ("p", "lam")}
-    value = problem.value * 1.0  # exactly as given, even if a case is refused
-    return replace(solution, **profiles, **{problem.control: value})
+        new["p_spot"], new["r_spot"] = pressure_in_spots(problem, solution, solution.lam[:, -1])
+    new |= {name: getattr(solution, name)[:, : len(x)] for name in ("p", "lam")}
+    new[problem.control] = problem.value * 1.0  # exactly as given, even if a case is refused
+    return replace(solution, **new)
 
 
 @one_blas_thread()

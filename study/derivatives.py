@@ -67,10 +67,10 @@ def sensitivities(contact: xr.Dataset) -> xr.Dataset:
     return contact.drop_vars(left_out).assign(variables).assign_coords(input=list(logs["a"]))
 
 
-def sensitivities_of_case(case: xr.Dataset, name: str) -> dict[str, float]:
+def sensitivities_of_case(contact: Contacts, name: str) -> dict[str, float]:
     """Input -> `NAME_sensitivity` of :func:`sensitivities` of one contact, for which no dataset is made: xarray is not
-    imported. Raises StudyError as that does."""
-    logs, _ = _by_inputs(Contacts.of(case, "sensitivities"), ())
+    imported."""
+    logs, _ = _by_inputs(contact, ())
     return {by: values.item() for by, values in logs[name].items()}
 
 

@@ -134,10 +134,12 @@ def left_out(problem, solution):
     those of p_max, λ and D. It is 0 for smooth cases, for laws without Nbar and Ra, and for asperities on a half-space
     with a pitch of at most h. `solution` is in the units of the problem."""
     error = np.zeros(len(problem))
-    felt = problem.feels_layer()
+    wide = problem.feels_layer() | far_apart(problem.Nbar, problem.h)
+    if not wide.any():  # the usual case
+        return error
     # the base "auto" has this error too if its law could feel the body; the thin layer does not have it
     there = (is_exact(problem.base) | problem.can_feel()) & np.isfinite(problem.Ra) & problem.rough()
-    index = np.flatnonzero(there & np.isfinite(solution.P) & (felt | far_apart(problem.Nbar, problem.h)))
+    index = np.flatnonzero(there & np.isfinite(solution.P) & wide)
     if not len(index):
         return error
     part, ended = problem.take(index), solution.take(index)

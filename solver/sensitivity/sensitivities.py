@@ -2,8 +2,9 @@
 
 The equation of each case is solved once more on its mesh, at its radius. :mod:`.step` makes the contacts with the same
 radius and an input moved up and down. The differences of their answers are derivatives at fixed radius. From these and
-the derivatives by the radius follows, with the control, the change of the radius. If that fails, the case is solved
-with each input moved: :mod:`.differences`.
+the derivatives by the radius follows, with the control, the change of the radius. Smooth contacts that have another
+equation are solved at the same radius with each input moved, and if all that fails, under the control:
+:mod:`.differences`.
 """
 
 from collections.abc import Sequence
@@ -21,7 +22,7 @@ from ..scaling import dimensionless
 from ..solution import Solution
 from ..status import Status
 from .answers import QUANTITIES, derivatives_of
-from .differences import SIGNED, by_differences
+from .differences import SIGNED, at_their_radii, by_differences, of_radii
 from .inputs import inputs_of
 from .same_mesh import meshes, stacks, without_state
 from .solved_cases import solved_cases
@@ -96,7 +97,7 @@ def sensitivities(
     shapes = np.where(solved[:, None, None], 0.0, np.full((2, size, len(inputs), len(x)), np.nan))
     if acting and len(index):
         part, ended = problem.take(index), solution.take(index)
-        ended = replace(ended, a=ended.a / part.R, D=ended.D / part.R)
+        ended = replace(ended, a=ended.a / part.R, D=ended.D / part.R, P=ended.P / (part.E2 * part.R**2))
         by_name, at_x, slopes = _of_solved(dimensionless(part), ended, acting, x)
         for derivatives, into in (by_name, logs), (slopes, signed):
             for name, values in derivatives.items():
@@ -153,12 +154,24 @@ def _of_solved(scaled, solution, inputs, x):
         for name, values in derivatives.items():
             logs[name][:, index[good]] = values[:, good]
         shapes[:, :, index[good]] = at_x[:, :, good]
+    for index in of_radii(scaled):
+        part = now.named.take(index), solution.take(index)
+        good, *derivatives = at_their_radii(*part, inputs, QUANTITIES, x)
+        left[index[good]] = False
+        _put((logs, shapes, slopes), index, derivatives, good)
     for fine in (False, True):
         rest = np.flatnonzero(left & ~now.added & (stateless == fine))
-        if not len(rest):
-            continue
-        derivatives, shapes[:, :, rest], signed = by_differences(now.named.take(rest), inputs, QUANTITIES, x, fine)
-        for values_of, into in (derivatives, logs), (signed, slopes):
-            for name, values in values_of.items():
-                into[name][:, rest] = values
+        if len(rest):
+            derivatives = by_differences(now.named.take(rest), inputs, QUANTITIES, x, fine)
+            _put((logs, shapes, slopes), rest, derivatives, np.full(len(rest), True))
     return logs, shapes, slopes
+
+
+def _put(answers, index, derivatives, good):
+    """Put the three answers of :func:`~.differences.by_differences` for the cases `index` into those of all cases,
+    where they are `good`, (b,) bool."""
+    (logs, shapes, slopes), (by_name, at_x, signed) = answers, derivatives
+    shapes[:, :, index[good]] = at_x[:, :, good]
+    for values_of, into in (by_name, logs), (signed, slopes):
+        for name in into:
+            into[name][:, index[good]] = values_of[name][:, good]

@@ -56,6 +56,15 @@ class Contacts(NamedTuple):
             raise StudyError([f"{who}: {error}"]) from None
         return cls(dataset, problem, numbers, scene, dims, shape)
 
+    @classmethod
+    def in_words(cls, dataset: xr.Dataset) -> Contacts | None:
+        """The contacts of a dataset, for sentences about it; None if they cannot be solved again, as those of a
+        mean."""
+        try:
+            return cls.of(dataset, "summary")
+        except StudyError:
+            return None
+
     def column(self, value: Any) -> np.ndarray:
         """The values of all cases, (B,), from a number, a text or a DataArray over dimensions of the contacts."""
         return of_all_cases(value, self.dims, self.shape)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import xarray_later as xr
+from ..data.contacts import Contacts
 from ..derivatives import correlated, relative_spreads, sensitivities_of_case
-from ..inputs.definition import StudyError
 from ..inputs.vocabulary import VOCABULARY
 from ..terminal import rounded
 
@@ -22,18 +22,15 @@ _LITTLE = 0.01
 _UNSEEN = 1e-7
 
 
-def influence(case: xr.Dataset, name: str) -> list[str]:
+def influence(case: xr.Dataset, contact: Contacts | None, name: str) -> list[str]:
     """A sentence on the input that makes most of the ± of a result of one case, and on the effect of h.
 
-    The case is solved again, for the derivatives. [] without a spread, and where it cannot be solved again.
+    The case is solved again, for the derivatives. [] without a spread, and where it cannot be solved again, without a
+    `contact`.
     """
-    if not float(case.get(f"{name}_spread", 0.0)) > 0:
+    if contact is None or not float(case.get(f"{name}_spread", 0.0)) > 0:
         return []
-    try:
-        by_input = sensitivities_of_case(case, name)
-    except StudyError:  # the dataset has lost an input
-        return []
-    symbol = VOCABULARY[name].symbol
+    by_input, symbol = sensitivities_of_case(contact, name), VOCABULARY[name].symbol
     parts = {key: by_input[key] * part for key, part in relative_spreads(case, by_input).items()}
     texts = []
     if float(case[f"{name}_spread"]) < _UNSEEN * abs(float(case[name])):

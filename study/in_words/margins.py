@@ -22,7 +22,6 @@ from ..arrays import xarray_later as xr
 from ..data.body_strengths import known_strengths, layer_strengths
 from ..data.contacts import Contacts
 from ..data.dataset import flag_words
-from ..inputs.definition import StudyError
 from ..inputs.vocabulary import bodies_of
 from ..rules.assumptions import FEW_SPOTS
 from ..specimen import materials
@@ -114,9 +113,10 @@ class _Looked(NamedTuple):
     hard: bool
 
 
-def holds(case: xr.Dataset) -> Margin:
-    """Sentences about one solved contact; none where its strengths are not known and it has no units."""
-    looked = _looked_at(case)
+def holds(case: xr.Dataset, contact: Contacts | None) -> Margin:
+    """Sentences about one solved contact; none where its strengths are not known and it has no units, or where it
+    cannot be solved again, without a `contact`."""
+    looked = _looked_at(case, contact)
     if isinstance(looked, str):
         return Margin([looked] * bool(looked))
     compared, hard = looked.compared, looked.hard
@@ -132,18 +132,16 @@ def holds(case: xr.Dataset) -> Margin:
 
 def closest(case: xr.Dataset) -> str:
     """The body or spots closest to their limit, and their share of it, as in "asperities 1.1"; "-": not known."""
-    looked = _looked_at(case) if case["status"] == 0 else ""
+    looked = _looked_at(case, Contacts.in_words(case)) if case["status"] == 0 else ""
     if isinstance(looked, str) or not looked.compared:
         return "-"
     limit = looked.compared[0].limit
     return f"{limit.who.removeprefix('the ')} {rounded(looked.compared[0].share)}"
 
 
-def _looked_at(case: xr.Dataset) -> _Looked | str:
+def _looked_at(case: xr.Dataset, contact: Contacts | None) -> _Looked | str:
     """The stresses and limits of a contact, or the reason why they are not known; "" where nothing is to be said."""
-    try:
-        contact = Contacts.of(case, "summary")
-    except StudyError:  # such as for a mean
+    if contact is None:
         return ""
     strengths = {body: [column[0] for column in columns] for body, columns in known_strengths(contact, {}).items()}
     moduli = [case[name] for name, _, _ in bodies_of(case.variables).values() if name in case]

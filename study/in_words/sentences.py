@@ -21,7 +21,7 @@ from ..arrays import xarray_later as xr
 from ..data.contacts import Contacts
 from ..data.dataset import flag_words, validity_of_rows
 from ..data.si import ASSUMED
-from ..inputs.definition import Definition, StudyError
+from ..inputs.definition import Definition
 from ..inputs.grid import along, columns
 from ..inputs.lexicon import lexicon_in, lexicon_of
 from ..inputs.punch.micro_laws import USED
@@ -135,10 +135,9 @@ def ended(contacts: xr.Dataset) -> list[str]:
     )
     if not outside.any():
         return []
-    try:
-        problem = Contacts.of(contacts, "summary").problem
-    except StudyError:  # of a mean, say
+    if (solvable := Contacts.in_words(contacts)) is None:
         return []
+    problem = solvable.problem
     index, last = np.flatnonzero(outside), np.full(outside.shape, np.nan)
     part, far = problem.take(index), np.zeros_like(outside)
     last.flat[index], far.flat[index] = last_fraction(part), without_family(part)
@@ -158,10 +157,9 @@ def falling(contacts: xr.Dataset) -> list[str]:
     yielding = one_of(contacts["micro"].values.astype(str), laws)
     if not yielding.any():
         return []
-    try:
-        problems = Contacts.of(contacts, "summary").problem
-    except StudyError:  # of a mean, say
+    if (solvable := Contacts.in_words(contacts)) is None:
         return []
+    problems = solvable.problem
     solved = (contacts["status"].values.ravel() == Status.CONVERGED) & one_of(problems.micro, laws)
     where, index = np.zeros(len(solved), dtype=bool), np.flatnonzero(solved)
     if len(index):
@@ -197,11 +195,12 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
     judged : the displayed quantities whose largest error is `error`; p_max is among them if there are asperities
     """
     word, used = (flag_words(case[name]).item() for name in ("status", "model_used"))
+    contact = Contacts.in_words(case) if word == "converged" else None
     if word == "converged":
         *first, last = (VOCABULARY[name].symbol for name in judged if np.isfinite(case[name]))
         of = f"{', '.join(first)} and {last}{_near_0(case)}"
         lines = [f"Solved: the estimated relative error of {of} is {float(case['error']):.1g}."]
-        lines += [f"Spreads: {text}" for text in influence(case, "p_max" if "p_max" in judged else "p0")]
+        lines += [f"Spreads: {text}" for text in influence(case, contact, "p_max" if "p_max" in judged else "p0")]
     else:
         meanings = {one.name.lower(): one.meaning for one in Status}
         meaning = meanings.get(word, "the case has not been computed")
@@ -216,7 +215,7 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
     lines += of_scan(case) + of_shape(case) + of_adhesion(case)
     warnings = doubts(case)
     lines += [f"Beware: {sentence}" for sentence in warnings]
-    strength, exceeded = holds(case) if word == "converged" else ([], False)
+    strength, exceeded = holds(case, contact) if word == "converged" else ([], False)
     lines += [EXCEEDED if exceeded else NOT_VIOLATED] * (not warnings and word == "converged")
     if word == "converged":
         lines += [f"Strength: {' '.join(strength)}"] * bool(strength)

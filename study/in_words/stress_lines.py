@@ -18,7 +18,6 @@ from ..arrays import xarray_later as xr
 from ..data.body_strengths import layer_strengths, strengths
 from ..data.contacts import Contacts
 from ..data.dataset import flag_words
-from ..inputs.definition import StudyError
 from ..inputs.vocabulary import VOCABULARY, name_in_stack
 from ..rules.rule import RULES
 from ..rules.yield_bounds import stress_below_one
@@ -237,9 +236,7 @@ def of_interfaces(contact: Contacts, problem: Problem, solution: Any) -> list[st
 def which_yields(dataset: xr.Dataset) -> str:
     """Whether the layer or the body yields, in the contacts in which one of them does."""
     flags = dataset["validity"].values.ravel() & 512
-    try:
-        contacts = Contacts.of(dataset, "summary")
-    except StudyError:  # such as for a mean
+    if (contacts := Contacts.in_words(dataset)) is None:
         return ""
     some, limits = np.flatnonzero(flags), strengths(contacts, {})
     if layers := layer_strengths(contacts, {}):

@@ -7,6 +7,7 @@ import pytest
 from test_physical import COATED, quiet
 
 import study
+from study.data.contacts import Contacts
 from study.data.derived import ASSUMPTIONS
 from study.in_words import MODELS, MOST_CASES, NOT_VIOLATED
 from study.rules.rule import RULES
@@ -228,3 +229,13 @@ def test_inputs_that_xarray_has_made_variables_or_dropped():
     )
     with pytest.raises(ValueError, match="not one of contacts: it has no micro"):
         study.summary(one.drop_vars("micro"))
+
+
+def test_a_contact_is_read_once_for_its_summary(monkeypatch):
+    """The sentences on spreads and on strengths, which solve it again, share its problem."""
+    found = study.solve(R="5 mm", punch="steel 52100", layer="TiN", h="3 um", bonding="bonded", body="steel 52100",
+                        P="10 N", micro="smooth")  # fmt: skip
+    read, times = Contacts.of.__func__, []
+    monkeypatch.setattr(Contacts, "of", classmethod(lambda cls, *given: times.append(given[1]) or read(cls, *given)))
+    text = study.summary(found)
+    assert "of the variance" in text and "yield at about" in text and times == ["summary"]

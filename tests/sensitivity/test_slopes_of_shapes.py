@@ -1,11 +1,15 @@
 """Sensitivities of contacts under other shapes than a paraboloid: closed forms, and differences of the solver."""
 
+import sys
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from solver import Problem, Status, solve
 from solver.sensitivity import QUANTITIES, sensitivities
+from solver.sensitivity.differences import by_differences
+from solver.sensitivity.inputs import inputs_of
 
 #: Asperities and a layer, on which a contact has all inputs.
 ROUGH = {"Nbar": 250000.0, "Ra": 0.004, "micro": "disc_cell", "h": 0.04, "n": 0.3}
@@ -113,3 +117,33 @@ def test_of_no_load_and_no_contact():
     assert_allclose(of(result, "a", "w_adhesion"), 1 / 3, rtol=1e-6)  # a³ ~ w
     problem = Problem.of(P=-1.0, **sticks)
     assert all(np.isnan(values).all() for values in sensitivities(problem, solve(problem)).logs.values())
+
+
+#: Smooth contacts whose radius is found from their load or depth; adhesion under control and shape of other kinds.
+SMOOTH = {
+    "cone": {"shape": "cone", "half_angle": 75.0, "P": 1e-5},
+    "sphere": {"shape": "sphere", "D": 1e-3},
+    "rounded flat": {"shape": "rounded_flat", "flat_radius": 0.02, "edge_radius": 0.3, "P": 1e-5},
+    "pulled": {"P": -1e-6, "w_adhesion": 1e-6},
+    "without a load": {"P": 0.0, "w_adhesion": 1e-6},
+    "unstable": {"P": -1e-6, "w_adhesion": 1e-6, "branch": "unstable"},
+    "dmt": {"P": 1e-6, "w_adhesion": 1e-6, "adhesion": "dmt"},
+}
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+def test_smooth_contacts_are_solved_at_their_radius(name, monkeypatch):
+    """To the numbers of contacts that are solved under their control, which takes up to 40 times as long."""
+    problem, x = Problem.of(**SMOOTH[name], h=0.02, n=0.5, base="layered", micro="smooth"), (0.5,)
+    solution = solve(problem, x)
+    inputs = tuple(i for i in inputs_of(problem) if np.isfinite(getattr(problem, i, 1.0)).all())
+    with np.errstate(all="ignore"):  # p(0) of a cone is infinite
+        logs, profiles, slopes = by_differences(problem, inputs, QUANTITIES, x, fine=True)
+    monkeypatch.setattr(sys.modules["solver.sensitivity.sensitivities"], "by_differences", None)
+    result = sensitivities(problem, solution, x, inputs)
+    for quantity in ("P", "D"):
+        atol = 1e-8 * abs(slopes[quantity]).max()
+        assert_allclose(result.slopes[quantity][0], slopes[quantity][:, 0], rtol=0, atol=atol, err_msg=quantity)
+    for quantity in ("a", "D", "dP_dD"):  # 1e-12 over the step of 1e-3, and the step to the fourth
+        assert_allclose(result.logs[quantity][0], logs[quantity][:, 0], rtol=0, atol=1e-8, err_msg=quantity)
+    assert_allclose(result.p[0], profiles[0][:, 0], rtol=0, atol=1e-8 * abs(profiles[0]).max())

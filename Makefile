@@ -133,8 +133,8 @@ bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tools/fields/benchmark_shapes.py
 	$(VENV)/bin/python tools/fit/benchmark_fits.py
 
-speed: $(READY) ## speeds of what people run, on an idle machine: docs/speed.md
-	$(VENV)/bin/python tools/bench/benchmark.py --page docs/speed.md
+speed: $(READY) ## speeds of what people run, on an idle machine: docs/speed.md; ONLY="fits stresses": these sections
+	$(VENV)/bin/python tools/bench/benchmark.py --page docs/speed.md $(if $(ONLY),--only $(ONLY))
 
 start: $(READY) ## what a command and a call take before they compute, in units of `import xarray`: the table of docs/speed.md
 	$(VENV)/bin/python tools/start/benchmark_start.py

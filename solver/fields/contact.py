@@ -28,9 +28,9 @@ from .waves import MISSED, THINNEST
 
 #: Largest rtol with which the pressure is solved for again, whatever that of the contact was.
 _RTOL = 1e-8
-#: Smallest error of the stresses: `profile_error` may be half of the true one where it is below this
-#: (tools/errors/stress_errors.py).
-_LEAST = 1e-10
+#: Smallest error of the stresses; and below _DOUBTED the error of the pressure counts twice: in one of 300 contacts it
+#: was 1.8 times too small there (tools/errors/stress_errors.py).
+_LEAST, _DOUBTED = 1e-10, 2e-9
 #: With the number of sublayers of a graded layer, the relative change of the stresses is at most this times that of the
 #: load (tests/stacks/test_stresses_of_stacks.py).
 _OF_GRADED = 3.0
@@ -153,7 +153,8 @@ def _of_paraboloids(scaled, solution, a, with_errors):
         error = np.where(iterated.closed, off, np.nan)
         pressure = Pressure(iterated.at.mesh, np.where(np.isfinite(error)[:, None], p_star[:, None] * q, np.nan))
         edge = np.abs(pressure.at_edge()) / np.abs(pressure.values).max(axis=1)  # should be 0, as it is in profiles
-        yield rows, pressure, error + edge + _LEAST
+        error = error + edge
+        yield rows, pressure, error + np.minimum(error, _DOUBTED) + _LEAST
 
 
 def bodies_of(scaled, bare):

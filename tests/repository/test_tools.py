@@ -2,6 +2,7 @@
 
 import ast
 import importlib
+import re
 from pathlib import Path
 
 import pytest
@@ -33,10 +34,9 @@ def missing_names(path: Path) -> list[str]:
                 if isinstance(value, type(ast)):
                     modules[alias.asname or alias.name] = value
     for node in ast.walk(tree):
-        if not (isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in modules):
-            continue
-        if isinstance(node.ctx, ast.Load) and not hasattr(modules[node.value.id], node.attr):
-            lost.append(f"{node.value.id}.{node.attr}")
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and isinstance(node.ctx, ast.Load):
+            module = modules.get(node.value.id)
+            lost += [f"{node.value.id}.{node.attr}"] * (module is not None and not hasattr(module, node.attr))
     return lost
 
 
@@ -49,3 +49,13 @@ def test_a_name_that_is_gone_is_seen(tmp_path):
     script = tmp_path / "tool.py"
     script.write_text("from solver import ways, no_such_name\nfrom solver.models import named\nnamed._gone, ways.WAYS")
     assert missing_names(script) == ["solver.no_such_name", "named._gone"]
+
+
+def test_the_page_of_speeds_is_that_of_its_template():
+    """All words of docs/speed.md are those of tools/bench/benchmark_page.py; figures, dates and machines differ."""
+    tree = ast.parse((ROOT / "tools/bench/benchmark_page.py").read_text(encoding="utf-8"))
+    texts = {node.targets[0].id: ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign)
+             and node.targets[0].id in ("INTRO", "SECTIONS")}  # fmt: skip
+    template = "\n## ".join([texts["INTRO"], *texts["SECTIONS"].values()])
+    pattern = ".+?".join(re.escape(part) for part in re.split(r"\{\w+\}", template))
+    assert re.fullmatch(pattern, (ROOT / "docs/speed.md").read_text(encoding="utf-8"), re.DOTALL)

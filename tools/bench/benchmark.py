@@ -1,7 +1,7 @@
 """Speed of the solver: cases per second on one thread, also over the speed of stacked 17 x 17 linear solves.
 
     python tools/bench/benchmark.py [bench.json]
-    python tools/bench/benchmark.py --page docs/speed.md
+    python tools/bench/benchmark.py --page docs/speed.md [--only SECTION ...]
 
 The ratio r does not depend on the machine: it counts the linear systems that numpy solves in the time of one case, both
 in processor time and by turns. Further measurements: time and memory against the number of cases, one and two threads,
@@ -26,7 +26,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 import numpy as np  # noqa: E402
 from benchmark_cases import CASES, REPEATS, X, coatings, problem, processor_seconds, rated, seconds  # noqa: E402
 from benchmark_felt import felt  # noqa: E402
-from benchmark_page import measured_page  # noqa: E402
+from benchmark_page import SECTIONS, measured_page  # noqa: E402
 from benchmark_peers import peers, rough_peers  # noqa: E402
 from benchmark_study import beside_the_solver, whole_run  # noqa: E402
 from benchmark_threads import blas_threads  # noqa: E402
@@ -185,9 +185,11 @@ def main(arguments: list[str]) -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("json", nargs="?", type=Path, help="file for all figures of the full benchmark")
     parser.add_argument("--page", type=Path, help="write docs/speed.md there in place of it, in some minutes")
+    parser.add_argument("--only", nargs="+", choices=SECTIONS, default=[], help="sections of the page to measure again")
     options = parser.parse_args(arguments)
     if options.page:
-        options.page.write_text(measured_page(), encoding="utf-8")
+        old = options.page.read_text(encoding="utf-8") if options.only else ""
+        options.page.write_text(measured_page(old, options.only), encoding="utf-8")
         return
     result = measure()
     report(result)

@@ -12,6 +12,7 @@ judged by its own finest grid, and this one by its smallest rtol: the comparison
 own answer.
 """
 
+from importlib.metadata import version
 from importlib.util import find_spec
 from time import perf_counter
 
@@ -109,7 +110,7 @@ def peers(seconds) -> list[dict]:
         for points in () if _missing(name) else GRIDS:
             error = abs(code(smooth, points, SMOOTH_WIDTH) / exact - 1)
             used = seconds(lambda: code(smooth, points, SMOOTH_WIDTH))  # noqa: B023
-            rows.append({"code": name, "grid": points, "seconds": used, "error": error})
+            rows.append({"code": f"{name} {version(name)}", "grid": points, "seconds": used, "error": error})
     for rtol in (1e-3, 1e-6, 1e-9):
         for size in (1, BATCH):
             error = abs(ours(rtol, size) / exact - 1)
@@ -132,8 +133,9 @@ def rough_peers() -> list[dict]:
         rows += _missing(name)
         grids = () if _missing(name) else [32 * points for points in IN_A_PITCH]
         answers = [(points, *_timed(lambda: code(rough, points, ROUGH_WIDTH))) for points in grids]  # noqa: B023
-        rows += [{"code": name, "grid": points, "seconds": used, "D": D, "error": abs(D / answers[-1][1] - 1)}
-                 for points, D, used in answers]  # fmt: skip
+        for points, D, used in answers:
+            code_and_grid = {"code": f"{name} {version(name)}", "grid": points}
+            rows.append(code_and_grid | {"seconds": used, "D": D, "error": abs(D / answers[-1][1] - 1)})
     exact = ours_rough(1e-12, 1)
     for rtol in (1e-1, 1e-3, 1e-6):
         for size in (1, BATCH):

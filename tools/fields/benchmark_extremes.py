@@ -1,9 +1,10 @@
-"""The time of extremes and first yield: `python tools/fields/benchmark_extremes.py [CHECKOUT]`.
+"""The time of extremes and first yield: `python tools/fields/benchmark_extremes.py [CHECKOUT | --json]`.
 
 It prints processor times of one process: the first call, and the shortest of the next ones. With another checkout of
-this repository the two take turns, and it prints ratios as well.
+this repository the two take turns, and it prints ratios as well. With --json it prints the rows of docs/speed.md.
 """
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -62,6 +63,20 @@ told("first_yield_200_of_one_pair", loads("body", random.uniform(5e8, 5e9, 200),
 """
 
 
+#: Name in the program -> what it computes, in the words of docs/speed.md.
+WORDS = {
+    "50_smooth_films": "extremes of 50 smooth contacts on 3 µm of TiN, h/a = 0.02 to 0.25",
+    "film_h/a=0.02": "extremes of one, h/a = 0.02",
+    "film_h/a=0.005": "extremes of one, h/a = 0.005",
+    "100_rough_layers": "extremes of 100 rough contacts on random layers",
+    "5_on_two_layers": "extremes of 5 smooth contacts on DLC on Cr on steel",
+    "first_yield_layer": "first yield of TiN at 5 GPa",
+    "first_yield_body": "first yield of steel below TiN at 2 GPa",
+    "first_yield_rough_layer": "first yield of TiN below a rough punch",
+    "first_yield_200_of_one_pair": "first yield of steel below 200 thicknesses of TiN",
+}
+
+
 def times_of(checkout: Path) -> dict[str, list[float]]:
     """Name -> the first and the shortest further time."""
     output = subprocess.run(
@@ -70,7 +85,18 @@ def times_of(checkout: Path) -> dict[str, list[float]]:
     return {name: [float(first), float(later)] for name, first, later in map(str.split, output.splitlines())}
 
 
+def rows() -> list[dict]:
+    """A row for each name, as docs/speed.md has it."""
+    times = times_of(ROOT)
+    return [
+        {"computed": words, "first_call_s": times[name][0], "later_s": times[name][1]} for name, words in WORDS.items()
+    ]
+
+
 def main() -> None:
+    if sys.argv[1:] == ["--json"]:
+        print(json.dumps(rows()))
+        return
     checkouts = [ROOT, *(Path(path).resolve() for path in sys.argv[1:])]
     rounds = [[times_of(checkout) for checkout in checkouts] for _ in range(ROUNDS if len(checkouts) > 1 else 1)]
     for name in rounds[0][0]:

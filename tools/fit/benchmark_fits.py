@@ -10,12 +10,13 @@ import os
 import tempfile
 import tracemalloc
 import warnings
-from datetime import date
+from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 from time import process_time
 
 import numpy as np
+from scipy.ndimage import gaussian_filter
 
 import study
 from study import roughness
@@ -34,7 +35,20 @@ FITS = {
     "E1 and w, Maugis, layer on a rigid base": (GEL | RING, {"E1": "5 kPa", "w_adhesion": "0.4 mJ/m^2"}, 1),
     "E1 and w, Maugis, sphere": (GEL | RING | {"shape": "sphere"}, {"E1": "5 kPa", "w_adhesion": "0.4 mJ/m^2"}, 1),
 }
-DEPTHS = np.linspace(-0.5e-6, 1e-6, 80)
+#: Fits of the same kind without intervals, of one curve.
+PLAIN = {
+    "E on a half-space, plain": (BARE, {"E2": "5 kPa"}),
+    "E1 of a layer on a rigid base, plain": (GEL, {"E1": "5 kPa"}),
+    "E1 of a layer on a soft base, plain": (GEL | SOFT, {"E1": "5 kPa"}),
+}
+#: Depths of the curves, and those of the plain fits.
+DEPTHS, MANY = (np.linspace(-0.5e-6, 1e-6, points) for points in (80, 200))
+#: What may be asked beside the heights of a map.
+WAYS = (
+    ({}, {}),
+    ({}, {"form": "sphere", "rows": "median", "cutoff": [3e-6, 6e-6]}),
+    ({"despike": 5}, {"method": "summits"}),
+)
 #: After a first call the shortest of so many times counts.
 TIMES = 3
 
@@ -50,11 +64,11 @@ def least(function) -> float:
     return min(seconds)
 
 
-def curves(inputs: dict, true: dict, count: int) -> np.ndarray:
+def curves(inputs: dict, true: dict, count: int, depths: np.ndarray = DEPTHS) -> np.ndarray:
     """Loads (count, points) with noise of 1 % of the largest."""
-    deep = [f"{depth!r} m" for depth in DEPTHS.tolist() if depth > 0 or "w_adhesion" in true]
+    deep = [f"{depth!r} m" for depth in depths.tolist() if depth > 0 or "w_adhesion" in true]
     P = np.nan_to_num(study.solve(**inputs, **true, D=deep, x=2, profiles=False, progress=False).P.values)
-    P = np.concatenate([np.zeros(len(DEPTHS) - len(P)), P])
+    P = np.concatenate([np.zeros(len(depths) - len(P)), P])
     return P + 0.01 * P.max() * np.random.default_rng(3).standard_normal((count, len(P)))
 
 
@@ -72,7 +86,14 @@ def fits() -> list[dict]:
         def fit(measured=measured, free=free, inputs=inputs | begin):
             return study.fit(measured, free=free, progress=False, **inputs)
 
-        rows.append({"fit": name, "curves": count, "seconds_a_curve": least(fit) / count})
+        rows.append({"fit": name, "curves": count, "points": len(DEPTHS), "seconds_a_curve": least(fit) / count})
+    for name, (inputs, true) in PLAIN.items():
+        measured = {"D": (MANY, "m"), "P": (curves(inputs, true, 1, MANY), "N")}
+
+        def plain(measured=measured, true=true, inputs=inputs):
+            return study.fit(measured, free=[*true], intervals=None, progress=False, **inputs)
+
+        rows.append({"fit": name, "curves": 1, "points": len(MANY), "seconds_a_curve": least(plain)})
     return [*rows, *nanite_fit()]
 
 
@@ -83,30 +104,41 @@ def nanite_fit() -> list[dict]:
     import lmfit
     from nanite.model import models_available
 
-    model, loads = models_available["hertz_para"], curves(BARE, {"E2": "5 kPa"}, 1)[0]
+    model, loads = models_available["hertz_para"], curves(BARE, {"E2": "5 kPa"}, 1, MANY)[0]
     params = model.get_parameter_defaults()
     params["R"].value, params["nu"].value = 5e-6, 0.45
-    seconds = least(lambda: lmfit.minimize(model.residual, params, args=(-DEPTHS, loads)))
-    return [{"fit": "Hertz by nanite, E alone without intervals", "curves": 1, "seconds_a_curve": seconds}]
+    seconds = least(lambda: lmfit.minimize(model.residual, params, args=(-MANY, loads)))
+    name = f"Hertz by nanite {version('nanite')}, E on a half-space, plain"
+    return [{"fit": name, "curves": 1, "points": len(MANY), "seconds_a_curve": seconds}]
 
 
-def scans(points: int = 1024) -> list[dict]:
+def scans(points: int = 2048) -> list[dict]:
     """The time of reading a text over that of numpy, and the memory of reading a map, in arrays of its size."""
-    z = 1e-7 * np.random.default_rng(1).standard_normal((points, points))
+    z, rows = gaussian_filter(np.random.default_rng(1).standard_normal((points, points)), 2), []
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "map.txt"
-        np.savetxt(path, 1e9 * z, fmt="%.6e")
-        ours = least(lambda: roughness.read(path, unit="um", height_unit="nm", dx=1.0))
-        numpy = least(lambda: np.loadtxt(path))
+        for share in (0.0, 0.01):
+            heights = np.where(np.random.default_rng(2).random(z.shape) < share, np.nan, z)
+            np.savetxt(path, heights, fmt="%.6e")
+            ours = least(lambda: roughness.read(path, unit="um", height_unit="nm", dx=1.0, missing="skip"))
+            name = f"text of {points} × {points} points, 1 % of them nan" if share else f"text of {points} × {points}"
+            rows.append(
+                {"scan": f"{name}, time over numpy.loadtxt", "measured": ours / least(lambda: np.loadtxt(path))}
+            )
+        np.save(Path(folder) / "map.npy", z)
+        most = max(most_memory(Path(folder) / "map.npy", *way) for way in WAYS)
+    name = f"memory of {points} × {points} points and their statistics, in arrays of their size"
+    return [*rows, {"scan": name, "measured": most / z.nbytes}]
+
+
+def most_memory(path: Path, how: dict, what: dict) -> int:
+    """The largest memory that reading and measuring a map takes, in bytes."""
     tracemalloc.start()
-    scan = roughness.height_map(z, dx=1e-6)
-    roughness.measure(scan)
-    most = 1 + tracemalloc.get_traced_memory()[1] / z.nbytes
-    tracemalloc.stop()
-    return [
-        {"scan": f"text of {points} × {points} points, time over numpy.loadtxt", "measured": ours / numpy},
-        {"scan": "memory of a map and its statistics, in arrays of its size", "measured": most},
-    ]
+    try:
+        roughness.measure(roughness.read(path, unit="um", height_unit="nm", dx=1.0, **how), **what)
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
 
 
 def table(rows: list[dict]) -> str:
@@ -126,4 +158,4 @@ def table(rows: list[dict]) -> str:
 if __name__ == "__main__":
     os.environ |= {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL")}
     warnings.simplefilter("ignore")
-    print(f"These two tables are of {date.today()}.", table(fits()), table(scans()), sep="\n\n")
+    print(table(fits()), table(scans()), sep="\n\n")

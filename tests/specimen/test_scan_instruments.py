@@ -40,6 +40,29 @@ def netcdf(path, heights, unit="m"):
     return path
 
 
+def metropro(counts: np.ndarray, phase_res: int, pixel: float) -> bytes:
+    """A map of MetroPro of Zygo, format 1: whole numbers in rows, whose unit follows from a wavelength of 633 nm, the
+    factor 0.5, and the resolution of the phase."""
+    header, (rows, columns) = bytearray(834), counts.shape
+    fields = {0: (">I", 0x881B036F), 4: (">HI", 1, 834), 64: (">4HI", 0, 0, columns, rows, 4 * counts.size)}
+    fields |= {164: (">ff", 0.5, 633e-9), 176: (">f", 1.0), 184: (">f", pixel), 218: (">h", phase_res)}
+    for place, (form, *values) in fields.items():
+        struct.pack_into(form, header, place, *values)
+    return bytes(header) + counts.astype(">i4").tobytes()
+
+
+@pytest.mark.parametrize(("phase_res", "resolution"), [(0, 4096), (1, 32768), (2, 131072)])
+def test_metropro(tmp_path, phase_res, resolution):
+    """The resolution of the phase, which makes heights 8 or 32 times too small or large; L/N, and not L/(N - 1); points
+    that are not measured; rows from the first to the last."""
+    unit, file = 0.5 * 633e-9 / resolution, tmp_path / "a.dat"
+    counts = np.rint(np.cumsum(Z, axis=1) / Z.std() * 100).astype(int)
+    file.write_bytes(metropro(np.where(counts == counts.max(), 2147483640, counts), phase_res, 2.5e-7))
+    scan = roughness.read(file, missing="skip")
+    assert_allclose(scan.z, np.where(counts == counts.max(), np.nan, counts * unit), rtol=1e-6)
+    assert_allclose(scan.steps, 2.5e-7, rtol=1e-6)
+
+
 def test_missing_points_of_an_instrument(tmp_path):
     """8 of 38 files were refused for them, four with less than 0.25 %."""
     holes = np.where(np.greater(Z, np.sort(Z.ravel())[-5]), np.nan, Z)

@@ -241,6 +241,7 @@ def test_a_mask_of_gwyddion_marks_and_its_heights_are_taken(tmp_path, z, unit, s
     for mask in (z > 1, z > z.max() - 0.2):
         scan = roughness.read(gwyddion(tmp_path / "a.gwy", z * UM * size, mask, unit))
         assert_allclose(scan.z, z * UM, rtol=1e-12)
+        assert_allclose(scan.steps, (UM, UM / 2), rtol=1e-12)  # L/N
         assert any(f"{mask.sum()} of 6144 points are under a mask of Gwyddion" in note for note in scan.notes)
         bare = roughness.read(gwyddion(tmp_path / "b.gwy", z * UM * size, None, unit))
         assert_allclose(scan.z, bare.z, rtol=1e-12)

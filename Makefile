@@ -67,6 +67,10 @@ docs: $(READY) ## the site of the documentation, with a gallery: docs/_build/htm
 	$(VENV)/bin/sphinx-build --quiet -W -n --keep-going -c docs/site docs docs/_build/html
 	@echo docs/_build/html/index.html
 
+# The tests of the site need what `make docs` and `make explorer-test` install.
+docs-test: docs ## the tests of the site: links, search, widths of pages, notebooks
+	$(VENV)/bin/python -m pytest -q --verify tests/site
+
 test: $(READY) ## the tests, in some minutes; what each room may cost is in tests/budget.toml
 	$(PYTEST) --budget
 
@@ -75,7 +79,7 @@ verify: $(READY) ## all tests, on other kernels, with the lowest versions, of th
 	@$(MAKE) --no-print-directory kernels ALL=--verify
 	@$(MAKE) --no-print-directory lowest
 	@$(MAKE) --no-print-directory explorer-test
-	@$(MAKE) --no-print-directory docs
+	@$(MAKE) --no-print-directory docs-test
 
 # Debian's node and chromium; without them these tests are skipped.
 explorer-test: $(READY) ## install node, chromium and playwright, and test the page of `roughcoat explore` with them

@@ -62,7 +62,7 @@ nitpicky = True
 
 
 #: Sphinx's search fetches a page to quote it below its title; if the site is opened from disk, TEXTS has the page.
-ASIDES = '<h1>.*?</h1>|<a class="headerlink".*?</a>|<div class="sphx-glr-download-link-note.*?</div>'
+ASIDES = '<a class="headerlink".*?</a>|<div class="sphx-glr-download-link-note.*?</div>'
 FETCH = """if (location.protocol === "file:") {
   const root = new URL(document.documentElement.dataset.content_root || "./", location.href).href;
   window.fetch = async (url) => {

@@ -15,7 +15,7 @@ from study.scan_laws.patch import Pressing, patch_of
 
 #: Nominal pressure over h'E*, and the factors of the pressures beside it: a law has five rows or more. Points a pixel
 #: along each side, of the finer contact.
-PRESSURE, BESIDE, FINER = 0.1, (0.5, 0.7, 1.0, 1.4, 2.0), 4
+PRESSURE, SHARES, FINER = 0.1, (0.5, 0.7, 1.0, 1.4, 2.0), 4
 _RATIOS = ("area", "p_max", "finer area", "finer p_max", "theory")
 _HEADING = """\
 | surface | kurtosis | area | $p_{max}$ | error of the law | finer: area | $p_{max}$ | $\\lambda h'E^\\ast/p$ |
@@ -51,12 +51,12 @@ def row(scan: roughness.Scan) -> dict[str, float]:
     """The numbers of a row of the table."""
     z, asperities = scan.z - scan.z.mean(), roughness.measure(scan, form="mean")
     p = PRESSURE * patch_of(scan, "mean", None, "given", 1, "row").slope
-    law = roughness.law(scan, pressures=p * np.array(BESIDE), form="mean", periodic="given", progress=False)
+    law = roughness.law(scan, pressures=p * np.array(SHARES), form="mean", periodic="given", progress=False)
     patch = patch_of(scan, "mean", None, "given", FINER, "row")
     _, lam, p_max = Pressing(patch, None).at(p)
     numbers = {"Nbar": asperities.Nbar, "Ra": asperities.Ra, "sigma": asperities.sigma, "cut": asperities.cut}
     spheres = LAWS["normal_heights"].at(p, 1.0, **numbers)
-    at = BESIDE.index(1.0)
+    at = SHARES.index(1.0)
     return {
         "kurtosis": float((z**4).mean() / z.var() ** 2),
         "area": float(law.lam[at] / spheres.lam),

@@ -10,7 +10,7 @@ from .bases import is_bare, is_stack, is_thin_layer, on_springs
 from .body import BODIES
 from .body.graded import graded_first
 from .body.half_space import STIFF, local_compliance
-from .body.stacked import stack, thin_stack
+from .body.stacked import layers_of, stack, thin_stack
 from .kernels.two_layers import TwoLayers, layer_modulus, thin_layer_coefficients
 from .laws import try_out
 from .numerics.batch import alike
@@ -142,8 +142,15 @@ def felt_body(part, body=None):
     if kind == _HALF_SPACE:
         return None
     if kind >= _GRADED:
-        return stack(part.but(sublayers=_SUBLAYERS), octaves=int(kind) - _GRADED)
+        _, sublayers, octaves = felt_sublayers(part)
+        return stack(part.but(sublayers=sublayers), octaves=octaves)
     return BODIES[str(part.base[0])](part) if body is None else body
+
+
+def felt_sublayers(part):
+    """The layers of cases whose first one is graded, :func:`.body.stacked.layers_of`; the number (B,) of sublayers in
+    an octave of the depth below asperities; and the number of octaves of the first layer."""
+    return layers_of(part), np.full(len(part), _SUBLAYERS), int(kinds_of_laws(part)[0]) - _GRADED
 
 
 def law_of(part, body=None):

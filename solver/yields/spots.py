@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 
 from ..bases import is_bare
-from ..body.graded import graded_first
 from ..fields.contact import have_fields, pressures_of
 from ..fields.invariants import mises
 from ..kernels.two_layers import layer_modulus
@@ -50,7 +49,6 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0):
     largest = np.full((3, len(problem)), np.nan)
     rough = np.isfinite(problem.Nbar) & np.isfinite(problem.Ra) & problem.rough()
     there, felt = (solution.status == Status.CONVERGED) & rough, problem.feels_layer()
-    there &= ~(felt & graded_first(problem))
     residual = np.broadcast_to(residual, len(problem)) / problem.E2
     for some, stress in (there & ~felt, _on_half_space), (there & felt & have_fields(problem, solution), _on_body):
         index = np.flatnonzero(some)

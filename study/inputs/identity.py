@@ -28,13 +28,13 @@ from .vocabulary import CONTROLS
 STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
 #: In the digests of studies with strengths, also those of named materials: raised when the masks of `validity` that
 #: compare with strengths change.
-_OF_STRENGTHS = "3"
+_OF_STRENGTHS = "4"
 #: In the keys of rough cases on layers thinner than the pitch: raised when only their numbers change.
 _OF_CELLS = "asperities far apart on a layer, 2"
 #: Stresses depend on these even where the contact does not, as on nu2 of a body on which the layer slides.
 RATIOS = ("nu1", "nu2")
 #: In the keys and digests of stored stresses: raised when the search for the largest ones finds others.
-_OF_STRESSES = "3"
+_OF_STRESSES = "4"
 #: In the keys of cases that stick, or whose shape is not the paraboloid, beside NUMERICS_VERSION: raised when only
 #: their numbers change.
 _OF_SHAPES = "4"

@@ -62,3 +62,39 @@ def test_below_a_spot_on_a_uniform_layer_above_a_graded_one():
     assert_allclose(of_spots[1], of_spots[0], rtol=1e-6)
     assert largest[2]["mises2_spot"][0] > 1.05 * largest[0]["mises2_spot"][0]
     assert_allclose(of_spots[2], largest[2]["mises1_spot"][0], rtol=1e-6)
+
+
+def below_a_spot(layer, monkeypatch, sublayers, **case):
+    """Solved, the largest stresses below the central spot, and below any, on one layer under coarse asperities."""
+    monkeypatch.setattr(scaling, "_SUBLAYERS", sublayers)
+    rough = {"P": 1e-4, "Nbar": 100.0, "Ra": 0.02, "asperities_on": "layer", "micro": "disc_cell", "nu2": 0.3}
+    problem = Problem.of(layers=[layer], **rough | case)
+    solution = solve(problem)
+    return problem, solution, {name: v[0, 0] for name, v in central_spot.of_contacts(problem, solution).items()}
+
+
+TOP = {"h": 0.02, "n": 5.0, "nu": 0.2, "bonding": "bonded"}
+ONE_MODULUS = GRADED | TOP | {"n": [5.0, 5.000005]}
+
+
+def test_below_the_central_spot_on_a_graded_layer_of_one_modulus(monkeypatch):
+    """As on the uniform layer, in the sublayers and below them."""
+    one, cut = (below_a_spot(layer, monkeypatch, 2)[2] for layer in (TOP, ONE_MODULUS))
+    for name, value in one.items():
+        assert_allclose(cut[name], value, rtol=2e-5, err_msg=name)
+
+
+@pytest.mark.parametrize("heights", [{}, {"micro": "normal_heights", "sigma": 0.002, "cut": 3.0}])
+def test_below_any_spot_on_a_graded_layer_of_one_modulus(monkeypatch, heights):
+    """By a table of radii, and below the highest summit of random heights."""
+    both = (below_a_spot(layer, monkeypatch, 2, **heights)[:2] for layer in (TOP, ONE_MODULUS))
+    one, cut = (spots.of_contacts(*solved)[0, 0] for solved in both)
+    assert one > 0 and abs(cut / one - 1) < 1e-4
+
+
+def test_stresses_below_a_spot_converge_with_sublayers(monkeypatch):
+    """A layer softer by 5 at its bottom: twice as many change them by less than 1 %, which they change the load by."""
+    layer = GRADED | TOP | {"n": [5.0, 1.0]}
+    few, many = (below_a_spot(layer, monkeypatch, sublayers)[2] for sublayers in (2, 4))
+    for name in ("mises1_spot", "mises2_spot", "tau_interface_spot"):
+        assert 0 < abs(many[name] / few[name] - 1) < 0.01, name

@@ -8,7 +8,6 @@ from the axis.
 import numpy as np
 
 from ...bases import is_stack
-from ...body.graded import graded_first
 from ...fields.contact import have_fields, pressures_of
 from ...fields.invariants import mises
 from ...laws.cell.sums import LATTICES
@@ -86,7 +85,7 @@ def spot_of(problem, solution):
 
 def _cells(problem, solution, mu, residual):
     """Yield the cells of contacts, their :class:`~..loaded.Loaded`, and their indices and largest pressures in E2*."""
-    index = np.flatnonzero(problem.feels_layer() & have_fields(problem, solution) & ~graded_first(problem))
+    index = np.flatnonzero(problem.feels_layer() & have_fields(problem, solution))
     if not len(index):
         return
     residual = np.broadcast_to(residual, len(problem)) / problem.E2
@@ -176,7 +175,7 @@ class _Case:
         """Stresses (4, R) at the interface at radii r (R,)."""
         cell, whole = self.cell, self.loaded.stresses(r, np.array([self.h]), False)[:, 0, 0, 0]
         # the stresses in the body: only sz and trz count, which are continuous, and need fewer waves there
-        return whole + cell.unit * cell.stresses(cell.b[0], r / cell.pitch, np.array([cell.h]), 1)[:, 0]
+        return whole + cell.unit * cell.stresses(cell.b[0], r / cell.pitch, np.array([cell.h]), cell.below)[:, 0]
 
 
 def _doubling(start, first, last):

@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
-from ...fields.below_spots import ROUGH, below_spot
+from ...fields.below_spots import ROUGH
 from ...laws.cell.peak import may_leave_the_middle
-from ...laws.cell.spot import pieces, spots
+from ...laws.cell.spot import pieces
 from ...numerics.caches import Cache
 from ..peaks import chebyshev_nodes
 
@@ -81,20 +81,26 @@ def table_of(felt):
     spot, if that has a load of its own."""
     member = felt.member
     if member.alone:
-        rho, z = _places(member.cell, felt.b[0])
+        rho, z = _places(felt, felt.b[0])
         return One(felt.stresses(felt.b[0], felt.b[0] * rho, z, 0, ROUGH))
-    return _cache.get(member.key, lambda: _table(member.cell, felt.layers, member.reach))
+    return _cache.get((member.key, *profile_of(felt)), lambda: _table(felt))
 
 
-def _places(cell, b):
+def profile_of(felt):
+    """The words and numbers of a graded first layer, (); nothing of a uniform one."""
+    return () if felt.graded is None else tuple(values[0, 0] for values in felt.graded.graded.values())
+
+
+def _places(felt, b):
     """Radii from the axis, in b, and depths, in l, at which a table has the stresses below a spot of radius b."""
-    off_axis = may_leave_the_middle(cell)
+    off_axis = may_leave_the_middle(felt.member.cell)
     rho = np.sin(np.pi / 4 * (1 + chebyshev_nodes(_RADII))) if off_axis else np.zeros(1)
-    return rho, deepest(b, 1 / cell.pitch) * (1 + chebyshev_nodes(_DEPTHS)) / 2
+    return rho, deepest(b, felt.h) * (1 + chebyshev_nodes(_DEPTHS)) / 2
 
 
-def _table(cell, layers, reach):
-    limit, N = min(_SMALL / cell.pitch, reach), pieces(cell, reach)
+def _table(felt):
+    cell, reach = felt.member.cell, felt.member.reach
+    limit, N = min(_SMALL * felt.h, reach), pieces(cell, reach)
     count = int(np.polynomial.polynomial.polyval(np.log(reach / limit), _MORE)) if reach > limit else 1
     nodes = [-np.cos(np.pi * (np.arange(terms) + 0.5) / terms) for terms in (_FEW, count)]
     radii = limit * (1 + nodes[0]) / 2, limit * (reach / limit) ** ((1 + nodes[1]) / 2)
@@ -102,8 +108,8 @@ def _table(cell, layers, reach):
     for x, b in zip(nodes, radii, strict=True):
         values = []
         for radius in b:
-            spot, (rho, z) = spots(cell, [radius], N), _places(cell, radius)
-            values.append(below_spot(cell, spot, layers, radius * rho, z, 0, ROUGH) / (2 * radius / np.pi))
+            rho, z = _places(felt, radius)
+            values.append(felt.stresses(radius, radius * rho, z, 0, ROUGH, N) / (2 * radius / np.pi))
         matrix = np.linalg.inv(chebvander(x, len(x) - 1))
         series.append(np.tensordot(matrix, np.array(values), 1))
     return Table(reach, limit, *series)

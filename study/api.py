@@ -16,7 +16,6 @@ from .inputs.places import study_file
 from .inputs.reading import read
 from .scan_laws.words import with_rows
 from .store.blocks import laws_in
-from .store.clean import clean
 from .store.window_files import glance, verified
 from .store.windows import Store
 from .work.cost import Estimate
@@ -173,6 +172,8 @@ class Study:
         >>> study.load("main_case", results="of_an_example").clean()
         ['of_an_example/.main_case.blocks: is not there, nothing to remove']
         """
+        from .store.clean import clean
+
         return clean(self._store)
 
     def open(self, partial: bool = False) -> xr.Dataset:

@@ -14,7 +14,6 @@ from ..inputs.vocabulary import NOT_RUN
 from ..terminal import answer, counted, on_one_line, say
 from ..work.cost import Estimate, describe
 from ..work.plan import Report, status_values
-from .checking import doubtful_lines
 
 
 def items(options) -> list:
@@ -50,6 +49,8 @@ def status(options, file: str) -> int:
 
 def run(options, file: str) -> int:
     """Compute what is missing, or say what that would cost."""
+    from .checking import doubtful_lines
+
     study = _opened(options, file)
     for line in doubtful_lines(study.definition):
         say(line, sys.stderr)
@@ -104,6 +105,8 @@ def completed(study: Study, **options) -> int:
     answer(report_line(report, name))
     in_parts = report.path.is_dir()  # parts are too large to be read again: their `validity` has the flags
     if study.definition.scene and report.complete and report.computed and not in_parts:  # as study.solve warns
+        from .checking import doubtful_lines
+
         earlier_lines = doubtful_lines(study.definition)  # `run` wrote these before it computed
         for line in (f"{name}: beware: {text}" for text in doubts(study.open())):
             if line not in earlier_lines:

@@ -5,23 +5,23 @@ import logging
 import sys
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
 from .. import catalogue
 from ..api import load
 from ..data.provenance import command_line
-from ..figures import figure_results
-from ..figures.plots import shaped
 from ..figures.registry import is_measured, study_beside
 from ..figures.style import style
 from ..inputs.definition import StudyError
 from ..inputs.grid import twins
 from ..inputs.places import is_study, study_file
 from ..terminal import answer, on_one_line, say
-from ..work.second_process import SecondProcess
 from .computing import completed
-from .spreadsheet import results_of, write_rows
+
+if TYPE_CHECKING:
+    from ..work.second_process import SecondProcess
 
 log = logging.getLogger(__name__)
 KINDS = {"plot": "figure", "table": "table"}
@@ -54,6 +54,9 @@ def plot(options, name: str) -> int:
 
 def _curves(options, name: str) -> int:
     """Draw one quantity of the results of a study, or of a file, against another."""
+    from ..figures.plots import shaped  # it imports scipy.interpolate, and pandas, which figures of studies do without
+    from .spreadsheet import results_of
+
     if not (options.x and options.y):
         raise StudyError(["curves of results need both --x and --y, such as --x P --y p_max"])
     for i, _ in twins([axis for axis, _ in options.where]):
@@ -90,11 +93,15 @@ def table(options, name: str) -> int:
     """Write a table, or the results of a study or of a file as rows, and say which files they are in."""
     if name in catalogue.names("table") or not (Path(name).suffix == ".nc" or is_study(name)):
         return _write(options, name)
+    from .spreadsheet import write_rows  # it imports pandas
+
     return write_rows(options, name)
 
 
 def tradeoff(options, name: str) -> int:
     """Measure what no study file makes, of this name, and say in which file it is."""
+    from ..figures import figure_results
+
     force = getattr(options, "force", False)  # `plot` and `table` have no such option
     figure_results.results(name, options.results, force=force, command=command_line())
     answer(f"{options.results}/{name}.nc")
@@ -132,7 +139,7 @@ def _prepared(options, kind: str, name: str) -> int:
     return max((_ready(options, study, study_beside(kind, name)) for study in studies), default=0)
 
 
-def _second_process(options, kind: str, bare: bool) -> SecondProcess | None:
+def _second_process(options, kind: str, bare: bool) -> "SecondProcess | None":
     """The second process of a command that draws many figures; None for a few, since it takes a while to start.
 
     It gets the figures that can be drawn. Studies are run before the first figure is drawn.
@@ -140,6 +147,8 @@ def _second_process(options, kind: str, bare: bool) -> SecondProcess | None:
     if kind == "figure" and len(options.names) >= MANY and not hasattr(options, "second"):
         names = [name for name in dict.fromkeys(options.names) if _waits(options, kind, name, bare)]
         tasks = {name: (kind, name, options.results, options.folder, bare) for name in names}
+        from ..work.second_process import SecondProcess
+
         options.second = SecondProcess(catalogue.written, tasks)
         atexit.register(options.second.end)
     return getattr(options, "second", None)

@@ -124,7 +124,7 @@ def test_anything_else_that_fails_is_said_in_a_line(tmp_path, monkeypatch, capsy
     def fails(*_, **__):
         raise RuntimeError("what it is")
 
-    monkeypatch.setattr("study.commands.drawing.shaped", fails)
+    monkeypatch.setattr("study.figures.plots.shaped", fails)
     assert main(["plot", str(tmp_path / "a.nc"), "--x", "P", "--y", "y"]) == 1
     said = f"{tmp_path / 'a.nc'}: cannot be drawn: RuntimeError: what it is; -v before the command shows where\n"
     assert capsys.readouterr().err == said

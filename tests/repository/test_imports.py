@@ -266,6 +266,12 @@ def test_light_modules_stay_light():
     alone("; ".join(f"import study.{module}; {NOT_HEAVY}" for module in (*light, "specimen.materials")))
 
 
+def test_figures_of_studies_do_without_those_of_any_results():
+    """A quarter of the time of `plot fig03` was imports of what it does not use."""
+    unused = "{'study.figures.plots', 'study.commands.spreadsheet', 'scipy.interpolate'}"
+    alone(f"import study.commands.drawing; assert not {unused} & set(sys.modules)")
+
+
 def test_a_contact_of_named_materials_is_said_without_a_dataset():
     """With its spreads and strengths, and the load at which the first of them is reached."""
     case = "R='5 mm', punch='alumina', layer='TiN', body='steel 52100', h='3 um', P='10 N', bonding='bonded'"

@@ -19,7 +19,10 @@ def test_a_notebook_runs(name, tmp_path, monkeypatch):
     nbclient = pytest.importorskip("nbclient", reason="make docs installs nbclient")
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
     made = nbformat.read(ROOT / f"docs/notebooks/{name[8:]}.ipynb", as_version=4)
-    limits = {"timeout": 120, "startup_timeout": 120}  # seconds, of a cell and of a kernel that starts on a busy machine
+    limits = {
+        "timeout": 120,
+        "startup_timeout": 120,
+    }  # seconds, of a cell and of a kernel that starts on a busy machine
     nbclient.NotebookClient(made, **limits, resources={"metadata": {"path": str(tmp_path)}}).execute()
     shown = [output for cell in made.cells if cell.cell_type == "code" for output in cell.outputs]
     assert any("image/png" in output.get("data", {}) for output in shown)

@@ -42,7 +42,7 @@ def __getattr__(name: str) -> Any:
 
 
 def _scipy_special() -> ModuleType:
-    """scipy.special. Its import copies all public names of numpy, which imports numpy.f2py too: 60 of 420 ms of processor
+    """scipy.special. Its import copies all public names of numpy, and so imports numpy.f2py: 60 of 420 ms of processor
     time (busy machine, 2026-11-30). Meanwhile another value has that name, which nobody uses."""
     names = vars(np)
     if "scipy.special" in sys.modules or "f2py" in names:

@@ -15,10 +15,10 @@ from lowest import lowest
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
-TARGETS = ("help", "docs", "docs-test", "setup", "figures", "table1", "paper_numbers", "validity", "map", "extremes", "tradeoff",
-           "picard_domain", "literature", "yield_maps", "validate", "test", "verify", "explorer-test", "check",
-           "kernels", "lowest", "mutants", "sanitize", "fuzz", "bench", "speed", "start", "fit_coverage", "lint",
-           "clean")  # fmt: skip
+TARGETS = ("help", "docs", "docs-test", "setup", "figures", "table1", "paper_numbers", "validity", "map", "extremes",
+           "tradeoff", "picard_domain", "literature", "yield_maps", "validate", "test", "verify", "explorer-test",
+           "check", "kernels", "lowest", "mutants", "sanitize", "fuzz", "bench", "speed", "start", "fit_coverage",
+           "lint", "clean")  # fmt: skip
 
 #: Files at the top of the repository.
 TOP = ("CHANGELOG.md", "CITATION.cff", "CODE_OF_CONDUCT.md", "CONTRIBUTING.md", "LICENSE", "MANIFEST.in", "Makefile",

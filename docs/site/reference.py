@@ -72,7 +72,7 @@ def names() -> Iterator[tuple[str, str]]:
         rows = []
         for name in package.__all__:
             full = f"{package.__name__}.{name}"
-            rows.append(f"   * - :doc:`{full} <{full}>`\n     - {_first_line(getattr(package, name))}")
+            rows.append(f"   * - :doc:`{name} <{full}>`\n     - {_first_line(getattr(package, name))}")
             yield f"{full}.rst", _page(full, getattr(package, name))
         listed.append(_under(package.__name__, "-") + ".. list-table::\n\n" + "\n".join(rows) + "\n")
     tree = "\n.. toctree::\n   :hidden:\n   :glob:\n\n   roughcoat.*\n   solver.*\n"

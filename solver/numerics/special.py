@@ -5,9 +5,11 @@ beyond the ladder need it. K and the Radau nodes of the ladder are available her
 """
 
 import math
+import sys
 from functools import lru_cache
 from importlib import import_module
 from importlib.resources import files
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -34,9 +36,23 @@ _MOST = 100_000
 def __getattr__(name: str) -> Any:
     if name.startswith("__"):  # Python asks for __path__ when something is imported from here
         raise AttributeError(name)
-    value = getattr(import_module("scipy.special"), name)
+    value = getattr(_scipy_special(), name)
     globals()[name] = value
     return value
+
+
+def _scipy_special() -> ModuleType:
+    """scipy.special. Its import copies all public names of numpy, and so imports numpy.f2py: 60 of 420 ms of processor
+    time (busy machine, 2026-11-30). Meanwhile another value has that name, which nobody uses."""
+    names = vars(np)
+    if "scipy.special" in sys.modules or "f2py" in names:
+        return import_module("scipy.special")
+    names["f2py"] = None
+    try:
+        return import_module("scipy.special")
+    finally:
+        if names["f2py"] is None:  # otherwise another thread has imported it
+            del names["f2py"]
 
 
 def ellipkm1(x: np.ndarray, many: bool = False) -> np.ndarray:
@@ -47,7 +63,7 @@ def ellipkm1(x: np.ndarray, many: bool = False) -> np.ndarray:
     numbers in all.
     """
     if many or x.size > _MOST:
-        return import_module("scipy.special").ellipkm1(x)
+        return _scipy_special().ellipkm1(x)
     log = np.fromiter(map(math.log, x.ravel().tolist()), float, x.size).reshape(x.shape)
     large = _polynomial(_P, x) - log * _polynomial(_Q, x)
     return np.where(x > _LEAST, large, _P[-1] - 0.5 * log)
@@ -65,7 +81,7 @@ def radau_points(n: int) -> np.ndarray:
     """The Gauss-Radau nodes except the last one, (n - 1,) in (-1, 1): the roots of a Jacobi polynomial. Those of meshes
     of the ladder stand in radau.csv, which tools/make_radau.py writes."""
     points = _of_ladder().get(n)
-    return import_module("scipy.special").roots_jacobi(n - 1, 1.0, 0.0)[0] if points is None else points
+    return _scipy_special().roots_jacobi(n - 1, 1.0, 0.0)[0] if points is None else points
 
 
 @lru_cache(maxsize=1)

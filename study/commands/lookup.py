@@ -10,7 +10,7 @@ from .. import pages
 from ..inputs.definition import StudyError
 from ..scan_laws import roughness
 from ..specimen import materials
-from ..specimen.quantities import multiple, quantity
+from ..specimen.quantities import has_unit, multiple, quantity
 from ..specimen.scan import meant
 from ..terminal import answer, program, shown
 from . import signals
@@ -123,11 +123,13 @@ def _text(_, text: str) -> str:
     return text
 
 
-def _number(name: str, text: str) -> float:
+def _distance(name: str, text: str) -> float | str:
+    if has_unit(text):
+        return text
     try:
         return float(text)
     except ValueError:
-        raise ValueError(f"{name} = {shown(text)}: must be a number, in `unit`") from None
+        raise ValueError(f'{name} = {shown(text)}: must be a number, in `unit`, or a length such as "0.4 um"') from None
 
 
 def _whole(name: str, text: str) -> int:
@@ -178,8 +180,8 @@ Kinds = dict[str, Callable[[str, str], Any]]
 READING: Kinds = {
     "unit": _text,
     "height_unit": _text,
-    "dx": _number,
-    "dy": _number,
+    "dx": _distance,
+    "dy": _distance,
     "columns": _columns,
     "channel": _text,
     "crop": _crop,

@@ -16,7 +16,7 @@ from solver.numerics.userfile import begins, checked, content, unpacked
 from . import netcdf_heights, x3p
 from .foreign import plain
 from .scan import FEWEST, Scan, metres, number, refusing_others, spelt
-from .scan_grids import columns_of, npy_table, on_grid, overruled, scan_of, without_holes
+from .scan_grids import columns_of, in_unit, npy_table, on_grid, overruled, scan_of, without_holes
 from .scan_headings import check_units, extent_notes, height_metres, length, stated, stated_height_unit, without_no_data
 from .scan_texts import NumberTable, table_of, text_of
 
@@ -36,8 +36,8 @@ def read(
     *,
     unit: str | None = None,
     height_unit: str | None = None,
-    dx: float | None = None,
-    dy: float | None = None,
+    dx: float | str | None = None,
+    dy: float | str | None = None,
     columns: Sequence[int] | None = None,
     channel: str | None = None,
     crop: Sequence | None = None,
@@ -63,8 +63,8 @@ def read(
     path : of the file
     unit : unit of x, y, dx, dy and crop: m, mm, um, nm, pm or angstrom. Text and .npy have none, so it must be given.
     height_unit : unit of z; None: as `unit`
-    dx, dy : distance between points, in unit; dy defaults to dx. Where a file or its heading states lengths, unit,
-        height_unit, dx and dy of the call override them, and the notes say what the file states
+    dx, dy : distance between points, in unit, or "0.4 um"; dy defaults to dx. Where a file or its heading states
+        lengths, unit, height_unit, dx and dy of the call override them, and the notes say what the file states
     columns : the columns to read, counted from 0: (x, z), (x, y, z), or (z,) with dx
     channel : name of the channel to read; None: the first channel of heights. The notes of the scan name it
     crop : the part to keep, (x0, x1) or (x0, x1, y0, y1) of x and y of the file, else from 0; in unit, m, or texts
@@ -93,7 +93,7 @@ def read(
         raise ValueError(f"{path.name}: {error}") from None
     ending, how = path.suffix.lower(), {"missing": missing, "steep": steep, "huge": huge, "despike": despike}
     arguments = {"unit": unit, "height_unit": height_unit, "dx": dx, "dy": dy, "columns": columns}
-    arguments = {name: value for name, value in arguments.items() if value is not None}
+    arguments = in_unit({name: value for name, value in arguments.items() if value is not None}, path.name)
     text = text_of(path) if ending in TEXT else None
     if ending != ".npy" and text is None:
         scan = _of_netcdf_or_x3p(path, arguments, channel, crop, how)

@@ -15,7 +15,7 @@ from numpy.lib.format import MAGIC_PREFIX
 from solver.numerics.userfile import begins, opened
 
 from .foreign import plain
-from .quantities import has_unit, quantity
+from .quantities import has_unit, quantity, unit_in
 from .scan import FEWEST, UNEVEN, Scan, height_map, metres, number, profile
 from .scan_texts import NumberTable
 
@@ -197,6 +197,19 @@ def _rounded_step(x: np.ndarray) -> float | None:
     rounded = np.abs(x - line(np.arange(len(x)))).max() <= 0.75 * digit  # half of it, and the error of the line
     lone = np.mean(np.isclose(np.abs(steps), digit, rtol=1e-6, atol=0)) > 0.9
     return abs(line.deriv()(0)) if rounded and not lone and digit <= COARSE * abs(x[-1] - x[0]) else None
+
+
+def in_unit(arguments: dict, name: str) -> dict:
+    """The arguments of `read`, with dx and dy as numbers in `unit`; where that is not given, it is the unit of dx.
+
+    Raises ValueError: they are no lengths, or the unit is unknown.
+    """
+    measured = {key: arguments[key] for key in ("dx", "dy") if has_unit(arguments.get(key))}
+    lengths = {key: quantity(f"{name}: {key}", entry, "m").value for key, entry in measured.items()}
+    if not lengths:
+        return arguments
+    unit = arguments.get("unit") or next(map(unit_in, measured.values()))
+    return arguments | {"unit": unit} | {key: length / metres(unit, name) for key, length in lengths.items()}
 
 
 def overruled(

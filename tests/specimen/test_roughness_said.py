@@ -66,9 +66,9 @@ def test_the_page_prints_what_stands_there(tmp_path):
 @pytest.mark.parametrize(
     ("heading", "columns", "given", "message"),
     [
-        ("", 1, {"dx": "0.5 um"}, "dx = '0.5 um': must be a number, in um"),
+        ("", 1, {"dx": "0.5 s"}, 'dx = "0.5 s" is in second: must be a length, such as "2 mm"'),
         ("", 20, {"dx": 1, "dy": "2"}, "dy = '2': must be a number, in um"),
-        ("", 2, {"dx": "1 um"}, r"20 rows of 2 column\(s\) with dx = 1 um; .* A comma cannot separate columns and"),
+        ("", 2, {"dx": "1 um"}, r"20 rows of 2 column\(s\) with dx = 1.0; .* A comma cannot separate columns and"),
         (
             "x [mm]; z (nm)",
             2,

@@ -12,7 +12,7 @@ def scan(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     surface = roughness.self_affine((32, 32), "0.5 um", hurst=0.8, rms="20 nm", seed=1)
     np.save("scan.npy", surface.z * 1e9)
-    return ["scan", "scan.npy", "unit=um", "height_unit=nm", "dx=0.5"]
+    return ["scan", "scan.npy", "height_unit=nm", "dx=0.5 um"]
 
 
 def test_a_law_is_written_and_taken(scan, capsys):

@@ -112,7 +112,7 @@ def test_what_a_scan_prints_is_what_point_takes(scan, capsys):
         (["units=um", "dx=1"], 'scan: `scan` does not take "units"; did you mean unit?'),
         (["unit"], 'scan: "unit": must be NAME=VALUE'),
         (["unit=um", "unit=nm"], "scan: unit is given twice"),
-        (["unit=um", "dx=one"], 'scan: dx = "one": must be a number, in `unit`'),
+        (["unit=um", "dx=one"], 'scan: dx = "one": must be a number, in `unit`, or a length such as "0.4 um"'),
         (["unit=um", "columns=0,x"], 'scan: columns = "0,x": must be columns, counted from 0, such as '),
         (["unit=um", "steep=perhaps"], 'scan: steep = "perhaps": must be steep=true or steep=false'),
         (["unit=um", "despike=some"], 'scan: despike = "some": must be a number of robust deviations, such as 5'),

@@ -64,3 +64,13 @@ def test_two_units_of_netcdf_are_settled_by_the_call(tmp_path):
         assert_allclose(scan.steps, steps, rtol=1e-12)
         assert_allclose(scan.z, Z * UM, rtol=1e-12)
         assert scan.notes[1] == f"x is in um, y in mm in the file: {decides} of the call holds for both"
+
+
+def test_distances_with_a_unit(tmp_path):
+    """dx = "400 nm" is .4 in um; without `unit` its unit is that of all lengths."""
+    np.savetxt(tmp_path / "map.txt", Z[:20, :18])
+    in_um = roughness.read(tmp_path / "map.txt", unit="um", dx=0.4, dy=0.5)
+    for lengths in ({"unit": "um", "dx": "400 nm", "dy": "0.5 um"}, {"dx": "0.4 um", "dy": "500 nm"}):
+        scan = roughness.read(tmp_path / "map.txt", **lengths)
+        np.testing.assert_allclose(scan.steps, in_um.steps, rtol=1e-14)
+        np.testing.assert_allclose(scan.z, in_um.z, rtol=1e-14)

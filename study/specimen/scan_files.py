@@ -172,8 +172,7 @@ def _of_table(name: str, table: NumberTable, arguments: dict, crop, how: dict) -
     size, notes = height_metres(table, height_unit, name)
     z, more = without_no_data(table, columns if columns.shape[1] >= FEWEST else columns[:, -1], name)
     notes += table.notes + more + (f"channel {table.channel!r}",) * bool(table.channel)
-    factor = size / metres(height_unit, name)
-    z = z if factor == 1 else z * factor
+    z = z if (factor := size / metres(height_unit, name)) == 1 else z * factor
     if z.ndim == 2:
         positions = [step * np.arange(points) for step, points in zip((dy, dx), z.shape, strict=True)]
         notes += extent_notes(table, (dy, dx), unit, name)

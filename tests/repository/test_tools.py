@@ -2,7 +2,6 @@
 
 import ast
 import importlib
-import re
 from pathlib import Path
 
 import pytest
@@ -49,13 +48,3 @@ def test_a_name_that_is_gone_is_seen(tmp_path):
     script = tmp_path / "tool.py"
     script.write_text("from solver import ways, no_such_name\nfrom solver.models import named\nnamed._gone, ways.WAYS")
     assert missing_names(script) == ["solver.no_such_name", "named._gone"]
-
-
-def test_the_page_of_speeds_is_that_of_its_template():
-    """All words of docs/speed.md are those of tools/bench/benchmark_page.py; figures, dates and machines differ."""
-    tree = ast.parse((ROOT / "tools/bench/benchmark_page.py").read_text(encoding="utf-8"))
-    texts = {node.targets[0].id: ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign)
-             and node.targets[0].id in ("INTRO", "SECTIONS")}  # fmt: skip
-    template = "\n## ".join([texts["INTRO"], *texts["SECTIONS"].values()])
-    pattern = ".+?".join(re.escape(part) for part in re.split(r"\{\w+\}", template))
-    assert re.fullmatch(pattern, (ROOT / "docs/speed.md").read_text(encoding="utf-8"), re.DOTALL)

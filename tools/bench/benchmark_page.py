@@ -97,11 +97,11 @@ layers. And the numbers of a case would depend on its company, if only to rtol. 
 
 {day}
 
-Seconds are processor time of one curve, in a warm process, with intervals by profiles. Under Maugis w lies
-between bounds of a factor of 20. The plain fits are without intervals, as that of nanite. The memory of a scan is the
-largest of three ways to read and measure it, with a low-pass, a sphere or spikes. A study with
-`[output] stresses = true` takes the same memory for any number of cases, since it computes and stores block by block:
-169 MB for 2,000 smooth contacts on a half-space, 171 MB for 20,000 (`python tools/fields/study_memory.py 20000`).
+Seconds are processor time of one curve, in a warm process, with intervals by profiles. Under Maugis w lies between
+bounds of a factor of 20. The plain fits are without intervals, as that of nanite. The memory of a scan is the largest
+of three ways to read and measure it, with a low-pass, a sphere or spikes. A study with `[output] stresses = true` takes
+the same memory for any number of cases, since it computes and stores block by block: 169 MB for 2,000 smooth contacts
+on a half-space, 170 MB for 20,000 (`python tools/fields/study_memory.py 20000`).
 
 {fits}
 """,
@@ -143,6 +143,8 @@ each code, and against rtol = 1e-12: they say how well a code solves its own mod
 {peers}
 """,
 }
+#: The whole page.
+PAGE = "\n## ".join([INTRO, *SECTIONS.values()])
 
 
 def measured_page(old: str = "", only: Sequence[str] = ()) -> str:

@@ -141,7 +141,7 @@ def test_bodies_and_pitches_that_are_no_numbers_have_no_family():
     few = {"nu1": np.full(3, 0.3), "nu2": np.full(3, 0.3), "bonded": np.full(3, True)}
     kernel, pitch = layers({"n": np.array([np.nan, np.inf, 1.0]), **few}), np.array([4.0, 4.0, np.nan])
     members, index = family.families("hex", pitch, kernel, np.zeros(3))
-    assert index.tolist() == [0, 1, 2] and not any(member.known for member in members)
+    assert index.tolist() == [0, 1, 2] and not any(member.usable for member in members)
     assert all(np.isfinite(member.row(40)).all() for member in members)
 
 

@@ -49,7 +49,8 @@ _BEYOND = np.array([0.15, 0.3, 0.6, 1, 1.6, 2.5, 4, 6])
 _OF_LAYER, _OF_LENGTH = np.array([0, 0.12, 0.3, 0.5, 0.7, 0.88, 1]), np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1])
 _BELOW = np.array([0, 0.08, 0.2, 0.35, 0.5, 0.7, 1, 1.4])
 #: A radius beyond the edge is dropped unless its distance from the edge exceeds that of the one before by this part.
-_NEAR = 0.1
+#: Those of films, nearer to the edge than _THIN, inside too.
+_NEAR, _THIN = 0.1, 1.3
 #: A length is dropped unless it exceeds the last one kept by the factor _ALIKE. The regions end at _FARTHEST (a + the
 #: longest length).
 _ALIKE, _FARTHEST = 2.0, 10.0
@@ -195,7 +196,8 @@ def _grids(case, place, j, lengths):
     """The coarse grids of a place, by their regions."""
     far, tops = farthest_of(lengths), np.append(0.0, case.ends)
     beyond = 1 + _unlike(np.append(_RADII[_RADII > 1] - 1, np.outer(lengths, _BEYOND).ravel()), _NEAR)
-    radii = np.append(_RADII[_RADII <= 1], beyond[beyond < far])
+    within = 2 - beyond[beyond < _THIN]
+    radii = np.unique(np.concatenate([_RADII[_RADII <= 1], within, beyond[beyond < far]]))
 
     def grid(u, v, low, high, ends=(0.0, far), root=False):
         return SearchGrid(u, np.array([v]), np.array([ends]), np.array([[low, high]]), False, root)

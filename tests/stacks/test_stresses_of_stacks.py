@@ -197,3 +197,15 @@ def test_a_ridge_that_rises_to_both_interfaces_of_a_layer():
     along = study.stresses(contact, r=np.linspace(3.6, 3.9, 31), z=[top + 1e-9]).s1.max()
     largest = study.extremes(contact).s1_layer[2]
     assert_allclose(largest, along, rtol=5e-6)
+
+
+def test_maxima_of_films_next_to_the_edge():
+    """Below the edge, at the first interface, the stress is larger than on the axis; the search had no radius there."""
+    layers = [
+        {"h": 0.00023354, "n": 0.9927, "nu": 0.48222, "bonding": "bonded"},
+        {"h": 0.00094802, "n": 0.066764, "nu": 0.16082, "bonding": "bonded"},
+    ]
+    contact = on(layers, a=0.01, nu2=0.31796)
+    largest = study.extremes(contact).tresca_layer[0].item()
+    beside = study.stresses(contact, [1.0234], [0.0]).tresca_above[0, 0].item()
+    assert largest >= beside * (1 - 1e-9) > 0.4 * contact.p0.item()

@@ -48,6 +48,9 @@ _RADII = np.array([0, 0.2, 0.4, 0.6, 0.75, 0.85, 0.93, 0.98, 1, 1.04, 1.12, 1.25
 _PAST_EDGE = np.array([0.15, 0.3, 0.6, 1, 1.6, 2.5, 4, 6])
 _OF_LAYER, _OF_LENGTH = np.array([0, 0.12, 0.3, 0.5, 0.7, 0.88, 1]), np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1])
 _BELOW = np.array([0, 0.08, 0.2, 0.35, 0.5, 0.7, 1, 1.4])
+#: A radius beyond the edge is dropped unless its distance from the edge exceeds that of the one before by this part.
+#: Those of films, nearer to the edge than _THIN, inside too.
+_NEAR, _THIN = 0.1, 1.3
 #: A length is dropped unless it exceeds the last one kept by the factor _ALIKE. The regions end at _FARTHEST (a + the
 #: longest length).
 _ALIKE, _FARTHEST = 2.0, 10.0
@@ -192,8 +195,9 @@ def farthest_of(lengths):
 def _grids(case, place, j, lengths):
     """The coarse grids of a place, by their regions."""
     far, tops = farthest_of(lengths), np.append(0.0, case.ends)
-    past_edge = 1 + np.outer(lengths, _PAST_EDGE).ravel()
-    radii = _unlike(np.concatenate([_RADII, past_edge[past_edge < far]]))
+    past_edge = 1 + _unlike(np.append(_RADII[_RADII > 1] - 1, np.outer(lengths, _PAST_EDGE).ravel()), _NEAR)
+    within = 2 - past_edge[past_edge < _THIN]
+    radii = np.unique(np.concatenate([_RADII[_RADII <= 1], within, past_edge[past_edge < far]]))
 
     def grid(u, v, low, high, ends=(0.0, far), root=False):
         return SearchGrid(u, np.array([v]), np.array([ends]), np.array([[low, high]]), False, root)
@@ -225,7 +229,10 @@ def _grids(case, place, j, lengths):
     return {(j, "layer"): grid(radii, depths, tops[j], tops[j + 1])} | row(j, "lower", tops[j + 1]) | upper
 
 
-def _unlike(values):
-    """The values in ascending order, without each that exceeds the one before by less than a hundredth of itself."""
-    values = np.unique(values)
-    return values[np.append(True, np.diff(values) > 0.01 * np.abs(values[1:]))]
+def _unlike(values, part=0.01):
+    """The values in ascending order, without each that exceeds the last one of these by less than a part of itself."""
+    chosen = []
+    for value in np.unique(values).tolist():
+        if not chosen or value - chosen[-1] > part * abs(value):
+            chosen.append(value)
+    return np.array(chosen)

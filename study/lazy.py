@@ -80,8 +80,8 @@ def _lengths(chunks: Any, definition: Definition) -> tuple[tuple[int, ...], ...]
     sizes = definition.in_results(definition.grid.sizes)
     if not isinstance(chunks, dict):
         if not _fits(chunks, 0) or isinstance(chunks, tuple):
-            one = 'must be a dictionary such as {"P": 10}, one length for every dimension, or "auto"'
-            raise StudyError([f"chunks = {shown(chunks)}: {one}"])
+            allowed = 'must be a dictionary such as {"P": 10}, one length for every dimension, or "auto"'
+            raise StudyError([f"chunks = {shown(chunks)}: {allowed}"])
         chunks = dict.fromkeys(sizes, chunks)
     wrong, dims = [], ", ".join(sizes) or "the results have none"
     for name, length in chunks.items():

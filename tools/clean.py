@@ -16,7 +16,7 @@ CACHES = (".pytest_cache", ".ruff_cache", ".hypothesis")
 def written() -> list[Path]:
     """The files of all figures and tables, whether they exist or not."""
     names = {
-        kind: [name for file in book_files() for one, name in names_in(file) if one == kind]
+        kind: [name for file in book_files() for kind_of_entry, name in names_in(file) if kind_of_entry == kind]
         for kind in ("figure", "table")
     }
     drawn = {*ENDINGS["figure"], *ENDINGS["drawing"]}

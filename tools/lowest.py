@@ -12,8 +12,8 @@ def lowest(pyproject: dict) -> list[str]:
     """Requirements "name==version" of the lowest versions."""
     project = pyproject["project"]
     allowed = pyproject["build-system"]["requires"] + project["dependencies"]
-    allowed += [one for extra in EXTRAS for one in project["optional-dependencies"][extra]]
-    return [one.replace(">=", "==") for one in allowed] + FURTHER
+    allowed += [requirement for extra in EXTRAS for requirement in project["optional-dependencies"][extra]]
+    return [requirement.replace(">=", "==") for requirement in allowed] + FURTHER
 
 
 if __name__ == "__main__":

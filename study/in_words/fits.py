@@ -155,7 +155,7 @@ def _doubts(curve: xr.Dataset, inputs: list[str]) -> list[str]:
             f"In contact the points are {ratio} times as far from the fit as before it: "
             "this is not noise, but a contact that the model does not describe."
         )
-    for prior in (one for one in inputs if f"{one}_from_prior" in curve):
+    for prior in (input_name for input_name in inputs if f"{input_name}_from_prior" in curve):
         off = float(curve[f"{prior}_from_prior"])
         if abs(off) > _AGAINST:
             lines.append(

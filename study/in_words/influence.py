@@ -36,7 +36,7 @@ def influence(case: xr.Dataset, contact: Contacts | None, name: str) -> list[str
     if float(case[f"{name}_spread"]) < _UNSEEN * abs(float(case[name])):
         texts = [f"the ± of the inputs changes {symbol} by less than a part in ten million"]
     elif not correlated(case):
-        largest = max(parts, key=lambda one: abs(parts[one]))
+        largest = max(parts, key=lambda key: abs(parts[key]))
         share = parts[largest] ** 2 / sum(part**2 for part in parts.values())
         most = "nearly all" if share > _NEARLY else f"{100 * share:.0f} %"
         texts = [f"{largest} contributes {most} of the variance of {symbol}"]

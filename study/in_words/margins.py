@@ -282,8 +282,8 @@ def _closest(looked: _Looked, case: xr.Dataset) -> list[str]:
     verb = closest if share <= 1 else f"would {limit.verb}"
     sentences = [f"{limit.who} {verb}: the {limit.what}, {value}{place}, is {of}."]
     if others:
-        parts = [(one.limit, _part(one.share)) for one in others]
-        texts = [f"{one.who} at {part} {'their' if one.plural else 'its'} {one.of}" for one, part in parts]
+        parts = [(compared.limit, _part(compared.share)) for compared in others]
+        texts = [f"{weak.who} at {part} {'their' if weak.plural else 'its'} {weak.of}" for weak, part in parts]
         sentences.append(f"Less close: {', '.join(texts)}.")
     return [_capital(text) for text in [*sentences, *_at_which_load(looked, first, case)]]
 
@@ -305,8 +305,8 @@ def _at_which_load(looked: _Looked, first: _Compared, case: xr.Dataset) -> list[
     alone = (np.pi * limit.strength * yield_pressure(nu)[0]) ** 3 * looked.problem.Ra[0] ** 2 / (6 * E[0] ** 2)
     if abs(P / alone - 1) < 3 * _SAME:
         return [f"One asperity alone {'begins to yield' if share > 1 else 'would yield'} at about {text}."]
-    one = _with_unit(contact, alone, 2, 3 * alone * limit.spread / limit.strength)
-    where = f"{text}, where {rounded(touching)} of them touch; one asperity alone yields at about P = {one}"
+    P_alone = _with_unit(contact, alone, 2, 3 * alone * limit.spread / limit.strength)
+    where = f"{text}, where {rounded(touching)} of them touch; one asperity alone yields at about P = {P_alone}"
     return [f"They begin to yield at about {where}." if share > 1 else f"They would yield at about {where}."]
 
 

@@ -202,7 +202,7 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
         lines = [f"Solved: the estimated relative error of {of} is {float(case['error']):.1g}."]
         lines += [f"Spreads: {text}" for text in influence(case, contact, "p_max" if "p_max" in judged else "p0")]
     else:
-        meanings = {one.name.lower(): one.meaning for one in Status}
+        meanings = {status.name.lower(): status.meaning for status in Status}
         meaning = meanings.get(word, "the case has not been computed")
         lines = [f"NOT SOLVED ({word}): {meaning}."]
     model = MODELS.get(used)

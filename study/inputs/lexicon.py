@@ -160,8 +160,8 @@ def encoding_of(lexicon: Lexicon, values: Mapping[str, Any]) -> dict:
 
     values : parameter -> its values
     """
-    own = lexicon.known.only(values)
-    return {} if own.is_package else {KNOWN: own}
+    subset = lexicon.known.only(values)
+    return {} if subset.is_package else {KNOWN: subset}
 
 
 def with_known(dataset: Any, lexicon: Lexicon, values: Mapping[str, Any]) -> Any:

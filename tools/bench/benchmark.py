@@ -119,7 +119,7 @@ def papers_way() -> list[dict]:
     for k, intervals, count in PAPERS:
         method = paper_way(k, most=count)
         theirs = measured(method, intervals, *selection(cases, reference, method.index(len(reference.a))), REPEATS)
-        ours = next(one for one in newton if one["most"] <= theirs["most"])
+        ours = next(grid_row for grid_row in newton if grid_row["most"] <= theirs["most"])
         row = {"error": theirs["most"], "k": k, "intervals": intervals, "cases": count, "ended": theirs["ended"]}
         row |= {"seconds": theirs["time"], "newton_rtol": ours["setting"], "newton_error": ours["most"]}
         row |= {"newton_cases": len(reference.a), "newton_seconds": ours["time"]}

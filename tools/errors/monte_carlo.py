@@ -69,8 +69,8 @@ def random_draws(parameters: dict, draws: int, seed: int) -> dict:
     normal = normal @ np.linalg.inv(np.linalg.cholesky(np.cov(normal.T, ddof=0))).T
     columns = zip(inputs.items(), normal.T, strict=True)
     return parameters | {
-        name: xr.DataArray(one.value + one.spread * column, dims="draw", attrs={"units": ROWS[name].unit})
-        for (name, one), column in columns
+        name: xr.DataArray(measured.value + measured.spread * column, dims="draw", attrs={"units": ROWS[name].unit})
+        for (name, measured), column in columns
     }
 
 

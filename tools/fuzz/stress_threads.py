@@ -82,8 +82,8 @@ def main(seconds: float) -> int:
     faults, end = [], time.monotonic() + seconds
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for one, loads in (("shared", AXES["P"]), ("large", [*AXES["P"], 1e-3])):
-            written(folder, one, loads).run(workers=1)
+        for size, loads in (("shared", AXES["P"]), ("large", [*AXES["P"], 1e-3])):
+            written(folder, size, loads).run(workers=1)
         api.LAZY = results_file.LAZY = examine(folder / "results" / "large.nc").unpacked - 1
         for path in ("shared", "own0", "own1"):
             written(folder, path, AXES["P"])

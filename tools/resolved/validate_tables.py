@@ -26,11 +26,11 @@ def predictions(one: xr.Dataset, over: str = "base") -> list[list[str]]:
     rows = [["resolved", *(f"± {float(one[f'{name}_uncertain']):.3%}" for name in QUANTITIES), ""]]
     for way in one[over].values:
         for law in LAWS[over]:
-            own = one.sel({over: way, "law": law})
-            if np.isfinite(own["D_error"]):
-                errors = [f"{float(own[f'{name}_error']):+.2%}" for name in QUANTITIES]
+            answer = one.sel({over: way, "law": law})
+            if np.isfinite(answer["D_error"]):
+                errors = [f"{float(answer[f'{name}_error']):+.2%}" for name in QUANTITIES]
                 words = (BASES if over == "base" else FELT)[way] + WORDS[law]
-                rows.append([words, *errors, f"{float(own['cell_error']):.2%}"])
+                rows.append([words, *errors, f"{float(answer['cell_error']):.2%}"])
     return rows
 
 
@@ -68,9 +68,9 @@ def layer_table(dataset: xr.Dataset) -> str:
         thin_error = float(one["model_error"].sel(base="thin_layer", law="square_lattice"))
         if np.isfinite(thin_error):
             first.append(f"`model_error` of the thin layer {thin_error:.1%}")
-        own = predictions(one)
-        first += [""] * (len(own) - len(first))
-        rows += [[words, *row] for words, row in zip(first, own, strict=True)]
+        model_rows = predictions(one)
+        first += [""] * (len(model_rows) - len(first))
+        rows += [[words, *row] for words, row in zip(first, model_rows, strict=True)]
     return table(["layer", "base and law", *HEADS.values(), "cell means"], rows)
 
 
@@ -86,10 +86,10 @@ def thin_table(dataset: xr.Dataset) -> str:
         one = dataset.sel(case=case.name)
         ratios = f"h/a = {case.layer.h / float(one['a0']):.3f}, pitch/h = {case.pitch / case.layer.h:.2g}"
         first = [case.name, ratios, f"λ(0) = {float(one['lam0']):.2f}, b(0)/h = {spot_over_h(one):.2f}"]
-        own = predictions(one, "asperities_on")
-        first += [""] * (len(own) - len(first))
+        model_rows = predictions(one, "asperities_on")
+        first += [""] * (len(model_rows) - len(first))
         cells = ["", *(f"{float(value):.1%}" for value in one["model_error"].values.ravel())]
-        rows += [[words, *row, error] for words, row, error in zip(first, own, cells, strict=True)]
+        rows += [[words, *row, error] for words, row, error in zip(first, model_rows, cells, strict=True)]
     return table(["layer", "asperities on, law", *HEADS.values(), "cell means", "`model_error`"], rows)
 
 
@@ -173,10 +173,10 @@ def cells_table(dataset: xr.Dataset) -> str:
         one = dataset.sel(spread=spread)
         row = [f"σ = {spread:g} A*"]
         for p in dataset["p"].values:
-            own = one.sel(p=p)
-            unsure = float(own["A"].std("draw", ddof=1)) / np.sqrt(CELLS_DRAWN)
-            share = float(own["law_lam"] / own["lam"].mean("draw")) - 1
-            row.append(f"{float(own['law_A'] - own['A'].mean('draw')):+.3f} ± {unsure:.3f}, λ {share:+.1%}")
+            patches = one.sel(p=p)
+            unsure = float(patches["A"].std("draw", ddof=1)) / np.sqrt(CELLS_DRAWN)
+            share = float(patches["law_lam"] / patches["lam"].mean("draw")) - 1
+            row.append(f"{float(patches['law_A'] - patches['A'].mean('draw')):+.3f} ± {unsure:.3f}, λ {share:+.1%}")
         rows.append(row)
     return table(["", *(f"p = {p:g}" for p in dataset["p"].values)], rows)
 

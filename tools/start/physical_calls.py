@@ -33,7 +33,7 @@ def compare(name: str, units: dict, plain: dict) -> None:
         newtons = [5.0 + 0.01 * i for i in range(first, first + ROUND)]
         pair = seconds(units, [f"{P!r} N" for P in newtons]), seconds(plain, [P / (E2 * R**2) for P in newtons])
         ratios.append(pair[0] / pair[1])
-        times = [total + one for total, one in zip(times, pair, strict=True)]
+        times = [total + used for total, used in zip(times, pair, strict=True)]
     each = ", ".join(f"{total / CALLS * 1e3:.1f} ms" for total in times)
     print(f"{name}: {each} a call with and without units, ratio {statistics.median(ratios):.3f}")
 

@@ -41,7 +41,7 @@ class Units(NamedTuple):
     a: float
     long: str
     strong: str
-    one: float
+    strong_size: float
     sliding: bool
 
     @classmethod
@@ -54,8 +54,8 @@ class Units(NamedTuple):
             unit = rf"10^{{{power}}}\,{modulus}" if power else modulus
             return cls(1.0, "", unit, 10.0**power, sliding)
         long, length = multiple(contact["a"])
-        strong, one = quantities.multiple(largest, "Pa")
-        return cls(float(contact["a"]) / length, long, strong, one, sliding)
+        strong, strong_size = quantities.multiple(largest, "Pa")
+        return cls(float(contact["a"]) / length, long, strong, strong_size, sliding)
 
     def length(self, name: str) -> str:
         """The label of an axis: "$r$, µm" or "$r/a$"."""
@@ -67,7 +67,7 @@ class Units(NamedTuple):
 
     def text(self, stress: float) -> str:
         """A stress with its unit: "1.51 GPa" or "$1.55\\times10^{-3} E_2^*$"."""
-        number = f"{stress / self.one:.3g}"
+        number = f"{stress / self.strong_size:.3g}"
         times = r"\times" if self.strong.startswith("10") else r"\,"
         return f"{number} {self.strong}" if self.long else f"${number}{times}{self.strong}$"
 
@@ -75,9 +75,9 @@ class Units(NamedTuple):
 def section(axes, region: Region, top: float, colours: str, units: Units) -> QuadContourSet:
     """Von Mises' stress of a region, in steps of colour from 0 to `top`."""
     r, z = region.r * units.a, region.z * units.a
-    levels = MaxNLocator(10).tick_values(0, top / units.one)
-    filled = axes.contourf(r, z, region.mises / units.one, levels[levels > -1e-12], cmap=colours)
-    axes.contour(r, z, region.mises / units.one, levels[1:], colors="white", linewidths=0.3)
+    levels = MaxNLocator(10).tick_values(0, top / units.strong_size)
+    filled = axes.contourf(r, z, region.mises / units.strong_size, levels[levels > -1e-12], cmap=colours)
+    axes.contour(r, z, region.mises / units.strong_size, levels[1:], colors="white", linewidths=0.3)
     axes.set(xlim=(r[0], r[-1]), ylim=(z[-1], z[0]), ylabel=units.length("z"))
     return filled
 
@@ -101,13 +101,13 @@ def along(axes, name: str, values: dict[str, np.ndarray], shown: Stresses, units
         *symbols, colour, dashes = _CURVES[kind]
         where = {"sr_above": ", layer", "sr_below": ", body"}.get(key, "")
         look = {"color": colour, "linestyle": _BELOW if side == "below" else dashes}
-        axes.plot(shown.r * units.a, stress / units.one, label=symbols[units.sliding] + where, **look)
+        axes.plot(shown.r * units.a, stress / units.strong_size, label=symbols[units.sliding] + where, **look)
     for extreme, key in {extreme: key for extreme, key in _RINGS[name].items() if extreme in shown.largest}.items():
         r, value = float(shown.largest[f"{extreme}_r"]), float(shown.largest[extreme])
         sign = np.sign(np.interp(r, shown.r, values[key])) if extreme == "tau_interface" else 1.0
         colour = _CURVES[key.partition("_")[0]][2]
         if value > 0:
-            axes.plot(r * units.a, sign * value / units.one, "o", color=colour, markersize=4, fillstyle="none")
+            axes.plot(r * units.a, sign * value / units.strong_size, "o", color=colour, markersize=4, fillstyle="none")
     axes.axhline(0, color="0.7", linewidth=0.6, zorder=0)
     axes.set(xlim=(shown.r[0] * units.a, shown.r[-1] * units.a), ylabel=units.stress("stress"))
     axes.set_title(name, loc="left")

@@ -195,16 +195,16 @@ def _body_guess(q, rows, X, x_y, yields):
     return np.where(f < _FLOWING, np.maximum(y, flows / np.hypot(1, flows)), y)
 
 
-def _body_from_pressure(q, *constants):
-    elastic = cell.spot_from_pressure(q, constants[0])
-    if not (elastic**2 > constants[3]).any():
+def _body_from_pressure(q, *own):
+    elastic = cell.spot_from_pressure(q, own[0])
+    if not (elastic**2 > own[3]).any():
         return elastic
-    start = _body_guess(np.maximum(q, 0.0), *constants)
-    return np.where(elastic**2 > constants[3], inverse(lambda y: _body_curve(y, *constants)[0::2], q, start), elastic)
+    start = _body_guess(np.maximum(q, 0.0), *own)
+    return np.where(elastic**2 > own[3], inverse(lambda y: _body_curve(y, *own)[0::2], q, start), elastic)
 
 
-def _body_end(*constants):
-    return np.minimum(_body_curve(cell.number(constants[0], "end"), *constants).q, cell.number(constants[0], "most"))
+def _body_end(*own):
+    return np.minimum(_body_curve(cell.number(own[0], "end"), *own).q, cell.number(own[0], "most"))
 
 
 #: The strength of the softer body, the asperity or the one that it presses on.
@@ -220,9 +220,9 @@ _REST = {
 _ON_BODY = Law(
     name="elastic_plastic_on_body",
     curve=_body_curve,
-    area=lambda y, q, *constants: cell.spot_area(y, q, constants[0]),
+    area=lambda y, q, *own: cell.spot_area(y, q, own[0]),
     peak=_body_peak,
-    edge=lambda *constants: cell.EDGE,
+    edge=lambda *own: cell.EDGE,
     yielded=lambda rows, X, x_y, yields: yields,
     from_pressure=_body_from_pressure,
     guess=_body_guess,

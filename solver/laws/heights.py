@@ -261,15 +261,15 @@ class _Body(NamedTuple):
         lam = cell.number(row[None], "end")[0, 0] ** 2
         return on_body.table(Lookup(summit), (self.density.edges(cut), self.density.fine), at, sigma, relief, lam)
 
-    def looked_up(self, which, y, *constants):
+    def looked_up(self, which, y, *own):
         """As :func:`_looked_up`."""
-        table, group = self.tables(*constants)
+        table, group = self.tables(*own)
         value, slope = spread.look_up(np.ascontiguousarray(table[:, which]), group, y, spread.STEP / self.density.fine)
         return np.exp(value), slope
 
-    def curve(self, y, *constants):
-        sigma, cut, rows, _ = constants
-        q, slope = self.looked_up(0, np.minimum(y, spread.LAST), *constants)
+    def curve(self, y, *own):
+        sigma, cut, rows, _ = own
+        q, slope = self.looked_up(0, np.minimum(y, spread.LAST), *own)
         relief = _relief(self.density, sigma, cut)
         if (y > spread.LAST).any():
             q, slope = spread.extrapolated(y, q, slope, relief)
@@ -282,47 +282,47 @@ class _Body(NamedTuple):
             *(np.where(sigma > 0, of_spots, of_level) for of_spots, of_level in zip(spots, level, strict=True))
         )
 
-    def guess(self, q, *constants):
+    def guess(self, q, *own):
         """As :func:`_guess`, followed by Newton steps on the table."""
-        sigma, cut, rows, _ = constants
+        sigma, cut, rows, _ = own
         level = cell.spot_guess(q, rows)
         alike = cell.spot_curve(np.maximum(level, 1e-300), rows).g
         power_law = (1.25 * np.pi * sigma / self.density.top(cut) * np.maximum(q, 0.0)) ** 0.4
         delta = np.clip(power_law, alike, alike + self.density.mean(cut) * sigma)
         y = np.maximum(spread.unknown(delta, q, _relief(self.density, sigma, cut)), 1e-300)
-        (table, group), goal = self.tables(*constants), np.log(np.maximum(q, 1e-300))
+        (table, group), goal = self.tables(*own), np.log(np.maximum(q, 1e-300))
         table = np.ascontiguousarray(table[:, 0])
         for _ in range(_TO_TABLE):
             now, slope = spread.look_up(table, group, y, spread.STEP / self.density.fine)
             y = y * np.exp(np.clip((goal - now) / slope, -_LONGEST, _LONGEST))
         return where_positive(q, np.where(sigma > 0, y, level))
 
-    def area(self, y, q, *constants):
-        area = np.minimum(self.looked_up(1, y, *constants)[0], 1.0)
-        return np.where(constants[0] > 0, area, cell.spot_area(y, q, constants[2]))
+    def area(self, y, q, *own):
+        area = np.minimum(self.looked_up(1, y, *own)[0], 1.0)
+        return np.where(own[0] > 0, area, cell.spot_area(y, q, own[2]))
 
-    def peak(self, y, q, *constants):
+    def peak(self, y, q, *own):
         """p_max/p* under the highest summit."""
-        sigma, cut, rows, summits = constants
+        sigma, cut, rows, summits = own
         delta = spread.depth(y, q, _relief(self.density, sigma, cut))[0]
         return np.where(sigma > 0, on_body.peak(summits, q, delta), cell.spot_peak(y, q, rows))
 
-    def spot(self, y, q, *constants):
+    def spot(self, y, q, *own):
         """b/Bbar of the spot of the highest summit."""
-        sigma, cut, _, summits = constants
+        sigma, cut, _, summits = own
         delta = spread.depth(y, q, _relief(self.density, sigma, cut))[0]
         return np.where(sigma > 0, on_body.highest(summits, q, delta), y)
 
     def edge(self, sigma, cut, *_):
         return _edge(self.density, 1.0, sigma, cut)
 
-    def end(self, *constants):
+    def end(self, *own):
         """The largest q of the table, at which its λ ends."""
-        table, group = self.tables(*constants)
+        table, group = self.tables(*own)
         last = np.argmax(np.diff(table[:, 1], axis=1) == 0, axis=1) - on_body.PAST
         most = np.exp(table[np.arange(len(table)), 0, last])[group, None]
-        of_level = cell.number(constants[2], "most")
-        return np.where(of_level > 0, np.where(constants[0] > 0, most, of_level), 0.0)
+        of_level = cell.number(own[2], "most")
+        return np.where(of_level > 0, np.where(own[0] > 0, most, of_level), 0.0)
 
 
 def _of_heights(name, density, **rest):

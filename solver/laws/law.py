@@ -169,9 +169,9 @@ class Law:
         >>> print(f"{disc_cell.p_star.item():.4f} {disc_cell.A_star.item():.3e}")
         0.1881 3.183e-04
         """
-        p_star, A_star, *constants = self.scales(E, **{name: values[name] for name in self.arguments})
+        p_star, A_star, *own = self.scales(E, **{name: values[name] for name in self.arguments})
         ones = np.ones(np.shape(E))
-        return Bound(self, p_star * ones, A_star * ones, tuple((v * ones)[:, None] for v in constants))
+        return Bound(self, p_star * ones, A_star * ones, tuple((v * ones)[:, None] for v in own))
 
     def at(self, p: ArrayLike, E: ArrayLike, **numbers: ArrayLike) -> Spots:
         """The law at a nominal pressure.
@@ -203,13 +203,13 @@ class Law:
 
 @batch.of_cases
 class Bound(NamedTuple):
-    """A law with the numbers of B cases: p* and A* (B,), and in `constants` all other numbers that its functions take,
-    (B, 1) each."""
+    """A law with the numbers of B cases: p* and A* (B,), and in `own` all other numbers that its functions take, (B, 1)
+    each."""
 
     law: Law
     p_star: np.ndarray
     A_star: np.ndarray
-    constants: tuple[np.ndarray, ...]
+    own: tuple[np.ndarray, ...]
 
     @property
     def rough(self):
@@ -217,22 +217,22 @@ class Bound(NamedTuple):
 
     def evaluate(self, y):
         """:class:`Curve` at y (B, m)."""
-        return self.law.curve(y, *self.constants)
+        return self.law.curve(y, *self.own)
 
     def area(self, y, q):
         """λ (B, m), Eq. (11), at y and q (B, m), which must belong together."""
-        return self.law.area(y, q, *self.constants)
+        return self.law.area(y, q, *self.own)
 
     def bent(self, y, q):
         """(B,) bool: the cases in which λ, over the points with y and q (B, m), has a kink: a corner of the law, or the
         place where spots begin to yield."""
         if self.law.yielded is None:
             return np.full(len(y), self.law.corners)
-        return np.any(self.area(y, q) > self.law.yielded(*self.constants), axis=1)
+        return np.any(self.area(y, q) > self.law.yielded(*self.own), axis=1)
 
     def peak(self, y, q):
         """p_max (B, m), Eq. (13), at y and q (B, m), which must belong together."""
-        return self.p_star[:, None] * self.law.peak(y, q, *self.constants)
+        return self.p_star[:, None] * self.law.peak(y, q, *self.own)
 
     def at(self, p):
         """:class:`Spots` at the nominal pressures p (B, m) >= 0."""
@@ -243,28 +243,28 @@ class Bound(NamedTuple):
 
     def guess(self, q):
         """y (B, m) with q(y) = q, roughly: the start of a Newton iteration."""
-        return self.law.guess(q, *self.constants) if self.law.guess else self.from_pressure(q)
+        return self.law.guess(q, *self.own) if self.law.guess else self.from_pressure(q)
 
     def from_pressure(self, q):
         """y (B, m) with q(y) = q >= 0; NaN where q is NaN."""
         if self.law.from_pressure:
-            return self.law.from_pressure(q, *self.constants)
-        gamma, beta = self.law.edge(*self.constants)
+            return self.law.from_pressure(q, *self.own)
+        gamma, beta = self.law.edge(*self.own)
         return inverse(lambda y: self.evaluate(y)[0::2], q, np.sqrt(gamma * np.maximum(q, 0.0) ** beta))
 
     def from_displacement(self, g):
         """y (B, m) with g(y) = g; 0 where g <= 0, NaN where no pressure makes it so large."""
         if self.law.from_displacement:
-            return self.law.from_displacement(g, *self.constants)
+            return self.law.from_displacement(g, *self.own)
         return inverse(lambda y: self.evaluate(y)[1::2], g, np.sqrt(np.maximum(g, 0.0)))
 
     def edge(self):
         """gamma, beta (B,) of g ~ gamma q^beta for small q."""
-        return (np.broadcast_to(v, (len(self.p_star), 1))[:, 0] for v in self.law.edge(*self.constants))
+        return (np.broadcast_to(v, (len(self.p_star), 1))[:, 0] for v in self.law.edge(*self.own))
 
     def sparse(self, g):
         """q (B, m) at g (B, m) by the power law of small pressures, g = gamma q^beta, even if g is not small."""
-        gamma, beta = self.law.edge(*self.constants)
+        gamma, beta = self.law.edge(*self.own)
         return (g / gamma) ** (1 / beta)
 
     def limit(self, new, old):

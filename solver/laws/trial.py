@@ -102,9 +102,7 @@ def tried(law, E, values):
     bound, curve, area = _shapes(law, E, values)
     # no contact is beyond full contact or has p above E: a law may return anything there
     here = (area <= 1) & (bound.p_star[:, None] * curve.q <= E[:, None])
-    small, above, below = (
-        _curve(law, y, bound.constants) for y in (_ZERO * _Y, _Y * np.exp(_STEP), _Y * np.exp(-_STEP))
-    )
+    small, above, below = (_curve(law, y, bound.own) for y in (_ZERO * _Y, _Y * np.exp(_STEP), _Y * np.exp(-_STEP)))
     for name, inverse in (("q", "from_pressure"), ("g", "from_displacement")):
         at, falls = getattr(curve, name), np.zeros(_Y.shape, bool)
         falls[:, 1:] = here[:, 1:] & here[:, :-1] & (at[:, 1:] < at[:, :-1] * (1 - _ROUNDING))
@@ -116,7 +114,7 @@ def tried(law, E, values):
         rising = checked & (slope > _FLAT / _STEP)
         _compare(law, f"curve: d{name} must be the derivative of {name} by y", numbers, rising, values)
         if getattr(law, inverse):
-            returned = _curve(law, _of_shape(law, inverse, at, *bound.constants), bound.constants)
+            returned = _curve(law, _of_shape(law, inverse, at, *bound.own), bound.own)
             numbers = at, getattr(returned, name), _INVERSE
             _compare(law, f"{inverse} must be the inverse of {name} of curve", numbers, checked, values)
 
@@ -128,19 +126,15 @@ def _shapes(law, E, values):
     if not (isinstance(parts, (tuple, list)) and len(parts) >= 2 and all(np.shape(v) in ((), E.shape) for v in parts)):
         _refuse(law, "scales must return p*, A* and what else the functions need, each of the shape of E")
     bound = law.bind(E, **values)
-    curve, edge = _curve(law, _Y, bound.constants), _called(law, "edge", *bound.constants)
+    curve, edge = _curve(law, _Y, bound.own), _called(law, "edge", *bound.own)
     if not (isinstance(edge, (tuple, list)) and len(edge) == 2):
         _refuse(law, "edge must return two values, gamma and beta")
-    for name, value in (
-        ("edge", edge[0]),
-        ("edge", edge[1]),
-        ("peak", _called(law, "peak", _Y, curve.q, *bound.constants)),
-    ):
+    for name, value in (("edge", edge[0]), ("edge", edge[1]), ("peak", _called(law, "peak", _Y, curve.q, *bound.own))):
         _broadcasts(law, name, value, _Y)
     if law.touching:
         A = bound.A_star * curve.g[:, 0]
         _broadcasts(law, "touching", _called(law, "touching", A, **values), A)
-    return bound, curve, _of_shape(law, "area", _Y, curve.q, *bound.constants)
+    return bound, curve, _of_shape(law, "area", _Y, curve.q, *bound.own)
 
 
 def _compare(law, rule, numbers, checked, values):
@@ -153,8 +147,8 @@ def _compare(law, rule, numbers, checked, values):
         _refuse(law, rule, values, wrong)
 
 
-def _curve(law, y, constants):
-    curve = _called(law, "curve", y, *constants)
+def _curve(law, y, own):
+    curve = _called(law, "curve", y, *own)
     if not isinstance(curve, Curve) or any(np.shape(values) != y.shape for values in curve):
         _refuse(law, "curve must return a Curve of four arrays of the shape of y, (cases, points)")
     return curve

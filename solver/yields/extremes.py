@@ -98,8 +98,7 @@ def extremes(loaded, names=EXTREMES):
 
 def together(batches, names=EXTREMES):
     """The :func:`extremes` of each of several :class:`~.loaded.Loaded`, with or without layers, which share mu."""
-    answers, tasks = [], {}  # -> the names whose starts they are
-    boxes = []
+    answers, climbs = [], Climbs()
     for number, loaded in enumerate(batches):
         values, wanted, grids, coarse = _on_coarse_grids(loaded, names)
         answers.append(values)
@@ -108,18 +107,10 @@ def together(batches, names=EXTREMES):
         for name, kinds in wanted.items():
             function, here = EXTREMES[name][0], [kind for kind in kinds if kind in grids]
             for i, *at in _starts(VALUES[function], here, coarse, grids, np.where(there, largest, np.nan)):
-                task = Climb(function, number, i, *at)
-                if task not in tasks:
-                    tasks[task] = []
-                    boxes.append(box_of(grids[task.region], task))
-                tasks[task].append(name)
+                start = Climb(function, number, i, *at)
+                climbs.add(start, grids[start.region], values[name][:, i])
     scales = [np.abs(loaded.pressure.values).max(axis=1) for loaded in batches]
-    jets = [Jets(loaded) for loaded in batches]
-    for task, value, place in zip(tasks, *climbed(jets, list(tasks), boxes, scales, batches[0].signs), strict=True):
-        for name in tasks[task]:
-            best = answers[task.batch][name][:, task.case]
-            if not best[0] >= value:
-                best[:] = value, *place
+    climbs.climb([Jets(loaded) for loaded in batches], scales, batches[0].signs)
     for loaded, values in zip(batches, answers, strict=True):
         largest = np.abs(loaded.pressure.values).max(axis=1)
         for name, best in values.items():
@@ -248,11 +239,34 @@ def are_peaks(values):
     return values >= np.max(around, axis=0)
 
 
-def climbed(jets, tasks, boxes, scales, signs):
+class Climbs:
+    """The starts of the climbs of several batches: each is climbed once, for all extremes that it may raise."""
+
+    def __init__(self):
+        self._extremes: dict[Climb, list[np.ndarray]] = {}
+        self._boxes: list = []
+
+    def add(self, start, grid, extreme):
+        """A start on a :class:`SearchGrid`. It may raise `extreme`, a view (3,) of a value and its place r, z."""
+        if start not in self._extremes:
+            self._extremes[start] = []
+            self._boxes.append(_box_of(grid, start))
+        self._extremes[start].append(extreme)
+
+    def climb(self, jets, scales, signs):
+        """Raise the extremes to what is above them. The arguments are those of :func:`_climbed`."""
+        values, places = _climbed(jets, list(self._extremes), self._boxes, scales, signs)
+        for extremes_of_start, value, place in zip(self._extremes.values(), values, places, strict=True):
+            for extreme in extremes_of_start:
+                if not extreme[0] >= value:
+                    extreme[:] = value, *place
+
+
+def _climbed(jets, tasks, boxes, scales, signs):
     """Largest values (T,) near the starts of T tasks, and their places (T, 2), r and z.
 
     jets : of each batch; :class:`~.search.jets.Jets`, or :class:`~.stacked.stack_jets.StackJets`
-    boxes : of :func:`box_of`; scales : of each batch, a number (B,) of the size of the stresses
+    boxes : of :func:`_box_of`; scales : of each batch, a number (B,) of the size of the stresses
     signs : of x on the sides
     """
     if not tasks:
@@ -299,7 +313,7 @@ def _numbered(words):
     return _Numbered(names, np.array([numbers[word] for word in words]))
 
 
-def box_of(grid, task):
+def _box_of(grid, task):
     """(4, 2): start, half widths, and lower and upper bounds of a task; and whether its u is the root. Near the axis u
     is the radius."""
     u, v = grid.u[task.column], grid.v[task.case]

@@ -16,7 +16,7 @@ from ...layers import numbers_of
 from ...numerics.threads import one_blas_thread
 from ...scaling import dimensionless_pair
 from ..contact import of_contacts as of_one_layer
-from ..extremes import VALUES, Climb, SearchGrid, are_peaks, box_of, climbed
+from ..extremes import VALUES, Climb, Climbs, SearchGrid, are_peaks
 from .stack_jets import StackJets
 
 #: Name -> the function of the stresses whose largest value it is, and the place that is searched: each "layer", the
@@ -122,7 +122,7 @@ def _at_tip(by_name, case, radius):
 
 def _of_sections(cases, names, coarse, only):
     """Of each :class:`~...fields.stacks.section.Section` name -> (3, N)."""
-    answers, tasks, boxes = [], {}, []  # tasks -> the names whose starts they are, and the number of the layer
+    answers, climbs = [], Climbs()
     for number, case in enumerate(cases):
         answers.append({name: np.full((3, len(case.ends)), np.nan) for name in names})
         for name, j, grids, values in _on_coarse_grids(case, names, only):
@@ -132,18 +132,10 @@ def _of_sections(cases, names, coarse, only):
             least = top - (1 - _RIVAL) * abs(top) - _ROUGH * np.abs(case.pressure.values).max()
             for region in values if not coarse else ():
                 for at in np.argwhere(are_peaks(values[region]) & (values[region] >= least)).tolist():
-                    task = Climb(EXTREMES[name][0], number, 0, region, *at)
-                    if task not in tasks:
-                        tasks[task] = []
-                        boxes.append(box_of(grids[region], task))
-                    tasks[task].append((name, j))
+                    start = Climb(EXTREMES[name][0], number, 0, region, *at)
+                    climbs.add(start, grids[region], answers[-1][name][:, j])
     scales = [np.abs(case.pressure.values).max(axis=1) for case in cases]
-    jets = [StackJets(case) for case in cases]
-    for task, value, place in zip(tasks, *climbed(jets, list(tasks), boxes, scales, cases[0].signs), strict=True):
-        for name, j in tasks[task]:
-            best = answers[task.batch][name][:, j]
-            if not best[0] >= value:
-                best[:] = value, *place
+    climbs.climb([StackJets(case) for case in cases], scales, cases[0].signs)
     for values, scale in zip(answers, scales, strict=True):
         for name, best in values.items():
             if name in _MAY_LACK:

@@ -33,7 +33,7 @@ class TooLarge(ValueError):
 
 
 @contextlib.contextmanager
-def words_of(study_file):
+def in_folder_of(study_file):
     """Inside it `place` looks for the files that words name in the folder of a study file first."""
     token = _folder.set(Path(study_file).parent)
     try:

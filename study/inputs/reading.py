@@ -8,7 +8,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from solver.numerics.userfile import NoFile, opened, words_of
+from solver.numerics.userfile import NoFile, in_folder_of, opened
 
 from ..terminal import on_one_line, shown
 from .definition import Definition, StudyError, definition_of
@@ -38,7 +38,7 @@ _NO_QUOTES = re.compile(r"=[\s\[{]*+(?:[-+.\d][-+.\deE_]*+\s*+)?(?:[^\W\d_]|±)"
 def read(path) -> Definition:
     """Definition of a study file, in whose folder the files that it names are looked for first. Raises StudyError with
     all its mistakes."""
-    with words_of(path):
+    with in_folder_of(path):
         return from_tables(*parsed(path))
 
 

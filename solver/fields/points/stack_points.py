@@ -6,8 +6,7 @@ import numpy as np
 
 from ...compiled.wave_sums import STATES
 from ...kernels.transfer_stack import StackWaves
-from ..waves import FIRST
-from .wave_points import END, rules_of
+from .wave_points import END, FIRST, rules_of
 
 
 class StackPoints(NamedTuple):

@@ -27,13 +27,16 @@ from ...kernels.transfer import (
 )
 from ...numerics import special
 from ...numerics.quadrature import gauss_legendre
-from ..waves import FIRST, SHORTEST, quadrature
+from ..waves import SHORTEST, quadrature
 from . import edge_waves
 
 #: The sum for a field that decays like e^(-kz) ends at k = END/z: the rest is 1e-12 of the largest stress.
 END = 28.0
 #: A panel of 20 Gauss points spans at most _RADIANS radians of phase: the error is 1e-12 of the integral.
 _RADIANS = 32.0
+#: The first panel ends at FIRST times the shortest length of waves, 1/a, 1/h, or 1/n of these. With 1e-5, as with 1, no
+#: stress and no first derivative of 500 random layers and 120 stacks changes by more than 5e-15 of the largest.
+FIRST = 0.1
 #: A panel of short waves at k is at most _SHARE k wide: at the points that they serve, their phase turns by at most
 #: 260/k for each unit of k.
 _SHARE = 0.125
@@ -141,6 +144,7 @@ def rules_of(pressure, first, last, radius):
     """k (K,), p and f of :class:`OctaveWaves` from `first` to `last`: of the waves that are felt everywhere, and of the
     short ones next to the edge, None if there are none."""
     split = last > 1.2 * edge_waves.LAST and edge_waves.have_edge_waves(pressure.mesh)
+    first = min(first, _RADIANS / (1 + radius))
     k, weight = quadrature(first, edge_waves.LAST if split else min(last, SHORTEST), 1 + radius, _RADIANS)
     p = edge_waves.transform(pressure, k) * (k * weight * (edge_waves.longer(k) if split else 1.0))
     long = k, p, None

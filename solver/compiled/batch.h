@@ -2,7 +2,7 @@
    columns are in blocks of 8 rows: `_blocks` of tables.py. LAYOUT changes with all that is here: library.py takes no
    core of another one. */
 #include <stdint.h>
-#define LAYOUT 5
+#define LAYOUT 6
 enum { LOAD, RADIUS, DEPTH };               /* the control of a batch */
 enum { DISC_CELL, POWER_LAW, SMOOTH, CELL };        /* its micro law */
 /* A family of cells on the coated body (cells.py): these numbers, PIECES pieces an octave of 1 + kappa y with the
@@ -74,3 +74,10 @@ typedef struct {
     const double *f, *windows;              /* complex (size, waves), and (rows, columns); or NULL */
     double *sums;                           /* (6, fields, points) */
 } Sums;
+/* Boxes (boxes.h) of a place u, v, in which the stresses are models: values and derivatives by u, v, uu, uv, vv. */
+typedef struct {
+    int64_t tasks;
+    const int64_t *functions;
+    const double *models, *centre, *low, *high; /* (6, 4, tasks), (tasks, 2) each */
+    double *places, *values;                /* (tasks, 2), (tasks,) */
+} Boxes;

@@ -62,7 +62,8 @@ typedef struct {
     double *D_off, *D_least;                /* (curves,) */
 } Sticking;
 /* Sums over `waves` waves at points (waves.h): the constants of `size` bodies, and of each point its body, the end of
-   its waves, the place, the layer's thickness and Poisson's ratio, the two numbers of across, and its row of windows. */
+   its waves, the place, the layer's thickness and Poisson's ratio, the parts of antiplane waves that the interface
+   returns and lets pass, and its row of windows. */
 typedef struct {
     int64_t points, size, waves, thin, columns, fields, most, kind;
     double S, T;

@@ -1,4 +1,4 @@
-/* Sine and cosine, and the Bessel functions J_0 to J_7 of x >= 0, to about 1e-15. The tables are of tools/make_bessel.py;
+/* Sine and cosine, and the Bessel functions J_0 to J_7 of x >= 0, to about 1e-15. tools/make_bessel.py prints the tables;
    the highest powers are first. */
 static const double NEAR[17][2] = {
     {4.0030437640628113e-13, 1.2093613396338289e-14}, {-1.2433011305498057e-11, -4.004572738786147e-13},

@@ -1,5 +1,5 @@
-/* Sums over waves at single points: as solver/fields/points/wave_points.py and edge_waves.py, their reference, which say
-   what is computed. W waves of one point are in the lanes. */
+/* Sums over waves at single points: as wave_points.py and edge_waves.py of solver/fields/points, their reference, which
+   say what is computed. W waves of one point are in the lanes. */
 #include "bessel.h"
 enum { DIFFERENCE, LAYER, BODY, STATES };   /* where the points are; STATES: the states are those of the caller */
 enum { OF_STATE = 6, JET = 6, MOST_FIELDS = 6, OF_HANKEL = 8 };

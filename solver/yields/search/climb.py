@@ -18,12 +18,12 @@ _SAME, _SMALLEST, _MOST = 1e-13, 1e-8, 30
 _STEPS = 4.0
 
 
-def climb(jets, value, functions, start, half, low, high, scale):
+def climb(jets, value, numbers, start, half, low, high, scale):
     """The largest values (T,) of T tasks and their places (T, 2), each near its start.
 
     jets : ``jets(index, u, v)`` returns stresses with derivatives (6, 4, t), at one point (u, v) for each task `index`
     value : ``value(index, stresses)`` returns the values (t, m) of stresses (4, t, m)
-    functions : (T,), the function of each task, an index of :data:`~solver.compiled.highest.FUNCTIONS`
+    numbers : (T,), of the function of each task, an index of :data:`~solver.compiled.highest.FUNCTIONS`
     start, half : (T, 2), the first points (u, v), and half the widths of the first boxes
     low, high : (T, 2), bounds of the region
     scale : (T,), the magnitude of the stresses
@@ -45,7 +45,7 @@ def climb(jets, value, functions, start, half, low, high, scale):
         best[some], centre[some], models[..., some] = reached[better], trial[some], stresses[..., better]
         ends = np.maximum(centre - half, low)[active], np.minimum(centre + half, high)[active]
         boxes = models[..., active], centre[active], *ends
-        trial[active], promised[active] = highest_in_c(functions[active], *boxes) or _highest(active, value, *boxes)
+        trial[active], promised[active] = highest_in_c(numbers[active], *boxes) or _highest(active, value, *boxes)
         gain = promised[active] - best[active]
         done = ~(gain > _SAME * (np.abs(best) + scale)[active]) | np.all(half[active] < _SMALLEST, axis=1)
         place[active] = np.where((gain >= 0)[:, None], trial[active], centre[active])

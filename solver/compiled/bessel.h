@@ -1,5 +1,5 @@
-/* Sine and cosine, and the Bessel functions J_0 to J_7 of x >= 0, to about 1e-15. tools/make_bessel.py prints the tables;
-   the highest powers are first. */
+/* Sine and cosine, and the Bessel functions J_0 to J_7 of x >= 0, to about 1e-15. The tables are those of
+   tools/make_bessel.py; the highest powers are first. */
 static const double NEAR[17][2] = {
     {4.0030437640628113e-13, 1.2093613396338289e-14}, {-1.2433011305498057e-11, -4.004572738786147e-13},
     {3.363450456866669e-10, 1.1610597914042965e-11}, {-7.915323084479192e-09, -2.943013798390916e-10},

@@ -30,8 +30,9 @@ from ...numerics.quadrature import gauss_legendre
 from ..waves import SHORTEST, quadrature
 from . import edge_waves
 
-#: The sum for a field that decays like e^(-kz) ends at k = END/z: the rest is 1e-12 of the largest stress.
-END = 28.0
+#: The sum for a field that decays like e^(-kz) ends at k = END/z: in 60 random layers the rest was at most 4e-13 of the
+#: largest stress. With 28 it was 3e-11.
+END = 32.0
 #: A panel of 20 Gauss points spans at most _RADIANS radians of phase: the error is 1e-12 of the integral.
 _RADIANS = 32.0
 #: The first panel ends at FIRST times the shortest length of waves, 1/a, 1/h, or 1/n of these. With 1e-5, as with 1, no

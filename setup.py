@@ -29,7 +29,10 @@ FOLDER = "solver/compiled"
 CORE = Extension(
     "solver.compiled._core",
     sources=[f"{FOLDER}/{vectors}.c" for vectors in ("sse2", "avx2", "avx512")],
-    depends=[f"{FOLDER}/{name}.h" for name in ("batch", "lanes", "laws", "newton", "cases", "run", "sticking", "core")],
+    depends=[
+        f"{FOLDER}/{name}.h"
+        for name in ("batch", "lanes", "laws", "newton", "cases", "run", "sticking", "bessel", "waves", "boxes", "core")
+    ],
     # -Wno-psabi: functions with vectors in their arguments are all static. -O2 after what Python was built with.
     extra_compile_args=["-std=gnu11", "-O2", "-fno-math-errno", "-ffp-contract=fast", "-Wno-psabi", "-g0"],
     optional=True,

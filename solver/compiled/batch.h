@@ -2,7 +2,7 @@
    columns are in blocks of 8 rows: `_blocks` of tables.py. LAYOUT changes with all that is here: library.py takes no
    core of another one. */
 #include <stdint.h>
-#define LAYOUT 4
+#define LAYOUT 6
 enum { LOAD, RADIUS, DEPTH };               /* the control of a batch */
 enum { DISC_CELL, POWER_LAW, SMOOTH, CELL };        /* its micro law */
 /* A family of cells on the coated body (cells.py): these numbers, PIECES pieces an octave of 1 + kappa y with the
@@ -61,3 +61,24 @@ typedef struct {
     Loads sticks, free;
     double *D_off, *D_least;                /* (curves,) */
 } Sticking;
+/* Sums over `waves` waves at points (waves.h): the constants of `size` bodies, and of each point its body, the end of
+   its waves, the place, the layer's thickness and Poisson's ratio, the parts of antiplane waves that the interface
+   returns and lets pass, and its row of windows. */
+typedef struct {
+    int64_t points, size, waves, thin, columns, fields, most, kind;
+    double S, T;
+    const int64_t *orders, *cases, *ends, *window;
+    const double *r, *z, *h, *nu, *returned, *passed;
+    const double *k, *p;                    /* (waves,), (size, waves) */
+    const double *surface, *down, *up, *base;   /* (4, size, thin), (2, size, waves - thin) twice, (2, size, waves) */
+    const double *states;                   /* (6, points, columns) of STATES, or 4 where there are no more */
+    const double *f, *windows;              /* complex (size, waves), and (rows, columns); or NULL */
+    double *sums;                           /* (6, fields, points) */
+} Sums;
+/* Boxes (boxes.h) of a place u, v, in which the stresses are models: values and derivatives by u, v, uu, uv, vv. */
+typedef struct {
+    int64_t tasks;
+    const int64_t *functions;
+    const double *models, *centre, *low, *high; /* (6, 4, tasks), (tasks, 2) each */
+    double *places, *values;                /* (tasks, 2), (tasks,) */
+} Boxes;

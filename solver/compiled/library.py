@@ -21,7 +21,7 @@ FILE = "_core" + EXTENSION_SUFFIXES[-1]
 VARIANTS, VARIABLE = ("avx512", "avx2", "sse2"), "ROUGHCOAT_CORE"
 
 #: LAYOUT of batch.h. A core that was built with another layout would read the numbers of this one at wrong places.
-LAYOUT = 4
+LAYOUT = 6
 
 _LAYERED = ("h", "m", "n", "bonded", "c1", "c2", "one_c1", "one_c2", "plus_c1", "one_c1c2")
 
@@ -90,6 +90,29 @@ class CSticking(Structure):
     ]
 
 
+class CSums(Structure):
+    """As in batch.h."""
+
+    _fields_ = [
+        *((name, c_int64) for name in ("points", "size", "waves", "thin", "columns", "fields", "most", "kind")),
+        *(("S", c_double), ("T", c_double)),
+        *(
+            (name, c_void_p)
+            for name in ("orders", "cases", "ends", "window", "r", "z", "h", "nu", "returned", "passed")
+        ),
+        *((name, c_void_p) for name in ("k", "p", "surface", "down", "up", "base", "states", "f", "windows", "sums")),
+    ]
+
+
+class CBoxes(Structure):
+    """As in batch.h."""
+
+    _fields_ = [
+        *(("tasks", c_int64), ("functions", c_void_p)),
+        *((name, c_void_p) for name in ("models", "centre", "low", "high", "places", "values")),
+    ]
+
+
 def pointer(array: np.ndarray, start: int = 0) -> int:
     """The address of a contiguous array, from its row `start` on."""
     return array.ctypes.data + start * (array.strides[0] if array.ndim else 0)
@@ -99,8 +122,8 @@ def layout() -> int:
     """The number that `roughcoat_layout` returns in a core built of these sources: it combines LAYOUT and the sizes of
     the structures."""
     number = LAYOUT
-    for structure in (CBatch, CMesh, CTable, CSticking):
-        number = number * 4096 + sizeof(structure)
+    for structure in (CBatch, CMesh, CTable, CSticking, CSums, CBoxes):
+        number = number * 512 + sizeof(structure)
     return number
 
 
@@ -150,10 +173,24 @@ def core() -> Callable | None:
 
 def sticking_core() -> Callable | None:
     """The function ``sticking(curves)`` of the variant that is chosen, of a :class:`CSticking`; as :func:`core`."""
+    return _chosen_of("sticking", CSticking)
+
+
+def sums_core() -> Callable | None:
+    """The function ``sums(waves)`` of the variant that is chosen, of a :class:`CSums`; as :func:`core`."""
+    return _chosen_of("sums", CSums)
+
+
+def boxes_core() -> Callable | None:
+    """The function ``boxes(tasks)`` of the variant that is chosen, of a :class:`CBoxes`; as :func:`core`."""
+    return _chosen_of("boxes", CBoxes)
+
+
+def _chosen_of(work: str, structure: Any) -> Callable | None:
     if not (name := _chosen()):
         return None
-    function = getattr(_library(), f"roughcoat_sticking_{name}")
-    function.argtypes, function.restype = [POINTER(CSticking)], None
+    function = getattr(_library(), f"roughcoat_{work}_{name}")
+    function.argtypes, function.restype = [POINTER(structure)], None
     return function
 
 

@@ -19,7 +19,7 @@ from ..numerics.quadrature import gauss_legendre
 _POINTS, _RADIANS = 20, 20.0
 #: The first panel ends at this times min(1/a, 1/h). Stiff layers, which bend over n times that length, have n times
 #: less.
-FIRST = 1e-4
+_FIRST = 1e-4
 #: The integral for a field that decays like e^(-kz) ends at k = _END/z.
 _END = 36.0
 #: It ends at SHORTEST at the latest: so many waves take some seconds. In films with h below THINNEST a stress near the
@@ -29,8 +29,8 @@ SHORTEST, MISSED = 1.5e5, 1e-3
 _MOST = 1e6
 #: Largest radius, in a: squares of larger radii overflow.
 _FARTHEST = 1e9
-#: These replace _END and SHORTEST if an error of some percent is allowed.
-_ROUGH_END, _ROUGH_SHORTEST = 8.0, 2e3
+#: These replace FIRST, _END and SHORTEST if an error of some percent is allowed, in stresses alone.
+_ROUGH_FIRST, _ROUGH_END, _ROUGH_SHORTEST = 0.1, 8.0, 2e3
 THINNEST = _END / SHORTEST
 #: The ends of rules and the reach of their panels are rounded up to whole numbers of 1/_OF_OCTAVE octave.
 _OF_OCTAVE = 3
@@ -109,10 +109,12 @@ def integrals(load, layers, h, pressure, r, rows, roughly=False):
     h : (B,), thickness of the first layer in a. No layer's thickness may differ between cases by a factor of 2 or more
     roughly : whether an error of some percent is allowed
     """
-    end, shortest = (_ROUGH_END, _ROUGH_SHORTEST) if roughly else (_END, SHORTEST)
+    rough = _ROUGH_FIRST, _ROUGH_END, _ROUGH_SHORTEST
+    first, end, shortest = rough if roughly else (_FIRST, _END, SHORTEST)
     z = np.array([row.z for row in rows]).T
     last = np.minimum(end / np.array([row.reach(h) for row in rows]).min(axis=1), shortest)
-    k, weight = quadrature(FIRST / layers.longest(h), last.max(), 1 + r.max())
+    reach = 1 + r.max()
+    k, weight = quadrature(min(first / layers.longest(h), _RADIANS / reach), last.max(), reach)
     kinds = dict.fromkeys(row[:2] for row in rows)
     p = (pressure.transform(k) * weight)[:, None]
     whole, most = np.zeros((len(load.orders), len(h), len(rows), len(r))), max(load.orders)

@@ -202,14 +202,19 @@ def wave_state(kind, bodies, X, x, load, thin):
     return tuple(a + b for a, b in zip(decaying(x, nu, *down), growing(X - x, nu, *up), strict=True))
 
 
+def across_interface(bodies):
+    """The parts of an antiplane wave in the layer that the interface returns and lets pass."""
+    alpha, bonded = bodies.alpha, bodies.bonded
+    return np.where(bonded, (alpha - 1) / (alpha + 1), 1.0), np.where(bonded, 2 / (alpha + 1), 0.0)
+
+
 def antiplane(kind, bodies, X, x):
     """The pair (Q, v') of a wave of tangential traction: shear stress and displacement across the plane of the wave.
     In a body below a frictionless interface, and in a rigid one, both are 0."""
-    alpha, bonded = bodies.alpha, bodies.bonded
-    returned, passed = np.where(bonded, (alpha - 1) / (alpha + 1), 1.0), np.where(bonded, 2 / (alpha + 1), 0.0)
+    returned, passed = across_interface(bodies)
     around = passed * np.exp(-2 * X) - np.expm1(-2 * X)  # 1 - returned e^(-2X)
     if kind == StatePart.BODY:
-        Q = np.where(alpha > 0, passed, 0.0) * np.exp(-x) / around
+        Q = np.where(bodies.alpha > 0, passed, 0.0) * np.exp(-x) / around
         return Q, -2 * Q
     up = returned * np.exp(x - 2 * X)
     down = returned * np.exp(-2 * X - x) if kind == StatePart.DIFFERENCE else np.exp(-x)

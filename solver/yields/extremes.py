@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiled.highest import FUNCTIONS
 from ..fields.invariants import invariants, mises
 from .search.climb import climb
 from .search.jets import Jets
@@ -295,7 +296,8 @@ def _climbed(jets, tasks, boxes, scales, signs):
         return values
 
     scale = np.array([scales[task.batch][task.case] for task in tasks])
-    values, places = climb(at, value, *boxes, scale)
+    numbers = np.array([FUNCTIONS.index(task.function) for task in tasks])
+    values, places = climb(at, value, numbers, *boxes, scale)
     r = np.where(root, np.sqrt(np.maximum(1 - places[:, 0] * np.abs(places[:, 0]), 0.0)), places[:, 0])
     return values, np.stack([r * np.array(signs)[side], places[:, 1]], axis=1)
 

@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...compiled.wave_sums import STATES
 from ...kernels.transfer_stack import StackWaves
-from ..waves import FIRST
-from .wave_points import END, rules_of
+from .wave_points import END, FIRST, rules_of
 
 
 class StackPoints(NamedTuple):
@@ -40,6 +40,12 @@ class StackPoints(NamedTuple):
         if load[1] == 0:
             return v, 0.0, 0.0
         return v, *(waves.antiplane(kind[0], z[None], kind[1])[:, 0] * p)
+
+    def constants(self, load, kind, case, z, end):
+        """The states themselves for the compiled core, as :meth:`~.wave_points.OctaveWaves.constants`."""
+        v, *pair = self.state(load, kind, case, z, end)
+        states = np.concatenate([v, pair]) if load[1] else v
+        return {"kind": STATES, "size": 1}, {"states": states}
 
 
 def stack_points(stack, h, pressure, radius, least, tractions):

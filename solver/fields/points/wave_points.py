@@ -9,10 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...compiled.library import sums_core
+from ...compiled.wave_sums import sums_in_c
 from ...kernels.transfer import (
     THIN,
     Bodies,
     StatePart,
+    across_interface,
     antiplane,
     decaying,
     derivative,
@@ -24,13 +27,17 @@ from ...kernels.transfer import (
 )
 from ...numerics import special
 from ...numerics.quadrature import gauss_legendre
-from ..waves import FIRST, SHORTEST, quadrature
+from ..waves import SHORTEST, quadrature
 from . import edge_waves
 
-#: The sum for a field that decays like e^(-kz) ends at k = END/z: the rest is 1e-12 of the largest stress.
-END = 28.0
+#: The sum for a field that decays like e^(-kz) ends at k = END/z: in 60 random layers the rest was at most 4e-13 of the
+#: largest stress. With 28 it was 3e-11.
+END = 32.0
 #: A panel of 20 Gauss points spans at most _RADIANS radians of phase: the error is 1e-12 of the integral.
 _RADIANS = 32.0
+#: The first panel ends at FIRST times the shortest length of waves, 1/a, 1/h, or 1/n of these. With 1e-5, as with 1, no
+#: stress and no first derivative of 500 random layers and 120 stacks changes by more than 5e-15 of the largest.
+FIRST = 0.1
 #: A panel of short waves at k is at most _SHARE k wide: at the points that they serve, their phase turns by at most
 #: 260/k for each unit of k.
 _SHARE = 0.125
@@ -95,6 +102,19 @@ class OctaveWaves(NamedTuple):
         these = Bodies(*(values[case] for values in bodies))
         return v, *(p * values for values in antiplane(kind, these, X, x))
 
+    def constants(self, load, kind, case, z, end):
+        """The numbers and arrays from which the compiled core forms these states
+        (:mod:`solver.compiled.wave_sums`)."""
+        bodies, constants = self.bodies, self.loads[load]
+        numbers = {"kind": int(kind), "size": len(self.h), "thin": self.thin, "S": load[0], "T": load[1]}
+        arrays = {"h": self.h[case], "p": self.p, "surface": constants.surface, "up": constants.up}
+        arrays |= {"down": constants.down_less if kind == StatePart.DIFFERENCE else constants.down}
+        arrays |= {"base": constants.base}
+        if load[1]:
+            returned, passed = (values[:, 0][case] for values in across_interface(bodies))
+            arrays |= {"returned": returned, "passed": passed}
+        return numbers, arrays
+
 
 class _Constants(NamedTuple):
     """The constants of the waves of one load, multiplied by p.
@@ -125,6 +145,7 @@ def rules_of(pressure, first, last, radius):
     """k (K,), p and f of :class:`OctaveWaves` from `first` to `last`: of the waves that are felt everywhere, and of the
     short ones next to the edge, None if there are none."""
     split = last > 1.2 * edge_waves.LAST and edge_waves.have_edge_waves(pressure.mesh)
+    first = min(first, _RADIANS / (1 + radius))
     k, weight = quadrature(first, edge_waves.LAST if split else min(last, SHORTEST), 1 + radius, _RADIANS)
     p = edge_waves.transform(pressure, k) * (k * weight * (edge_waves.longer(k) if split else 1.0))
     long = k, p, None
@@ -134,7 +155,7 @@ def rules_of(pressure, first, last, radius):
     ends = edge_waves.LEAST * (last / edge_waves.LEAST) ** (np.arange(panels + 1) / panels)
     t, w = gauss_legendre(20)
     k, weight = (ends[:-1, None] + np.diff(ends)[:, None] * t).ravel(), (np.diff(ends)[:, None] * w).ravel()
-    p = np.broadcast_to(k * weight, (len(pressure.values), len(k)))
+    p = np.tile(k * weight, (len(pressure.values), 1))
     return long, (k, p, edge_waves.of_edge(pressure, k))
 
 
@@ -165,24 +186,37 @@ def sums(waves, integrands, load, orders, kind, case, r, z):
     orders : of the Bessel function of each integrand
     kind : where all points are: :class:`~solver.kernels.transfer.StatePart`, or in which region of the stack
     """
-    integrals = np.empty((JET, len(orders), len(r)))
     reach = waves.reach(kind, case, z)
-    order = np.argsort(-reach)
-    ends = np.searchsorted(waves.k, END / reach[order])
-    start = 0
+    ends, most = np.searchsorted(waves.k, END / reach), _AT_ONCE
+    of_some = _of_some
+    if sums_core() and integrands in (of_normal, of_sliding):
+        of_some, most = _in_c, np.inf if isinstance(waves, OctaveWaves) else _AT_ONCE
+    integrals = np.empty((JET, len(orders), len(r)))
+    order, start = np.argsort(-reach), 0
     while start < len(order):
         stop = start + 1
-        while stop < len(order) and (stop + 1 - start) * ends[stop] <= _AT_ONCE:
+        while stop < len(order) and (stop + 1 - start) * ends[order[stop]] <= most:
             stop += 1
         some = order[start:stop]
-        integrals[..., some] = _of_some(
-            waves, integrands, load, orders, kind, case[some], r[some], z[some], int(ends[stop - 1])
-        )
+        integrals[..., some] = of_some(waves, integrands, load, orders, kind, case[some], r[some], z[some], ends[some])
         start = stop
     return integrals
 
 
-def _of_some(waves, integrands, load, orders, kind, case, r, z, end):
+def _in_c(waves, integrands, load, orders, kind, case, r, z, ends):
+    """As :func:`_of_some`, by the compiled core."""
+    end = int(ends.max())
+    numbers, arrays = waves.constants(load, kind, case, z, end)
+    nu = np.broadcast_to(waves.poisson(kind, case)[:, 0], len(r))
+    arrays |= {"orders": orders, "cases": case, "ends": ends, "r": r, "z": z, "nu": nu, "k": waves.k}
+    if waves.f is not None:
+        octave, which = np.unique(edge_waves.last_octave(r), return_inverse=True)
+        arrays |= {"f": waves.f, "windows": edge_waves.shorter(waves.k[:end], octave), "window": which}
+    return sums_in_c(numbers | {"columns": end}, arrays)
+
+
+def _of_some(waves, integrands, load, orders, kind, case, r, z, ends):
+    end = int(ends.max())
     k, nu = waves.k[:end], waves.poisson(kind, case)
     v, Q, across = waves.state(load, kind, case, z, end)
     first = [k * values for values in derivative(v, nu)]

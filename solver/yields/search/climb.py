@@ -3,6 +3,8 @@ trusted in boxes, which shrink where a model proves wrong and follow its largest
 
 import numpy as np
 
+from ...compiled.highest import highest_in_c
+
 #: A model is evaluated on a grid of _POINTS points in each direction, then on at most _ROUNDS stencils about the best
 #: point, until a stencil is as narrow as _LEAST of the box.
 _POINTS, _LEAST, _ROUNDS = 9, 3e-6, 20
@@ -16,11 +18,12 @@ _SAME, _SMALLEST, _MOST = 1e-13, 1e-8, 30
 _STEPS = 4.0
 
 
-def climb(jets, value, start, half, low, high, scale):
+def climb(jets, value, numbers, start, half, low, high, scale):
     """The largest values (T,) of T tasks and their places (T, 2), each near its start.
 
     jets : ``jets(index, u, v)`` returns stresses with derivatives (6, 4, t), at one point (u, v) for each task `index`
     value : ``value(index, stresses)`` returns the values (t, m) of stresses (4, t, m)
+    numbers : (T,), of the function of each task, an index of :data:`~solver.compiled.highest.FUNCTIONS`
     start, half : (T, 2), the first points (u, v), and half the widths of the first boxes
     low, high : (T, 2), bounds of the region
     scale : (T,), the magnitude of the stresses
@@ -41,7 +44,8 @@ def climb(jets, value, start, half, low, high, scale):
         some = active[better]
         best[some], centre[some], models[..., some] = reached[better], trial[some], stresses[..., better]
         ends = np.maximum(centre - half, low)[active], np.minimum(centre + half, high)[active]
-        trial[active], promised[active] = _highest(active, value, models[..., active], centre[active], *ends)
+        boxes = models[..., active], centre[active], *ends
+        trial[active], promised[active] = highest_in_c(numbers[active], *boxes) or _highest(active, value, *boxes)
         gain = promised[active] - best[active]
         done = ~(gain > _SAME * (np.abs(best) + scale)[active]) | np.all(half[active] < _SMALLEST, axis=1)
         place[active] = np.where((gain >= 0)[:, None], trial[active], centre[active])

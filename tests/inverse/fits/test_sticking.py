@@ -187,6 +187,24 @@ def test_the_bits_of_a_curve_under_maugis():
         assert alone[name].values[0] == together[name].values[1], name
 
 
+def test_rings_of_a_rigid_paraboloid_on_a_half_space_are_in_closed_form():
+    """Those of the solver are the same, to what is left of narrow ones by subtraction; under an elastic punch, or on a
+    layer, they are tabulated."""
+
+    def rings(inputs, *free):
+        question = read_question([*free, "w_adhesion"], inputs | {"w_adhesion": "1 mJ/m^2"}, "D", "P", USUAL)
+        return TermTable(question.model).rings
+
+    ring = {"adhesion": "maugis", "sigma0": "2 kPa"}
+    of_rigid = rings(BARE | ring | {"punch": "rigid", "E2": "5 kPa"}, "E2")
+    assert of_rigid.in_closed_form
+    x = np.linspace(-5, 0, 6)
+    assert_allclose(of_rigid._ratios({}, x, x - 1.0), 1, rtol=0, atol=1e-11)
+    elastic = {"punch": None, "E_punch": "50 kPa", "nu_punch": 0.3, "E2": "5 kPa"}
+    assert not rings({name: value for name, value in (BARE | ring | elastic).items() if value}, "E2").in_closed_form
+    assert not rings(MAUGIS | {"E1": "5 kPa"}, "E1").in_closed_form
+
+
 def test_spreads_of_other_inputs_make_the_answer_less_sure():
     """By a modulus of the base with ±: E1 follows it as it does when the base has another one."""
     P, free = loads(DEPTHS, **GEL | TRUE), ["E1", "w_adhesion"]

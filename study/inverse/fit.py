@@ -28,8 +28,9 @@ from .fits.tables.branch import planned
 from .fits.tasks import Task, fit_task, forget
 from .no_pull import OF_ADHESION, joined, without, without_pull
 
-#: Number of curves in a block, and the multiple to which the number of their points is padded.
-_BLOCK, _PART = 64, 64
+#: Number of curves in a block, and the multiple to which the number of their points is padded: from 8 for curves of up
+#: to 127 points to 64 for those of 512 and more, at most an eighth of the points.
+_BLOCK, _PARTS = 64, (8, 64)
 #: Largest number of fits in the search for the contact point of a part of the depth.
 _ROUNDS = 5
 _calls = count()
@@ -111,21 +112,33 @@ def fit(
     question = read_question(free, parameters, x, y, options)
     limits = region(depth, x)
     data = _columns(curves, question.model, plan)
-    X, Y, S = _arrays(data, question.model, sigma)
+    arrays, about = _arrays(data, question.model, sigma), (limits, screen_of(progress))
+    fitted = _fitted(question, arrays, about, plan=plan)
+    fitted = fitted.assign_coords({name: data[name] for name in data.coords})
+    fitted = fitted.assign_attrs({"depth": list(limits)} if limits else {})
+    other_free_inputs = {*question.free} - {*OF_ADHESION}
+    if "w_adhesion" in question.bounds and "w_adhesion" not in question.priors and other_free_inputs and not plan:
+        rest, bare = without(free, parameters)
+        without_adhesion = read_question(rest, bare, x, y, options)
+        fitted = _with_and_without(fitted, without_adhesion, arrays, about, question.bounds["w_adhesion"][0])
+    return _as_called(fitted.assign_attrs(words_of(question, fitted)), question.called)
+
+
+def _fitted(question: Question, arrays: tuple, about: tuple, plan: bool = False, judged: bool = True) -> xr.Dataset:
+    """The fits of curves, without the words for their summary.
+
+    arrays : of :func:`_arrays`
+    about : the part of the depth that counts, or None, and the screen for the progress
+    judged : whether the assumptions of the model are looked at
+    """
+    (X, Y, S), (limits, screen) = arrays, about
     if plan:
         Y = _planned(question, X)
     counts = np.isfinite(X) & np.isfinite(Y)
     if limits:
         counts = _within(question, (X, Y, S), counts, limits)
-    rows, status = _fits_of_curves(question, (X, Y, S), counts, screen_of(progress))
-    fitted = fit_dataset(question, rows, status, X, Y, counts, plan)
-    fitted = fitted.assign_coords({name: data[name] for name in data.coords})
-    fitted = fitted.assign_attrs({"depth": list(limits)} if limits else {})
-    other_free_inputs = {*question.free} - {*OF_ADHESION}
-    if "w_adhesion" in question.bounds and "w_adhesion" not in question.priors and other_free_inputs and not plan:
-        options |= {"depth": limits, "x": x, "y": y, "progress": progress}
-        fitted = _with_and_without(fitted, (X, Y, S), (free, options, parameters), question.bounds["w_adhesion"][0])
-    return _as_called(fitted.assign_attrs(words_of(question, fitted)), question.called)
+    rows, status = _fits_of_curves(question, (X, Y, S), counts, screen)
+    return fit_dataset(question, rows, status, (X, Y, counts), plan, judged)
 
 
 def _within(question: Question, arrays: tuple, counts: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
@@ -158,13 +171,13 @@ def _as_called(fitted: xr.Dataset, called: dict[str, str]) -> xr.Dataset:
     return renamed.assign_coords(lists).assign_attrs(free=words) if called else fitted
 
 
-def _with_and_without(fitted: xr.Dataset, arrays: tuple, call: tuple, low: float) -> xr.Dataset:
-    """The fits; for curves without a pull, those of the same call without adhesion."""
-    (X, Y, S), (free, options, parameters) = arrays, call
-    rest, bare = without(free, parameters)
-    points, options = {"D": (X, "m"), "P": (Y, "N")}, options | {"sigma": S}
-    flags = without_pull(fitted, fit(points, free=rest, **options | {"intervals": None}, **bare), low)
-    plain = fit(points, free=rest, **options, **bare) if flags[0].any() else fitted
+def _with_and_without(fitted: xr.Dataset, question: Question, arrays: tuple, about: tuple, low: float) -> xr.Dataset:
+    """The fits; for curves without a pull, those of the `question` without adhesion.
+
+    arrays, about : of :func:`_fitted`; low : the low bound of w_adhesion
+    """
+    flags = without_pull(fitted, _fitted(replace(question, intervals=None), arrays, about, judged=False), low)
+    plain = _fitted(question, arrays, about) if flags[0].any() else fitted
     return joined(fitted, plain, *flags)
 
 
@@ -186,7 +199,7 @@ def _fits_of_curves(
         except KeyboardInterrupt:
             if not rows:
                 raise
-            warnings.warn(f"fit: interrupted after {len(rows)} of {len(X)} curves, which are kept", stacklevel=3)
+            warnings.warn(f"fit: interrupted after {len(rows)} of {len(X)} curves, which are kept", stacklevel=4)
     return rows, np.where((status < 0) & ~np.isin(np.arange(len(X)), list(rows)), NOT_RUN, status)
 
 
@@ -285,7 +298,9 @@ def _blocks(counts: np.ndarray, usable: np.ndarray, stiffness: np.ndarray) -> It
 
     Similar curves come together, since they share tiles.
     """
-    size = -(-counts.sum(axis=1) // _PART) * _PART
+    points = np.maximum(counts.sum(axis=1), 1)
+    part = np.clip(2 ** (np.log2(points).astype(int) - 3), *_PARTS)
+    size = -(-points // part) * part
     for points in np.unique(size[usable]):
         same = np.flatnonzero((size == points) & usable)
         same = same[np.argsort(stiffness[same], kind="stable")]

@@ -53,15 +53,15 @@ def without_pull(fitted: xr.Dataset, plain: xr.Dataset, low: float) -> tuple[np.
 
     plain : the fits without adhesion; low : the low bound of w_adhesion
     """
-    no_pull, betters = np.zeros((2, fitted.sizes["curve"]), bool)
-    for i in np.flatnonzero(~plain["fit_status"].isin(_LOST).values & ~fitted["fit_status"].isin(_LOST).values):
-        with_pull, bare = fitted.isel(curve=i), plain.isel(curve=i)
-        sums = [float((part["residual"] ** 2).sum()) for part in (with_pull, bare)]
-        freedom = max(float(with_pull["effective_points"]) - with_pull.sizes["cov_i"], 1.0)
-        gain = (sums[1] - sums[0]) / max(sums[0], 1e-300) * freedom
-        betters[i] = gain > 0 and float(with_pull["w_adhesion"]) > low * (1 + 1e-6)
-        by_chance = not betters[i] or special.fdtr(_MORE, freedom, gain / _MORE) < _SURE
-        no_pull[i] = by_chance and _is_quiet(bare)
+    are_fits = ~plain["fit_status"].isin(_LOST).values & ~fitted["fit_status"].isin(_LOST).values
+    squares, bare_squares = (np.nansum(part["residual"].values ** 2, axis=1) for part in (fitted, plain))
+    freedom = np.maximum(fitted["effective_points"].values - fitted.sizes["cov_i"], 1.0)
+    gain = (bare_squares - squares) / np.maximum(squares, 1e-300) * freedom
+    betters = are_fits & (gain > 0) & (fitted["w_adhesion"].values > low * (1 + 1e-6))
+    by_chance = are_fits & (~betters | (special.fdtr(_MORE, freedom, gain / _MORE) < _SURE))
+    no_pull = np.zeros(len(by_chance), bool)
+    for i in np.flatnonzero(by_chance):
+        no_pull[i] = _is_quiet(plain.isel(curve=i))
     return no_pull, betters
 
 

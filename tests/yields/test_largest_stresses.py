@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solver import Problem, solve
+from solver.fields import waves
 from solver.fields.contact import of_contacts as fields_of
 from solver.fields.invariants import mises
 from solver.fields.pressure import Pressure
@@ -15,7 +16,7 @@ from solver.kernels.two_layers import TwoLayers
 from solver.numerics.mesh import mesh_of
 from solver.yields import contact
 from solver.yields.contact import of_contacts
-from solver.yields.extremes import extremes
+from solver.yields.extremes import extremes, regions
 from solver.yields.loaded import Loaded
 
 FOLDER = Path(__file__).parents[1] / "fields" / "references"
@@ -103,3 +104,20 @@ def test_contacts_are_searched_some_at_a_time(monkeypatch):
             tracemalloc.stop()
     assert most[1] < 1.5 * most[0], most
     assert_allclose(largest[0] / solution.p0, largest[0, 0] / solution.p0[0], rtol=1e-9)
+
+
+@pytest.mark.parametrize(("h", "n", "region"), [(0.005, 30.0, "inside"), (0.06, 0.2, "layer"), (3.0, 0.05, "layer")])
+def test_coarse_grids_take_half_of_the_waves(h, n, region, monkeypatch):
+    """With panels half as long and p^ from the whole contact, coarse stresses change by less than 1e-9: 20 Gauss points
+    integrate a wave over 40 radians that well. In these regions both rules end at the same wave."""
+    mesh, ratio = mesh_of(16), np.full(1, 0.3)
+    pressure = Pressure(mesh, (mesh.s + 0.4 * mesh.s**3)[None])
+    layers = TwoLayers(np.full(1, n), ratio, ratio, np.ones(1, dtype=bool))
+    loaded = Loaded(layers, np.full(1, h), pressure, False, 0.3, np.zeros(1))
+    grid = regions(loaded)[region]
+    monkeypatch.setattr(waves, "_AT_ONCE", 10**9)  # otherwise the rows end at other waves
+    half = loaded.stresses(grid.radius(grid.u), grid.v, grid.body, roughly=True)
+    monkeypatch.setattr(waves, "_ROUGH_RADIANS", 20.0)
+    monkeypatch.setattr(waves.edge_waves, "transform", Pressure.transform)
+    whole = loaded.stresses(grid.radius(grid.u), grid.v, grid.body, roughly=True)
+    assert_allclose(half, whole, rtol=0, atol=1e-9)

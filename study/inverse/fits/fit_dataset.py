@@ -54,14 +54,16 @@ class _Numbers(NamedTuple):
 
 
 def fit_dataset(
-    question: Question, rows: dict, status: np.ndarray, X: np.ndarray, Y: np.ndarray, there: np.ndarray, plan: bool
+    question: Question, rows: dict, status: np.ndarray, points: tuple, plan: bool, judged: bool = True
 ) -> xr.Dataset:
     """The Dataset that `fit` returns; for a `plan` without values and residuals.
 
     rows : curve -> (numbers of `fit_block`, the curve's row in them)
     status : (curve,) of curves without a row
-    X, Y, there : (curve, point), x and y, and whether there is a point
+    points : x, y, and whether there is a point, (curve, point) each
+    judged : whether the assumptions of the model are looked at
     """
+    X, Y, there = points
     model, names = question.model, (*question.model.unknowns, *question.shifts)
     status = status.astype(np.int8)
     for curve, (block, i) in rows.items():
@@ -85,7 +87,11 @@ def fit_dataset(
         variables[model.y] = (("curve", "point"), Y, about)
     attributes = {"level": question.level, "x": model.x, "y": model.y, "free": " ".join(question.free)}
     fitted = xr.Dataset(variables, coordinates, attributes)
-    return fitted.merge(_validity(question, fitted, numbers.value, X, there, _radii(fits, len(X))))
+    return (
+        fitted
+        if not judged
+        else fitted.merge(_validity(question, fitted, numbers.value, X, there, _radii(fits, len(X))))
+    )
 
 
 def _in_si(question: Question, names: tuple, fits: dict, X: np.ndarray, there: np.ndarray) -> _Numbers:

@@ -13,7 +13,8 @@ STEPS = 100  # largest number of steps
 _CLOSE = 1e-9  # smaller steps of all unknowns end the search; all unknowns are of order 1
 #: Precision of a search; unknowns are then within 1e-4 of their spreads.
 SURE = 1e-8
-AT_LEAST = 8  # a batch is padded to a multiple of so many curves
+#: A batch is padded to a multiple of so many curves: numpy sums the points of a lone curve in another order.
+AT_LEAST = 2
 #: Number of steps with hardly a gain that end the search: where a point lies at the beginning of the contact, the cost
 #: has a crease, along which steps are short. Unknowns are then within some 1e-3 of their spreads.
 _IDLE = 30
@@ -81,8 +82,7 @@ def minimise(
     for _ in range(steps):
         if not len(left):
             break
-        # Curves that are done leave the batch, which stays a multiple of AT_LEAST: the order of a sum, and with it
-        # the last digit, may depend on the size of the batch
+        # Curves that are done leave the batch, which stays a multiple of AT_LEAST
         rows = filled(left)
         new, decrease = _step(data.take(rows), fit.take(rows), fixed[rows], damping[rows])
         part = curve.take(rows)

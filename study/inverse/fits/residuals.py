@@ -82,12 +82,12 @@ class Worth(NamedTuple):
 
 
 @lru_cache(maxsize=32)
-def _family(n: int) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Eigenvalues (n,) and eigenvectors (n, n) of exp(-|i - j|/l) for each length l."""
+def _family(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues (_LENGTHS, n) and eigenvectors (_LENGTHS, n, n) of exp(-|i - j|/l) for each length l."""
     lengths = np.exp(np.linspace(np.log(0.5), np.log(n / 8), _LENGTHS))
     distances = np.abs(np.arange(n)[:, None] - np.arange(n))
-    pairs = [np.linalg.eigh(np.exp(-distances / length)) for length in lengths]
-    return [(np.maximum(values, 1e-9), vectors) for values, vectors in pairs]
+    values, vectors = np.linalg.eigh(np.exp(-distances / lengths[:, None, None]))
+    return np.maximum(values, 1e-9), vectors
 
 
 def noise_of(x: np.ndarray, e: np.ndarray, X: np.ndarray, contact: np.ndarray) -> Noise:
@@ -172,24 +172,21 @@ def _likeliest(E: np.ndarray, D: np.ndarray, waves: bool, more: float) -> tuple[
     """
     n, k = D.shape
     white = float(E @ E) / (n - k)
-    likeliest = np.ones(n), np.eye(n), white
     if not waves:
-        return likeliest
-    largest = None
-    for values, vectors in _family(n):
-        E_, D_ = vectors.T @ E, vectors.T @ D
-        spectra = 1 + _SHARES[:, None] * (values - 1)
-        scaled = D_ / np.sqrt(np.maximum(np.einsum("nk,nk->k", D_, D_), 1e-300))
-        A = np.einsum("sn,nk,nl->skl", 1 / spectra, scaled, scaled) + 1e-12 * np.eye(k)
-        b = np.einsum("sn,nk,n->sk", 1 / spectra, scaled, E_)
-        squares = (E_**2 / spectra).sum(axis=1) - np.einsum("sk,sk->s", b, np.linalg.solve(A, b[:, :, None])[:, :, 0])
-        squares = np.maximum(squares, 1e-300)
-        twice = -(n - k) * np.log(squares) - np.log(spectra).sum(axis=1) - np.linalg.slogdet(A)[1]
-        largest = twice[0] + more if largest is None else largest
-        best = int(twice.argmax())
-        if twice[best] > largest:
-            largest, likeliest = twice[best], (spectra[best], vectors, float(squares[best]) / (n - k))
-    return likeliest
+        return np.ones(n), np.eye(n), white
+    values, vectors = _family(n)  # of each length
+    E_, D_ = E @ vectors, np.swapaxes(vectors, 1, 2) @ D
+    spectra = 1 + _SHARES[:, None] * (values[:, None] - 1)  # of each length and share
+    scaled = D_ / np.sqrt(np.maximum(np.einsum("lnk,lnk->lk", D_, D_), 1e-300))[:, None]
+    A = np.einsum("lsn,lnk,lnj->lskj", 1 / spectra, scaled, scaled) + 1e-12 * np.eye(k)
+    b = np.einsum("lsn,lnk,ln->lsk", 1 / spectra, scaled, E_)
+    fitted = np.einsum("lsk,lsk->ls", b, np.linalg.solve(A, b[..., None])[..., 0])
+    squares = np.maximum((E_[:, None] ** 2 / spectra).sum(axis=2) - fitted, 1e-300)
+    twice = -(n - k) * np.log(squares) - np.log(spectra).sum(axis=2) - np.linalg.slogdet(A)[1]
+    length, share = np.unravel_index(twice.argmax(), twice.shape)
+    if twice[length, share] > twice[0, 0] + more:  # the share 0 is white noise
+        return spectra[length, share], vectors[length], float(squares[length, share]) / (n - k)
+    return np.ones(n), np.eye(n), white
 
 
 def worth_of(

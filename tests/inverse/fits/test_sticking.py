@@ -187,6 +187,38 @@ def test_the_bits_of_a_curve_under_maugis():
         assert alone[name].values[0] == together[name].values[1], name
 
 
+def test_a_stack_without_a_pull_has_the_fit_without_adhesion():
+    """Its modulus too, whose name has the number of the layer."""
+    deep = DEPTHS[DEPTHS > 0]
+    P = np.concatenate([np.zeros(len(DEPTHS) - len(deep)), loads(deep, **STACK)])
+    P += 0.01 * P.max() * np.random.default_rng(1).standard_normal(len(P))
+    name, about = "layers.1.E1", STACK | {"layers": [STACK["layers"][0] | {"E1": None}, STACK["layers"][1]]}
+    bare = fitted(DEPTHS, P, [name], **about)
+    free = {name: None, "w_adhesion": ("1e-6 J/m^2", "2e-3 J/m^2")}
+    fit = fitted(DEPTHS, P, free, **about, w_adhesion="1e-3 J/m^2")
+    assert fit.no_pull and fit.w_adhesion == 0
+    assert fit[name] == bare[name] and fit[f"{name}_low"] <= bare[f"{name}_low"]
+    assert fit.covariance.sel(cov_i=name, cov_j=name) == bare.covariance.sel(cov_i=name, cov_j=name)
+
+
+def test_rings_of_a_rigid_paraboloid_on_a_half_space_are_in_closed_form():
+    """Those of the solver are the same, to what is left of narrow ones by subtraction; under an elastic punch, or on a
+    layer, they are tabulated."""
+
+    def rings(inputs, *free):
+        question = read_question([*free, "w_adhesion"], inputs | {"w_adhesion": "1 mJ/m^2"}, "D", "P", USUAL)
+        return TermTable(question.model).rings
+
+    ring = {"adhesion": "maugis", "sigma0": "2 kPa"}
+    of_rigid = rings(BARE | ring | {"punch": "rigid", "E2": "5 kPa"}, "E2")
+    assert of_rigid.in_closed_form
+    x = np.linspace(-5, 0, 6)
+    assert_allclose(of_rigid._ratios({}, x, x - 1.0), 1, rtol=0, atol=1e-11)
+    elastic = {"punch": None, "E_punch": "50 kPa", "nu_punch": 0.3, "E2": "5 kPa"}
+    assert not rings({name: value for name, value in (BARE | ring | elastic).items() if value}, "E2").in_closed_form
+    assert not rings(MAUGIS | {"E1": "5 kPa"}, "E1").in_closed_form
+
+
 def test_spreads_of_other_inputs_make_the_answer_less_sure():
     """By a modulus of the base with ±: E1 follows it as it does when the base has another one."""
     P, free = loads(DEPTHS, **GEL | TRUE), ["E1", "w_adhesion"]

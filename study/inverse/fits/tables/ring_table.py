@@ -1,7 +1,8 @@
 """A table of :mod:`solver.smooth.adhesion.rings` over the contact radius and the width of a ring.
 
 It holds ratios: each part over that of a ring around a rigid paraboloid on a half-space, which is known in closed form.
-The ring of a curve follows from its work of adhesion and its stress, so these are not coordinates of the table.
+The ring of a curve follows from its work of adhesion and its stress, so these are not coordinates of the table. For a
+rigid paraboloid on a half-space all ratios are 1, and nothing is tabulated.
 
 Along x, the variable of the radius, the tiles are those of :mod:`.term_table`. Along y, the logarithm of the width over
 the unit of length, each tile has a separate lattice, and Chebyshev points. Along a curve c - a hardly changes.
@@ -12,12 +13,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solver.shapes import PARABOLOID
 from solver.smooth.adhesion.rings import rings
 
 from ....inputs.punch.shapes import ANGLES
 from ....inputs.scene.scene import with_unit
 from ..model import is_ratio
-from .terms import Terms
+from .terms import Terms, is_modulus
 from .tiles import WIDE, Chebyshev, Lattice, Position
 
 #: Powers of E, of the unit of lengths, of R and of the cotangent in the parts gap, opening, load and depth; and those
@@ -31,9 +33,9 @@ _OF_PARTS = ((0, 1), (-1, 1), (0, 2), (-1, 1))
 _POINTS, _WIDTHS = 12, 10
 #: Logarithm of the least width over the radius. Narrower rings have the same ratios, to about this relative width.
 _NARROW = np.log(1e-5)
-#: Number of steps of the search for y, first by rings in closed form, then by the table; last step that ends the
-#: search, and longest step.
-_FIRST, _STEPS, _NEAR, _LONGEST = 12, 12, 1e-11, 3.0
+#: Largest number of steps of the search for y, first by rings in closed form, then by the table. The search ends with a
+#: step below _NEAR, the first one below _CLOSE, after which the error is the square; and the longest step.
+_STEPS, _CLOSE, _NEAR, _LONGEST = 12, 1e-4, 1e-11, 3.0
 #: Number of curves that are searched together.
 _TOGETHER = 128
 #: Relative change of inputs for derivatives by their logarithms (ratios: change of the ratio).
@@ -76,6 +78,12 @@ class RingTable:
         places = 2 * np.arange(points) / points - 1
         self.of_x = np.stack(self.along_x.lagrange(places)) * np.array([1.0, 2 / WIDE])[:, None, None]
         self.lattices: dict[int, Lattice] = {}
+        scene = self.model.scene
+        moduli = [scene.values[name] for name in scene.values if is_modulus(name) and name != self.model.modulus]
+        usual = scene.parameters.get("shape", PARABOLOID) == PARABOLOID
+        self.in_closed_form = (
+            usual and scene.parameters.get("base", "layered") == "half_space" and bool(np.isinf(moduli).all())
+        )
 
     def pulls(self, values: dict, position: Position, first: np.ndarray, x: np.ndarray, moved: bool = False) -> tuple:
         """The logarithms of the pulls of attraction on load and depth and their slopes by x, (B, 4, L), at x (B, L) of
@@ -98,7 +106,7 @@ class RingTable:
         B, sigma, w = len(x), *self._of_law(values, len(x))
         scale = np.exp(np.broadcast_to(self.terms.factors(values).reshape(4, -1), (4, B)))
         sought = _Sought(scale, sigma, w / sigma)
-        read = _Read(self, position, first, x, moved)
+        read = _Closed(x) if self.in_closed_form else _Read(self, position, first, x, moved)
         y = self._searched(read, sought)
         parts, rows = read.parts(y), read.rows(y)
         value, by_x, by_y = (array * scale[:, :, None] for array in parts)
@@ -119,7 +127,7 @@ class RingTable:
         taken = np.log(np.where(-pull > 0, -pull, np.nan)) + np.log(s)
         return np.moveaxis(np.concatenate([taken, slopes]), 1, 0), others
 
-    def _searched(self, read: "_Read", sought: _Sought) -> np.ndarray:
+    def _searched(self, read: "_Read | _Closed", sought: _Sought) -> np.ndarray:
         """y (B, L) of the rings with the given work of adhesion, NaN where there is no such ring."""
         s, wanted = sought.sigma[:, None], np.log(sought.wanted)[:, None]
         near = np.log(np.pi / 4 * sought.wanted / (sought.sigma * sought.scale[1]))
@@ -131,14 +139,13 @@ class RingTable:
             G = gap + s * opening
             return np.clip((wanted - np.log(G)) * G / (of_gap + s * of_opening), -_LONGEST, _LONGEST)
 
-        for _ in range(_FIRST):
-            y = y + step(closed(read.x, y))
-        left = np.ones(y.shape, bool)
-        for _ in range(_STEPS):
-            by = np.where(left, step(read.parts(y, left)), 0.0)
-            y, left = y + by, left & ~(np.abs(by) < _NEAR)
-            if not left.any():
-                break
+        for parts, near in ((_Closed(read.x).parts, _CLOSE), (read.parts, _NEAR)):
+            left = np.ones(y.shape, bool)
+            for _ in range(_STEPS):
+                by = np.where(left, step(parts(y, left)), 0.0)
+                y, left = y + by, left & (np.abs(by) >= near)
+                if not left.any():
+                    break
         return y
 
     def _of_law(self, values: dict, B: int) -> tuple[np.ndarray, np.ndarray]:
@@ -209,6 +216,20 @@ class RingTable:
         unit = np.array(units) / scale
         ratios = np.array(parts) * unit[:, :, None] / closed(X[None], Y[None]).value
         return ratios.reshape(4, count, len(x), len(y))
+
+
+class _Closed(NamedTuple):
+    """The values of a :class:`RingTable` in closed form at x (B, L) of curves."""
+
+    x: np.ndarray
+
+    def parts(self, y: np.ndarray, wanted: np.ndarray | None = None) -> RingParts:
+        """The :class:`RingParts` (4, B, L) without scales at y (B, L)."""
+        return closed(self.x, y)
+
+    def rows(self, y: np.ndarray) -> dict[str, np.ndarray]:
+        """Derivatives of the parts without scales by inputs: none."""
+        return {}
 
 
 class _Read:

@@ -25,7 +25,7 @@ class StickingPoints(NamedTuple):
     """The points of B curves.
 
     y, w : values and weights, (B, n)
-    order : of the depths, (B, n)
+    order, rank : of the depths, and the place of each point in it, (B, n)
     least : largest number of points, in this order, that may be out of contact, (B,)
     robust : whether errors count linearly, not by their squares, (B,)
     retracts : whether the curve is a retraction, (B,)
@@ -34,6 +34,7 @@ class StickingPoints(NamedTuple):
     y: np.ndarray
     w: np.ndarray
     order: np.ndarray
+    rank: np.ndarray
     least: np.ndarray
     robust: np.ndarray
     retracts: np.ndarray
@@ -44,30 +45,28 @@ class StickingPoints(NamedTuple):
         order = np.argsort(np.where(is_point, x, np.inf), axis=1, kind="stable")
         count = is_point.sum(axis=1)
         least = np.maximum((_LEAST * count).astype(int), np.minimum(unknowns + 1, count))
-        return cls(y, w, order, count - least, np.full(len(x), robust), retractions(x, w))
+        rank = np.argsort(order, axis=1)
+        return cls(y, w, order, rank, count - least, np.full(len(x), robust), retractions(x, w))
 
     def in_contact(
         self, load: np.ndarray, free: np.ndarray, base: np.ndarray, must: np.ndarray | None = None
     ) -> np.ndarray:
         """(B, n) bool, whether points adhere, for loads (B, n) with and without adhesion, and the baseline under both.
 
-        must : (B, n) bool, whether points are so deep that the punch cannot come off
+        must : (B, n) bool, whether points are so deep that the punch cannot come off: from some depth on
         """
-        rows = np.arange(len(load))[:, None]
         on, off = (self.w * (self.y - base - part) for part in (load, free))
         more = np.where(self.robust[:, None], np.abs(on) - np.abs(off), on**2 - off**2)
         # the cost that the first m points save if they do not adhere, m = 0 ... n
-        saved = np.concatenate([np.zeros((len(load), 1)), np.cumsum(more[rows, self.order], axis=1)], axis=1)
+        saved = np.zeros((len(load), load.shape[1] + 1))
+        np.cumsum(np.take_along_axis(more, self.order, axis=1), axis=1, out=saved[:, 1:])
         least = self.least
         if must is not None:
-            is_point = np.take_along_axis(self.w > 0, self.order, axis=1)
-            deep = np.take_along_axis(must, self.order, axis=1) & is_point
-            least = np.where(deep.any(axis=1), np.minimum(least, deep.argmax(axis=1)), least)
+            shallow = ((self.w > 0) & ~must).sum(axis=1)
+            least = np.minimum(least, np.where(((self.w > 0) & must).any(axis=1), shallow, least))
         saved[np.arange(saved.shape[1]) > least[:, None]] = -np.inf
         first = np.nan_to_num(saved, nan=-np.inf).argmax(axis=1)
-        contact = np.empty(load.shape, bool)
-        contact[rows, self.order] = np.arange(load.shape[1]) >= first[:, None]
-        return contact
+        return self.rank >= first[:, None]
 
 
 def retractions(x: np.ndarray, w: np.ndarray) -> np.ndarray:

@@ -96,9 +96,10 @@ class TermTable:
         deepest : largest depth in m, (B,); the lattice extends past it
         """
         both = np.column_stack([*(value[:, 0] for value in values.values()), deepest])
-        _, first, same = np.unique(both, axis=0, return_index=True, return_inverse=True)
-        alone = {name: value[first] for name, value in values.items()}
-        return self._rows(alone, deepest[first], moved)[:, same.ravel()]
+        if len(both) % 2 == 0 and (both[::2] == both[1::2]).all():  # a lone curve and the copy that fills up its batch
+            alone = {name: value[::2] for name, value in values.items()}
+            return np.repeat(self._rows(alone, deepest[::2], moved), 2, axis=1)
+        return self._rows(values, deepest, moved)
 
     def begin(self, values: dict, deepest: np.ndarray) -> np.ndarray:
         """x (B,) at the first point of the lattice of each curve of :meth:`rows`."""
@@ -117,7 +118,7 @@ class TermTable:
         return np.broadcast_to(self.terms.factors(values).reshape(4, -1), (4, B)).T
 
     def _rows(self, values: dict, deepest: np.ndarray, moved: bool) -> np.ndarray:
-        """`rows` for curves that all differ."""
+        """As :meth:`rows`."""
         position, factors = self._position(values), self._factors(values)
         last = self._last(position, factors, deepest)
         count = len(self.model.moved) if moved else 0
@@ -125,12 +126,10 @@ class TermTable:
         whole[0, :, :4] += factors[:, :, None]
         if self.rings:
             whole = self._with_rings(self.rings, whole, values, position, last - _TILES + 1, moved)
-        below = STEP * np.arange(-_BELOW * _LATTICE, 0)
-        first = (
-            whole[..., :4, :1] + whole[..., 4:, :1] * below,
-            np.broadcast_to(whole[..., 4:, :1], (*whole.shape[:2], 4, len(below))),
-        )
-        return np.concatenate([np.concatenate(first, axis=2), whole], axis=3)
+        rows, below = np.empty((*whole.shape[:3], LENGTH)), _BELOW * _LATTICE
+        rows[..., below:], rows[..., 4:, :below] = whole, whole[..., 4:, :1]
+        rows[..., :4, :below] = whole[..., :4, :1] + whole[..., 4:, :1] * (STEP * np.arange(-below, 0))
+        return rows
 
     def _with_rings(
         self, rings: RingTable, whole: np.ndarray, values: dict, position: Position, first: np.ndarray, moved: bool
@@ -157,25 +156,27 @@ class TermTable:
         """The tile (B,) in which each curve reaches its largest depth. At the end of the tile the depth is larger, and
         rises."""
         last = np.floor(np.log(np.maximum(np.sqrt(deepest / self._depth()), 1e-9)) / WIDE).astype(int)
-        up, down = np.ones(len(last), bool), np.ones(len(last), bool)
-        for step in range(2 * _FAR):
-            left = np.flatnonzero(up if step < _FAR else down & ~up)
-            if not len(left):
-                continue
-            first = last[left] - (0 if step < _FAR else 1)
-            rows = self.lattice.read(self.tile, first, position.values_of(left), 1)[0, :, :, -1]
-            f = np.exp(rows[:, :4] + factors[left])
+
+        def reached(index: np.ndarray, tile: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            """Whether the depth at the end of a tile exceeds the largest one and rises, and whether there is one."""
+            rows = self.lattice.read_end(self.tile, tile, position.values_of(index))
+            f = np.exp(rows[:, :4] + factors[index])
             f[:, 3] *= _MORE if self.rings else 1.0
             depth, slope = f[:, 1] - f[:, 3], f[:, 1] * rows[:, 5] - f[:, 3] * rows[:, 7]
-            is_past_depth = (depth > deepest[left]) & (slope > 0)
-            if step < _FAR:
-                on = ~is_past_depth & np.isfinite(depth)
-                last[left[on]] += 1
-                up[left[~on]] = False
-                down[left[on]] = False  # the search came from below
-            else:
-                last[left[is_past_depth]] -= 1
-                down[left[~is_past_depth]] = False
+            return (depth > deepest[index]) & (slope > 0), np.isfinite(depth)
+
+        is_first, left = np.ones(len(last), bool), np.arange(len(last))
+        for _ in range(_FAR):
+            if len(left):
+                is_past, usable = reached(left, last[left])
+                left = left[~is_past & usable]
+                last[left] += 1
+                is_first[left] = False
+        left = np.flatnonzero(is_first)  # for others the search came from below
+        for _ in range(_FAR):
+            if len(left):
+                left = left[reached(left, last[left] - 1)[0]]
+                last[left] -= 1
         return last
 
     def _depth(self) -> float:

@@ -5,8 +5,8 @@ other coordinates, those of unknown inputs, it has Chebyshev points. The lattice
 curve do not depend on other curves.
 """
 
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -85,11 +85,9 @@ class Lattice:
 
         first : (B,), the first tile along the abscissa
         """
-        key, weights = np.column_stack([first, position.numbers]), position.weights
-        rows = np.empty((len(weights) + moved, len(key), self.parts, count * self.points))
-        alike = bool((key == key[:1]).all())  # most often: and to sort rows takes longer than all else
-        for place in map(tuple, (key[:1] if alike else np.unique(key, axis=0)).tolist()):
-            curves = slice(None) if alike else np.flatnonzero((key == place).all(axis=1))
+        weights = position.weights
+        rows = np.empty((len(weights) + moved, len(first), self.parts, count * self.points))
+        for place, curves in _groups(first, position):
             # einsum, not BLAS: the sums of a curve must not depend on the number of other curves
             values = self._stack(tile, place, count, False)[0]
             rows[: len(weights), curves] = np.einsum("wbc,ilc->wbil", weights[:, curves], values)
@@ -97,6 +95,13 @@ class Lattice:
                 changes = self._stack(tile, place, count, True)
                 rows[len(weights) :, curves] = np.einsum("bc,kilc->kbil", weights[0, curves], changes)
         return rows
+
+    def read_end(self, tile: Tile, first: np.ndarray, position: Position) -> np.ndarray:
+        """The values (B, parts) of B curves at the last point of the tile `first` (B,) along the abscissa."""
+        values = np.empty((len(first), self.parts))
+        for place, curves in _groups(first, position):
+            values[curves] = np.einsum("bc,ic->bi", position.weights[0, curves], self.tile_at(tile, place)[0, :, -1])
+        return values
 
     def tile_at(self, tile: Tile, place: tuple[int, ...], moved: bool = False) -> np.ndarray:
         """The tile at a place."""
@@ -111,6 +116,14 @@ class Lattice:
             tiles = [self.tile_at(tile, (place[0] + k, *place[1:]), moved) for k in range(count)]
             self.stacks[key] = np.concatenate(tiles, axis=2) if count > 1 else tiles[0]
         return self.stacks[key]
+
+
+def _groups(first: np.ndarray, position: Position) -> Iterator[tuple[tuple[int, ...], Any]]:
+    """Each place of a tile, and the curves (m,) there, or a slice of all: by the tile `first` (B,) of B curves."""
+    key = np.column_stack([first, position.numbers])
+    alike = bool((key == key[:1]).all())  # most often: and to sort rows takes longer than all else
+    for place in map(tuple, (key[:1] if alike else np.unique(key, axis=0)).tolist()):
+        yield place, slice(None) if alike else np.flatnonzero((key == place).all(axis=1))
 
 
 def _products(factors: list[np.ndarray], B: int) -> np.ndarray:

@@ -177,7 +177,7 @@ def _plain_rows(contents: "Lines", dialect: tuple) -> tuple[np.ndarray, np.ndarr
         places = np.arange(begin, begin + len(lines))
         table = None if words else _by_numpy(lines, dialect, words)
         if table is None or len(table) != len(lines):
-            filled = [i for i, content in enumerate(lines) if not _is_empty(content, dialect[0])]
+            filled = _filled(lines, dialect[0])
             lines, places = [lines[i] for i in filled], places[filled]
             if not lines:
                 continue
@@ -238,9 +238,10 @@ def _words(lines: list[str], separator: str | None, width: int) -> list[str]:
     return [word for word in words if word != "nan" and f"{gap}{word}{gap}" in text]
 
 
-def _is_empty(content: str, separator: str | None) -> bool:
-    """Whether a line is no row, since it has few fields, all of them empty."""
-    return not content.strip(f"{separator or ''} ") and content.count(separator or " ") < FEWEST - 1
+def _filled(lines: list[str], separator: str | None) -> list[int]:
+    """The places of the lines that are rows: the others have few fields, all of them empty."""
+    gaps, gap = f"{separator or ''} ", separator or " "
+    return [i for i, content in enumerate(lines) if content.strip(gaps) or content.count(gap) >= FEWEST - 1]
 
 
 class Lines:

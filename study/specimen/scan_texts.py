@@ -35,7 +35,7 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _BINARY = re.compile(r"[\x00-\x02\x04-\x08\x0e-\x19\x1b-\x1f]")
 #: Bytes of lines that have only numbers. Of the words that they spell, `float` reads no others than `_NUMBER` does.
 _PLAIN = b"0123456789+-.eE;, \t\n"
-#: Characters of the lines that numpy reads at a time. Of 2**16 to 2**22 this took the least time: they stay in the cache.
+#: Characters of the lines that numpy reads at a time: so many stay in the cache of the processor.
 _CHARACTERS = 2**18
 #: Characters with which a number ends, and begins.
 _DIGITS, _BEGINS = "0123456789", "0123456789+-."
@@ -149,8 +149,9 @@ def _rows(contents: "Lines", dialect: tuple, name: str) -> tuple[np.ndarray, np.
         values = _values(fields, dialect[1])
         # rows such as "0;0" do not show the decimal mark
         if None in values and table.is_whole() and not _THOUSAND.search(content):
-            dialect = dialect[0], ","
-            values = _values(fields, ",")
+            by_comma = _values(fields, ",")
+            if None not in by_comma:
+                dialect, values = (dialect[0], ","), by_comma
         if None in values:
             raise ValueError(
                 f"{name}, line {number}: {content.strip()[:60]!r} has something other than numbers: "
@@ -240,8 +241,12 @@ def _words(lines: list[str], separator: str | None, width: int) -> list[str]:
 
 def _filled(lines: list[str], separator: str | None) -> list[int]:
     """The places of the lines that are rows: the others have few fields, all of them empty."""
-    gaps, gap = f"{separator or ''} ", separator or " "
-    return [i for i, content in enumerate(lines) if content.strip(gaps) or content.count(gap) >= FEWEST - 1]
+    gaps = f"{separator or ''} \t"
+    return [
+        i
+        for i, content in enumerate(lines)
+        if content.strip(gaps) or (separator and content.count(separator) >= FEWEST - 1)
+    ]
 
 
 class Lines:

@@ -140,8 +140,8 @@ def on_grid(columns: np.ndarray, z: np.ndarray, arguments: dict, name: str) -> t
         )
     (x, column), (y, row) = axes
     places = row * len(x) + column
-    if len(np.unique(places)) < len(places):
-        i = int(np.argmax(np.bincount(places)))
+    if (counts := np.bincount(places)).max() > 1:
+        i = int(np.argmax(counts))
         raise ValueError(f"{rows}, x, y and z: x = {x[i % len(x)]:g}, y = {y[i // len(x)]:g} stands there twice")
     heights = np.full((len(y), len(x)), np.nan)
     heights[row, column] = z

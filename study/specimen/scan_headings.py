@@ -299,7 +299,8 @@ def stated(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]] | None:
     if re.match(r"a[\w .-]+\n", text) and re.search(r"^\s*zscale\s*=", text, re.IGNORECASE | re.MULTILINE):
         return _sdf(text, name)
     if (
-        "CZ" in text
+        "Z" in text  # quicker to find than the pair
+        and "CZ" in text
         and re.search(r"^CZ\s+[A-Z]\s", text, re.MULTILINE)
         and re.search(r"^\s*(?:EOR|\x03)\s*$", text, re.MULTILINE)
     ):

@@ -34,7 +34,9 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 #: Characters that no text has. The end marks 3 and 26, which texts of ISO 5436-2 have, are not among them.
 _BINARY = re.compile(r"[\x00-\x02\x04-\x08\x0e-\x19\x1b-\x1f]")
 #: Bytes of lines that have only numbers. Of the words that they spell, `float` reads no others than `_NUMBER` does.
-_PLAIN = b"0123456789+-.eE;, \t"
+_PLAIN = b"0123456789+-.eE;, \t\n"
+#: Characters of the lines that numpy reads at a time: so many stay in the cache of the processor.
+_CHARACTERS = 2**18
 #: Characters with which a number ends, and begins.
 _DIGITS, _BEGINS = "0123456789", "0123456789+-."
 #: The bytes of texts in UTF-8.
@@ -71,7 +73,7 @@ def text_of(path: Path) -> str | None:
         raise ValueError(f"{path.name}: {error}") from error
     if raw.startswith(b"ISO 5436"):  # separated by zeros
         raw = raw.replace(b"\0", b" ")
-    zeros = [raw[parity::2].count(0) for parity in (0, 1)]
+    zeros = [raw[parity::2].count(0) for parity in (0, 1)] if b"\0" in raw else [0, 0]
     encodings = ["utf-8-sig", "latin-1"]  # older instruments write a µ of Latin-1 in the heading
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         encodings = ["utf-16"]
@@ -82,13 +84,17 @@ def text_of(path: Path) -> str | None:
             text = raw.decode(encoding)
         except UnicodeDecodeError:
             continue
-        return None if _is_binary(text) else text.replace("\r\n", "\n").replace("\r", "\n").replace("−", "-")
+        if _is_binary(text):
+            return None
+        text = text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text  # a pair takes longer to find
+        return text.replace("−", "-")
     return None
 
 
 def _is_binary(text: str) -> bool:
     """Whether a text has characters that no text has. The deletion takes a tenth of the time of a search."""
-    return bool(text.encode().translate(None, _OF_TEXTS))
+    blocks = (text[i : i + _CHARACTERS] for i in range(0, len(text), _CHARACTERS))
+    return any(block.encode().translate(None, _OF_TEXTS) for block in blocks)
 
 
 def table_of(text: str, name: str, channel: str | None = None) -> NumberTable:
@@ -143,8 +149,9 @@ def _rows(contents: "Lines", dialect: tuple, name: str) -> tuple[np.ndarray, np.
         values = _values(fields, dialect[1])
         # rows such as "0;0" do not show the decimal mark
         if None in values and table.is_whole() and not _THOUSAND.search(content):
-            dialect = dialect[0], ","
-            values = _values(fields, ",")
+            by_comma = _values(fields, ",")
+            if None not in by_comma:
+                dialect, values = (dialect[0], ","), by_comma
         if None in values:
             raise ValueError(
                 f"{name}, line {number}: {content.strip()[:60]!r} has something other than numbers: "
@@ -158,41 +165,88 @@ def _rows(contents: "Lines", dialect: tuple, name: str) -> tuple[np.ndarray, np.
 
 
 def _plain_rows(contents: "Lines", dialect: tuple) -> tuple[np.ndarray, np.ndarray] | None:
-    """The table and the numbers of its lines, read by numpy at once.
+    """The table and the numbers of its lines, read by numpy in blocks of lines.
 
     None where numpy cannot: some lines have other words, quotation marks, another length or other marks.
     """
-    fields = len(_fields(contents[0][1], dialect[0]))
-    missing = {word for word in MISSING if word or fields >= FEWEST}  # of fewer, rows of empty fields are none
-    attempts = ({"nan"}, missing)  # the second takes twice the time
-    return next((rows for words in attempts if (rows := _rows_of_numpy(contents, dialect, words))), None)
+    first = contents[0][1]
+    width, step = len(_fields(first, dialect[0])), 1 + _CHARACTERS // (len(first) + 1)
+    values, numbers = array("d"), array("q")  # they grow where they are; to join blocks takes twice the memory
+    words: list[str] = []  # for missing points, in the blocks so far; each takes time in every block
+    for begin in range(0, len(contents), step):
+        lines = contents.texts[begin : begin + step]
+        places = np.arange(begin, begin + len(lines))
+        table = None if words else _by_numpy(lines, dialect, words)
+        if table is None or len(table) != len(lines):
+            filled = _filled(lines, dialect[0])
+            lines, places = [lines[i] for i in filled], places[filled]
+            if not lines:
+                continue
+            table = _by_numpy(lines, dialect, words)
+            if table is None:
+                words = _words(lines, dialect[0], width)
+                table = _by_numpy(lines, dialect, words)
+        if table is None or table.shape != (len(lines), width):
+            return None  # the reader of single rows reports the error, if there is one
+        values.frombytes(table.tobytes())
+        numbers.frombytes((contents.first + places).tobytes())
+    table = np.frombuffer(values).reshape(-1, width)
+    return table[:, : _width(table)], np.frombuffer(numbers, dtype=np.int64)
 
 
-def _rows_of_numpy(contents: "Lines", dialect: tuple, words: set) -> tuple[np.ndarray, np.ndarray] | None:
-    """What `_plain_rows` returns; None also where there are other words for missing points than `words`."""
+def _by_numpy(lines: list[str], dialect: tuple, words: list[str]) -> np.ndarray | None:
+    """The numbers of lines with `words` for missing points; None for lines with others, or of several lengths."""
     separator, mark = dialect
-    texts = [_with_nan(content, separator, words) for content in contents.texts]
-    if None in texts or (mark == "," and any("." in content for content in texts)):
+    text = "\n".join(lines)
+    if words:
+        gap = separator or " "
+        text = _between_gaps(text, separator)
+        for word in words:  # neighbours share a gap; a replacement takes twice the time of a split
+            for _ in range(2):
+                text = f"{gap}nan{gap}".join(text.split(f"{gap}{word}{gap}"))
+        lines = text[1:-1].split(f"{gap}\n{gap}")
+    others = text.encode().translate(None, _PLAIN).lower()
+    if others.replace(b"nan", b"") or (mark == "," and "." in text):
         return None
-    numbers = [number for number, content in contents if content and not content.isspace()]
-    numbers_as = (content.replace(",", ".") for content in texts) if mark == "," else texts
+    if others and ("-nan" in (lowered := text.lower()) or "+nan" in lowered):
+        return None
+    if mark == ",":
+        lines = [content.replace(",", ".") for content in lines]
+    if not text or text.isspace():  # numpy would warn
+        return np.empty((0, 1))
     try:
-        table = np.loadtxt(numbers_as, delimiter=separator, comments=None, ndmin=2)  # it skips lines without fields
-    except ValueError:  # the reader of single rows reports the error, if there is one
+        return np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2)  # it skips lines without fields
+    except ValueError:
         return None
-    return (table[:, : _width(table)], np.array(numbers)) if len(table) == len(numbers) else None
 
 
-def _with_nan(content: str, separator: str | None, words: set) -> str | None:
-    """A row in which each of the `words` is "nan"; None if it has other words."""
-    row = content.lower() if content.encode().translate(None, _PLAIN) else content
-    if len(words) > 1 and content.strip() and not words.isdisjoint(fields := row.split(separator)):
-        row = (separator or " ").join(["nan" if field in words else field for field in fields])
-    if row is content:
-        return content
-    rest = row.encode().translate(None, _DIGITS.encode())  # shorter, and so quicker to search
-    has_others = rest.replace(b"nan", b"").translate(None, _PLAIN)
-    return None if has_others or b"-nan" in rest or b"+nan" in rest else row
+def _between_gaps(text: str, separator: str | None) -> str:
+    """Lines in lower case, with each field between two separators, and without spaces beside them."""
+    gap = separator or " "
+    text = text.lower() if separator else text.lower().replace("\t", " ")
+    text = gap + text.replace("\n", f"{gap}\n{gap}") + gap
+    for padding in (f" {gap}", f"{gap} ") if separator and " " in text else ():
+        while padding in text:
+            text = text.replace(padding, gap)
+    return text
+
+
+def _words(lines: list[str], separator: str | None, width: int) -> list[str]:
+    """The words for missing points in some lines, nan excepted."""
+    text, gap = _between_gaps("\n".join(lines), separator), separator or " "
+    # an empty field that ends a row of two may be what is left of a number
+    words = MISSING if separator and width > 2 else MISSING[1:]
+    return [word for word in words if word != "nan" and f"{gap}{word}{gap}" in text]
+
+
+def _filled(lines: list[str], separator: str | None) -> list[int]:
+    """The places of the lines that are rows: the others have few fields, all of them empty."""
+    gaps = f"{separator or ''} \t"
+    return [
+        i
+        for i, content in enumerate(lines)
+        if content.strip(gaps) or (separator and content.count(separator) >= FEWEST - 1)
+    ]
 
 
 class Lines:

@@ -1,6 +1,7 @@
 """Rows of text files: missing points, words in rows, separators, encodings; x y z of a grid; rounded positions."""
 
 import gzip
+import re
 import sys
 from itertools import product
 
@@ -40,6 +41,8 @@ def read(tmp_path, content, name="a.txt", encoding="utf-8", **given):
 
 SEPARATORS = (" ", ";", "\t", ",")
 TOKENS = ("", "nan", "NaN", "Bad", "BAD", "bad", "***", "--", "-", " Bad ")
+# between spaces there are no empty fields
+PADDED = [pair for pair in product(TOKENS, (" ", "  ", ";", "\t", ", ")) if pair[0] or pair[1].strip(" ")]
 
 
 # between spaces there are no empty fields
@@ -268,20 +271,58 @@ def test_plain_rows_are_those_that_are_read_one_by_one(separator, mark):
         scan_texts.table_of("\n".join([*rows[:-1], rows[-1].rpartition(separator)[0]]), "map.txt")
 
 
+@pytest.mark.parametrize("word, separator", PADDED)
+def test_numpy_reads_neighbours_that_are_missing(separator, word):
+    """Maps and points x, y, z whose missing points touch each other, where one reading row by row takes ten times as
+    long."""
+    for columns in (3, 20):
+        heights = np.random.default_rng(0).normal(size=(5, columns)).round(3)
+        heights[1:4, -3:] = heights[2, :3] = np.nan
+        heights[1:4, 0] = 1.0, 2.0, 3.0  # ;; is no row
+        rows = np.where(np.isnan(heights), word, heights.astype(str)).tolist()
+        lines = scan_texts.Lines([separator.join(row) for row in rows], 1)
+        numbers, places = scan_texts._plain_rows(lines, (separator.strip(" ") or None, "."))
+        np.testing.assert_array_equal(numbers, heights)
+        assert places.tolist() == [1, 2, 3, 4, 5]
+
+
+@pytest.mark.parametrize("end", ["", "\n"])
+def test_a_profile_that_ends_with_a_separator_may_be_cut_off(end):
+    with pytest.raises(ValueError, match=re.escape("line 4: 1 number(s) after lines of 2: the file may be cut off")):
+        scan_texts.table_of("0.5;1.5\n1;2.5\n2;3\n3;" + end, "t.txt")
+    within = scan_texts.table_of("0.5;1.5\n1;\n2;3\n3;4" + end, "t.txt")
+    np.testing.assert_array_equal(within.numbers[:, 1], [1.5, np.nan, 3, 4])
+
+
+@pytest.mark.parametrize("word", ["-nan", "+NaN", "inf", "1_000", "0x1", "nannan"])
+def test_a_word_that_is_no_missing_point_is_named(word):
+    """Also after rows of whole numbers, which leave the decimal mark open."""
+    for first in ("1.0 2.0 3.0", "1.5 2.5 3.5"):
+        with pytest.raises(
+            ValueError, match=re.escape(f"line 4: '2.0 1.0 {word}' has something other than numbers: '{word}'")
+        ):
+            scan_texts.table_of(f"heading\n{first}\n{first}\n2.0 1.0 {word}\n{first}\n", "t.txt")
+
+
 WORDS = ["", "nan", "NaN", "Bad", "***", "--", "-", "-nan", "x", "inf", "nannan", " nan "]
 
 
 @pytest.mark.parametrize("separator, mark", [(s, m) for s, m in product([",", ";", "\t", " "], ".,") if s != m])
 def test_numpy_reads_tables_with_missing_points_as_the_reader_of_single_rows(separator, mark, monkeypatch):
-    """The same numbers, heading and message, and most tables by numpy, whatever stands for a missing point."""
+    """The same numbers, heading and message, and most tables by numpy, whatever stands for a missing point, in blocks
+    of one row and of all."""
     by_numpy, random = [], np.random.default_rng(5)
     plain = scan_texts._plain_rows
-    for _ in range(60):
+    for _ in range(120):
+        monkeypatch.setattr(scan_texts, "_CHARACTERS", int(random.choice([1, 60, 10**6])))
         columns, words = random.choice([2, 3, 16, 20]), random.choice(WORDS[:7] if random.random() < 0.8 else WORDS, 2)
         rows = random.normal(size=(random.choice([3, 9]), columns)).round(3).astype(str)
         missing = random.random(rows.shape) < random.choice([0, 0.1, 0.3])
         rows = np.where(missing, random.choice(words, rows.shape), np.char.replace(rows, ".", mark))
-        content = "heading\n" + text(rows, separator) + "\n" * random.choice([0, 1])
+        lines = text(rows, separator).split("\n")
+        if random.random() < 0.5:  # what is no row may stand anywhere
+            lines.insert(random.integers(len(lines)), random.choice(["", "  ", "# remark", separator * 2]))
+        content = "heading\n" + "\n".join(lines) + "\n" * random.choice([0, 1])
         answers = []
         for numpy_first in (True, False):
             monkeypatch.setattr(scan_texts, "_plain_rows", plain if numpy_first else lambda *_: None)

@@ -13,8 +13,8 @@
 #     numpy.sum(positions, initial=1000 mm)       1008 m                    right is 9 m
 #
 # without an error or a UnitStrippedWarning (the script turns all warnings into errors), and the result carries a unit of
-# length or a ratio of lengths. numpy.max(..., initial=), clip, pad, insert, interp, hypot, where and isclose convert as they should. Use the
-# operators % and //, or one unit (.to_base_units()) before.
+# length or a ratio of lengths. numpy.max(..., initial=), clip, pad, insert, interp, hypot, where and isclose convert as they
+# should. Use the operators % and //, or bring all to one unit (.to_base_units()) before.
 # Exits 0 while this is so, 1 when it has changed.
 set -eu
 folder=$(mktemp -d)

@@ -299,7 +299,7 @@ def _blocks(counts: np.ndarray, usable: np.ndarray, stiffness: np.ndarray) -> It
     Similar curves come together, since they share tiles.
     """
     points = np.maximum(counts.sum(axis=1), 1)
-    part = np.clip(2 ** (np.log2(points).astype(int) - 3), *_PARTS)
+    part = np.clip(2.0 ** (np.floor(np.log2(points)) - 3), *_PARTS).astype(int)
     size = -(-points // part) * part
     for points in np.unique(size[usable]):
         same = np.flatnonzero((size == points) & usable)

@@ -38,7 +38,7 @@ _PLAIN = b"0123456789+-.eE;, \t\n"
 #: Characters of the lines that numpy reads at a time: so many stay in the cache of the processor.
 _CHARACTERS = 2**18
 #: Characters with which a number ends, and begins.
-_DIGITS, _BEGINS = "0123456789", "0123456789+-."
+_DIGITS, _BEGINS = frozenset("0123456789"), frozenset("0123456789+-.")
 #: The bytes of texts in UTF-8.
 _OF_TEXTS = bytes(code for code in range(256) if not _BINARY.match(chr(code)))
 _CHANNEL = re.compile(r"[#%\s]*(?:channel|kanal|kanál|canale?)\s*[:=]\s*(.+?)\s*$", re.IGNORECASE)
@@ -198,6 +198,9 @@ def _by_numpy(lines: list[str], dialect: tuple, words: list[str]) -> np.ndarray 
     """The numbers of lines with `words` for missing points; None for lines with others, or of several lengths."""
     separator, mark = dialect
     text = "\n".join(lines)
+    letters = text.encode().translate(None, _PLAIN).lower()
+    if b"nan" in letters and ("-nan" in (lowered := text.lower()) or "+nan" in lowered):
+        return None
     if words:
         gap = separator or " "
         text = _between_gaps(text, separator)
@@ -205,10 +208,8 @@ def _by_numpy(lines: list[str], dialect: tuple, words: list[str]) -> np.ndarray 
             for _ in range(2):
                 text = f"{gap}nan{gap}".join(text.split(f"{gap}{word}{gap}"))
         lines = text[1:-1].split(f"{gap}\n{gap}")
-    others = text.encode().translate(None, _PLAIN).lower()
-    if others.replace(b"nan", b"") or (mark == "," and "." in text):
-        return None
-    if others and ("-nan" in (lowered := text.lower()) or "+nan" in lowered):
+        letters = letters and text.encode().translate(None, _PLAIN)
+    if letters.replace(b"nan", b"") or (mark == "," and "." in text):
         return None
     if mark == ",":
         lines = [content.replace(",", ".") for content in lines]

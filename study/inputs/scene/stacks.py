@@ -108,8 +108,8 @@ def in_layers(messages: list[str], names: Any) -> list[str]:
     if "sublayers" not in names:
         return messages
     fields = {name: field for field, name in FIRST_LAYER.items()}
-    before = "^| and |: |follows from |given as |in place of "
-    after = r"\[|: | = | is missing| is given twice| and | are both | follows |,|$"
+    before = "^| and |: |follows from |given as |in place of |or give "
+    after = r"\[|: | = | is missing| is given twice| and | are both | follows |,|\)|$"
     first = re.compile(f"({before})({'|'.join(fields)})(?={after})")
     return [first.sub(lambda match: f"{match[1]}layers.1.{fields[match[2]]}", message) for message in messages]
 

@@ -156,7 +156,8 @@ def on_grid(columns: np.ndarray, z: np.ndarray, arguments: dict, name: str) -> t
 
 def _axis(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
     """Uniform rising positions for the values, and the place of each value among them; None if there are none."""
-    unique = np.unique(values)
+    changes = np.append(True, values[1:] != values[:-1])  # along a line of the grid one of x and y stays as it is
+    unique = np.unique(values[changes])
     span, gaps = unique[-1] - unique[0], np.sort(np.diff(unique))
     if not gaps.size:
         return unique, np.zeros(len(values), dtype=int)

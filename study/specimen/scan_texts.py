@@ -3,19 +3,18 @@
 scan_headings reads the content of the heading.
 """
 
-import csv
 import re
 from array import array
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from solver.numerics import userfile
 
 from .scan import FEWEST
+from .texts.plain_rows import CHARACTERS, plain_rows
+from .texts.text_lines import MISSING, Lines, fields_of, values_of, width_of
 
 #: (separator, decimal mark) of a text file. The first pair that fits the first line of numbers holds. If that line has
 #: only whole numbers, the first line with a decimal mark shows the mark. (",", ",") fits only fields in quotation
@@ -23,22 +22,14 @@ from .scan import FEWEST
 DIALECTS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","), (",", ","))
 #: Number of rows that are packed into an array at a time.
 _BLOCK = 10_000
-#: Words for a missing point in a row of numbers, in lower case.
-MISSING = ("", "nan", "bad", "***", "--", "-")
 #: "1,024": the comma may separate thousands.
 _THOUSAND = re.compile(r"(?<!\d)[1-9]\d{0,2},\d{3}(?!\d)")
 #: A comment begins a line or follows a gap: "-1.#IND" has none.
 _COMMENT = re.compile(r"(?:^|(?<=[\s;,]))[#%].*")
-#: A number in a text; `float` would also read "inf" and "1_000".
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 #: Characters that no text has. The end marks 3 and 26, which texts of ISO 5436-2 have, are not among them.
 _BINARY = re.compile(r"[\x00-\x02\x04-\x08\x0e-\x19\x1b-\x1f]")
-#: Bytes of lines that have only numbers. Of the words that they spell, `float` reads no others than `_NUMBER` does.
-_PLAIN = b"0123456789+-.eE;, \t\n"
-#: Characters of the lines that numpy reads at a time: so many stay in the cache of the processor.
-_CHARACTERS = 2**18
 #: Characters with which a number ends, and begins.
-_DIGITS, _BEGINS = "0123456789", "0123456789+-."
+_DIGITS, _BEGINS = frozenset("0123456789"), frozenset("0123456789+-.")
 #: The bytes of texts in UTF-8.
 _OF_TEXTS = bytes(code for code in range(256) if not _BINARY.match(chr(code)))
 _CHANNEL = re.compile(r"[#%\s]*(?:channel|kanal|kanál|canale?)\s*[:=]\s*(.+?)\s*$", re.IGNORECASE)
@@ -93,7 +84,7 @@ def text_of(path: Path) -> str | None:
 
 def _is_binary(text: str) -> bool:
     """Whether a text has characters that no text has. The deletion takes a tenth of the time of a search."""
-    blocks = (text[i : i + _CHARACTERS] for i in range(0, len(text), _CHARACTERS))
+    blocks = (text[i : i + CHARACTERS] for i in range(0, len(text), CHARACTERS))
     return any(block.encode().translate(None, _OF_TEXTS) for block in blocks)
 
 
@@ -110,7 +101,7 @@ def table_of(text: str, name: str, channel: str | None = None) -> NumberTable:
     if text.startswith("Zygo XYZ") and (mark := next((i for i, (_, full) in enumerate(lines) if full == "#"), 0)):
         contents.texts[:mark] = [""] * mark  # numbers of the instrument
     first, dialect, counts = _first_row(contents, name)
-    before = _missing_rows(contents[:first], dialect, len(_fields(contents[first][1], dialect[0])))
+    before = _missing_rows(contents[:first], dialect, len(fields_of(contents[first][1], dialect[0])))
     first -= before
     table, numbers, dialect, cut = _rows(contents[first:], dialect, name)
     if cut and table.shape[1] == 2:
@@ -133,23 +124,23 @@ def table_of(text: str, name: str, channel: str | None = None) -> NumberTable:
     return NumberTable(table, heading, dialect[0], channel_note, notes)
 
 
-def _rows(contents: "Lines", dialect: tuple, name: str) -> tuple[np.ndarray, np.ndarray, tuple, bool]:
+def _rows(contents: Lines, dialect: tuple, name: str) -> tuple[np.ndarray, np.ndarray, tuple, bool]:
     """The table (rows, columns), the numbers of its lines, its dialect, and whether the last row may be cut off.
 
     Raises ValueError for a row with a word or with another number of fields.
     """
-    plain = _plain_rows(contents, dialect)
+    plain = plain_rows(contents, dialect)
     if plain is not None:
         return (*plain, dialect, False)
     table, numbers, cut = _Table(name), array("q"), False
     for number, content in contents:
-        fields = _fields(content, dialect[0])
+        fields = fields_of(content, dialect[0])
         if not any(fields) and len(fields) < FEWEST:
             continue
-        values = _values(fields, dialect[1])
+        values = values_of(fields, dialect[1])
         # rows such as "0;0" do not show the decimal mark
         if None in values and table.is_whole() and not _THOUSAND.search(content):
-            by_comma = _values(fields, ",")
+            by_comma = values_of(fields, ",")
             if None not in by_comma:
                 dialect, values = (dialect[0], ","), by_comma
         if None in values:
@@ -162,112 +153,6 @@ def _rows(contents: "Lines", dialect: tuple, name: str) -> tuple[np.ndarray, np.
         numbers.append(number)
         cut = fields[-1] == "" and len(values) == 2
     return table.even(), np.array(numbers), dialect, cut
-
-
-def _plain_rows(contents: "Lines", dialect: tuple) -> tuple[np.ndarray, np.ndarray] | None:
-    """The table and the numbers of its lines, read by numpy in blocks of lines.
-
-    None where numpy cannot: some lines have other words, quotation marks, another length or other marks.
-    """
-    first = contents[0][1]
-    width, step = len(_fields(first, dialect[0])), 1 + _CHARACTERS // (len(first) + 1)
-    values, numbers = array("d"), array("q")  # they grow where they are; to join blocks takes twice the memory
-    words: list[str] = []  # for missing points, in the blocks so far; each takes time in every block
-    for begin in range(0, len(contents), step):
-        lines = contents.texts[begin : begin + step]
-        places = np.arange(begin, begin + len(lines))
-        table = None if words else _by_numpy(lines, dialect, words)
-        if table is None or len(table) != len(lines):
-            filled = _filled(lines, dialect[0])
-            lines, places = [lines[i] for i in filled], places[filled]
-            if not lines:
-                continue
-            table = _by_numpy(lines, dialect, words)
-            if table is None:
-                words = _words(lines, dialect[0], width)
-                table = _by_numpy(lines, dialect, words)
-        if table is None or table.shape != (len(lines), width):
-            return None  # the reader of single rows reports the error, if there is one
-        values.frombytes(table.tobytes())
-        numbers.frombytes((contents.first + places).tobytes())
-    table = np.frombuffer(values).reshape(-1, width)
-    return table[:, : _width(table)], np.frombuffer(numbers, dtype=np.int64)
-
-
-def _by_numpy(lines: list[str], dialect: tuple, words: list[str]) -> np.ndarray | None:
-    """The numbers of lines with `words` for missing points; None for lines with others, or of several lengths."""
-    separator, mark = dialect
-    text = "\n".join(lines)
-    if words:
-        gap = separator or " "
-        text = _between_gaps(text, separator)
-        for word in words:  # neighbours share a gap; a replacement takes twice the time of a split
-            for _ in range(2):
-                text = f"{gap}nan{gap}".join(text.split(f"{gap}{word}{gap}"))
-        lines = text[1:-1].split(f"{gap}\n{gap}")
-    others = text.encode().translate(None, _PLAIN).lower()
-    if others.replace(b"nan", b"") or (mark == "," and "." in text):
-        return None
-    if others and ("-nan" in (lowered := text.lower()) or "+nan" in lowered):
-        return None
-    if mark == ",":
-        lines = [content.replace(",", ".") for content in lines]
-    if not text or text.isspace():  # numpy would warn
-        return np.empty((0, 1))
-    try:
-        return np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2)  # it skips lines without fields
-    except ValueError:
-        return None
-
-
-def _between_gaps(text: str, separator: str | None) -> str:
-    """Lines in lower case, with each field between two separators, and without spaces beside them."""
-    gap = separator or " "
-    text = text.lower() if separator else text.lower().replace("\t", " ")
-    text = gap + text.replace("\n", f"{gap}\n{gap}") + gap
-    for padding in (f" {gap}", f"{gap} ") if separator and " " in text else ():
-        while padding in text:
-            text = text.replace(padding, gap)
-    return text
-
-
-def _words(lines: list[str], separator: str | None, width: int) -> list[str]:
-    """The words for missing points in some lines, nan excepted."""
-    text, gap = _between_gaps("\n".join(lines), separator), separator or " "
-    # an empty field that ends a row of two may be what is left of a number
-    words = MISSING if separator and width > 2 else MISSING[1:]
-    return [word for word in words if word != "nan" and f"{gap}{word}{gap}" in text]
-
-
-def _filled(lines: list[str], separator: str | None) -> list[int]:
-    """The places of the lines that are rows: the others have few fields, all of them empty."""
-    gaps = f"{separator or ''} \t"
-    return [
-        i
-        for i, content in enumerate(lines)
-        if content.strip(gaps) or (separator and content.count(separator) >= FEWEST - 1)
-    ]
-
-
-class Lines:
-    """Lines of a text, as pairs of their number and text. A list of tuples would be larger than the text itself."""
-
-    def __init__(self, texts: list[str], first: int):
-        self.texts, self.first = texts, first
-
-    def __getitem__(self, i: int | slice) -> Any:
-        if isinstance(i, slice):
-            return Lines(self.texts[i], self.first + i.indices(len(self.texts))[0])
-        return self.first + i, self.texts[i]
-
-    def __iter__(self) -> Iterator[tuple[int, str]]:
-        return enumerate(self.texts, self.first)
-
-    def __reversed__(self) -> Iterator[tuple[int, str]]:
-        return ((self.first + i, self.texts[i]) for i in reversed(range(len(self.texts))))
-
-    def __len__(self) -> int:
-        return len(self.texts)
 
 
 def _of_channel(lines: Lines, name: str, channel: str | None) -> tuple[Lines, str]:
@@ -302,32 +187,12 @@ def _content(full: str) -> str:
     return content.rstrip("\x03\x1a ")
 
 
-def _fields(content: str, separator: str | None) -> list[str]:
-    """The fields of a line. Spaces separate however many there are; other separators have a field between two."""
-    if separator is None:
-        return content.replace('"', " ").split()
-    if '"' in content:
-        content = next(csv.reader([content.strip(" ")], delimiter=separator, skipinitialspace=True), [])
-        return [field.strip() for field in content]
-    return [field.strip() for field in content.split(separator)]
-
-
-def _values(fields: list[str], mark: str) -> list[float | None]:
-    """The number of each field, NaN where a point is missing, None where there is a word."""
-    if mark == ",":  # then a point would separate thousands
-        fields = [field.replace(",", ".") if "." not in field else "a point" for field in fields]
-    return [
-        float(field) if _NUMBER.fullmatch(field) else float("nan") if field.lower() in MISSING else None
-        for field in fields
-    ]
-
-
 def _dialect(content: str) -> tuple | None:
     """Separator and decimal mark of a clean row, which has only numbers and missing points; None for other lines."""
     for separator, mark in DIALECTS:
         if separator and separator not in content.strip(" "):
             continue
-        values = _values(_fields(content, separator), mark)
+        values = values_of(fields_of(content, separator), mark)
         if None not in values and not np.isnan(values).all():
             return separator, mark
     return None
@@ -339,8 +204,8 @@ def _first_row(contents: Lines, name: str) -> tuple[int, tuple, list]:
     clean = ((i, fits) for i, (_, content) in enumerate(contents) if (fits := _dialect(content)))
     for i, dialect in clean:
         later = next((content for _, content in contents[i + 1 :] if content.strip()), "")
-        width, next_dialect = len(_fields(contents[i][1], dialect[0])), _dialect(later)
-        if width > 2 or not next_dialect or len(_fields(later, next_dialect[0])) <= width or counts:
+        width, next_dialect = len(fields_of(contents[i][1], dialect[0])), _dialect(later)
+        if width > 2 or not next_dialect or len(fields_of(later, next_dialect[0])) <= width or counts:
             return i, dialect, counts
         counts.append(contents[i])
     raise ValueError(f"{name}: no line of numbers in it; columns of numbers are read")
@@ -360,7 +225,7 @@ def _missing_rows(contents: Lines, dialect: tuple, width: int) -> int:
     """Number of lines right before the first clean row that are rows of missing points alone."""
     rows = 0
     for _, content in reversed(contents):
-        fields = _fields(content, dialect[0])
+        fields = fields_of(content, dialect[0])
         words = [field.lower() for field in fields]
         is_single = width == 1 and words in (["nan"], ["bad"])  # a line of "--" under a heading is a rule
         if not is_single and not (len(fields) == width >= FEWEST and set(words) <= set(MISSING)):
@@ -371,11 +236,6 @@ def _missing_rows(contents: Lines, dialect: tuple, width: int) -> int:
 
 def _whole(values: np.ndarray) -> bool:
     return bool((np.isnan(values) | (values % 1 == 0)).all())
-
-
-def _width(table: np.ndarray) -> int:
-    """The number of columns up to the last one that has a number."""
-    return int(np.max(np.flatnonzero(~np.isnan(table).all(axis=0)), initial=-1)) + 1
 
 
 class _Table:
@@ -428,7 +288,7 @@ class _Table:
         """All rows, up to the last column that has a number. Raises ValueError for a row with fewer fields."""
         self._pack()
         table = np.concatenate(self.blocks)
-        width = _width(table)
+        width = width_of(table)
         self._check(width)
         return table[:, :width]
 
@@ -437,10 +297,10 @@ def _refuse_rows_in_heading(contents: Lines, dialect: tuple, table: np.ndarray, 
     """Raise ValueError for a line of the heading that is a row of the table except for a word in it."""
     width = table.shape[1]
     for number, content in contents:
-        fields = _fields(content, dialect[0])
+        fields = fields_of(content, dialect[0])
         if len(fields) != width:
             continue
-        values = _values(fields, dialect[1])
+        values = values_of(fields, dialect[1])
         words = [field for field, value in zip(fields, values, strict=True) if value is None]
         mostly = len(words) < width / 2 and not all(value is None or value != value for value in values)
         if width == 2 and len(table) > 1 and values[0] is not None:  # "0.0 error" is one step before the first x

@@ -101,7 +101,7 @@ def h_protect(
     return without_control(with_coordinates_of(contacts.dataset, variables), by)
 
 
-_THICKNESS = re.compile(r"layers\.\d+\.h")
+_THICKNESS, _OF_LAYER = re.compile(r"layers\.\d+\.h"), re.compile(r"layers\.(\d+)\.")
 
 
 def _of_inputs(P: Any, parameters: dict, strengths: dict, by: str) -> Contacts:
@@ -119,6 +119,10 @@ def _of_inputs(P: Any, parameters: dict, strengths: dict, by: str) -> Contacts:
     by = "layers.1.h" if stack and by == "h" else by
     if isinstance(parameters.get("layers"), (list, tuple)) and by.startswith("layers."):
         j = int(by.split(".")[1]) - 1  # the thickness in the list does not matter
+        numbers = [int(match[1]) for name in parameters if (match := _OF_LAYER.match(name))]
+        last = max([len(parameters["layers"]), *numbers])
+        if not 0 <= j < last:
+            raise StudyError([f"h_protect: by = {shown(by)}: must be one of the layers 1 to {last}"])
         layers = [
             {key: value for key, value in layer.items() if not (i == j and key == "h")}
             if isinstance(layer, dict)

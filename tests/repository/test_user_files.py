@@ -56,7 +56,7 @@ OWN = {
     "study/inverse/force_curves.py": "by afmformats, what the door has checked",
     "study/specimen/scan_files.py": "by SurfaceTopography, what the door has checked",
     "study/specimen/scan_grids.py": "numpy, from a file that the door has opened",
-    "study/specimen/scan_texts.py": "numpy, from lines of a text that the door has opened",
+    "study/specimen/texts/plain_rows.py": "numpy, from lines of a text that the door has opened",
     "study/specimen/netcdf_heights.py": "netCDF, from bytes",
     "study/specimen/x3p.py": "a zip, from bytes",
 }

@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 
 from study import roughness
 from study.specimen import scan_texts
+from study.specimen.texts import plain_rows, text_lines
 
 RANDOM = np.random.default_rng(0)
 Z = np.round(RANDOM.normal(size=(40, 40)), 4)  # nm
@@ -280,8 +281,8 @@ def test_numpy_reads_neighbours_that_are_missing(separator, word):
         heights[1:4, -3:] = heights[2, :3] = np.nan
         heights[1:4, 0] = 1.0, 2.0, 3.0  # ;; is no row
         rows = np.where(np.isnan(heights), word, heights.astype(str)).tolist()
-        lines = scan_texts.Lines([separator.join(row) for row in rows], 1)
-        numbers, places = scan_texts._plain_rows(lines, (separator.strip(" ") or None, "."))
+        lines = text_lines.Lines([separator.join(row) for row in rows], 1)
+        numbers, places = scan_texts.plain_rows(lines, (separator.strip(" ") or None, "."))
         np.testing.assert_array_equal(numbers, heights)
         assert places.tolist() == [1, 2, 3, 4, 5]
 
@@ -312,9 +313,9 @@ def test_numpy_reads_tables_with_missing_points_as_the_reader_of_single_rows(sep
     """The same numbers, heading and message, and most tables by numpy, whatever stands for a missing point, in blocks
     of one row and of all."""
     by_numpy, random = [], np.random.default_rng(5)
-    plain = scan_texts._plain_rows
+    plain = scan_texts.plain_rows
     for _ in range(120):
-        monkeypatch.setattr(scan_texts, "_CHARACTERS", int(random.choice([1, 60, 10**6])))
+        monkeypatch.setattr(plain_rows, "CHARACTERS", int(random.choice([1, 60, 10**6])))
         columns, words = random.choice([2, 3, 16, 20]), random.choice(WORDS[:7] if random.random() < 0.8 else WORDS, 2)
         rows = random.normal(size=(random.choice([3, 9]), columns)).round(3).astype(str)
         missing = random.random(rows.shape) < random.choice([0, 0.1, 0.3])
@@ -325,14 +326,14 @@ def test_numpy_reads_tables_with_missing_points_as_the_reader_of_single_rows(sep
         content = "heading\n" + "\n".join(lines) + "\n" * random.choice([0, 1])
         answers = []
         for numpy_first in (True, False):
-            monkeypatch.setattr(scan_texts, "_plain_rows", plain if numpy_first else lambda *_: None)
+            monkeypatch.setattr(scan_texts, "plain_rows", plain if numpy_first else lambda *_: None)
             try:
                 table = scan_texts.table_of(content, "t.txt")
                 answers.append((np.nan_to_num(table.numbers, nan=9e9).tolist(), table.heading, table.separator))
             except ValueError as error:
                 answers.append(str(error))
         assert answers[0] == answers[1], content
-        lines = scan_texts.Lines(content.split("\n")[1:-1], 2)
+        lines = text_lines.Lines(content.split("\n")[1:-1], 2)
         by_numpy.append(
             isinstance(answers[0], tuple) and plain(lines, (separator.strip(" ") or None, mark)) is not None
         )

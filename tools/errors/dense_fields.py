@@ -105,7 +105,8 @@ def missed(seed: int) -> tuple[str, float, str]:
     names = ["h", *(f"layers.{j}.h" for j in range(2, 5))]
     thickness = [getattr(problem, name)[0] for name in names if name == "h" or name in problem.parameters]
     tops = np.append(0.0, np.cumsum(thickness)) / solution.a[0]
-    words = f"{problem.shape[0]} on {len(thickness)} layers, {problem.base[0]}, h/a {' '.join(f'{h:.3g}' for h in np.diff(tops))}, mu {mu:g}"
+    over_a = " ".join(f"{h:.3g}" for h in np.diff(tops))
+    words = f"{problem.shape[0]} on {len(thickness)} layers, {problem.base[0]}, h/a {over_a}, mu {mu:g}"
     if solution.status[0] != 0:
         return f"{words}, status {solution.status[0]}", 0.0, ""
     largest, worst, of_what = extremes(problem, solution, mu), 0.0, ""

@@ -49,6 +49,16 @@ WAYS = (
     ({}, {"form": "sphere", "rows": "median", "cutoff": [3e-6, 6e-6]}),
     ({"despike": 5}, {"method": "summits"}),
 )
+#: What a text has -> whether its lines have x, y and z of a point, the separator, the share of the points that are
+#: missing, and the word in their place.
+TEXTS = {
+    "points": (False, " ", 0.0, "nan"),
+    "points, 1 % of them nan": (False, " ", 0.01, "nan"),
+    "points, 5 % of them Bad": (False, "\t", 0.05, "Bad"),
+    "points, 5 % of them empty fields": (False, ",", 0.05, ""),
+    "points x, y, z, 1 % of z nan": (True, " ", 0.01, "nan"),
+    "points x, y, z, 1 % of z empty fields": (True, ",", 0.01, ""),
+}
 #: After a first call the shortest of so many times counts.
 TIMES = 3
 
@@ -56,12 +66,7 @@ TIMES = 3
 def least(function) -> float:
     """Processor seconds of a call in a warm process."""
     function()
-    seconds = []
-    for _ in range(TIMES):
-        start = process_time()
-        function()
-        seconds.append(process_time() - start)
-    return min(seconds)
+    return min(seconds(function) for _ in range(TIMES))
 
 
 def curves(inputs: dict, true: dict, count: int, depths: np.ndarray = DEPTHS) -> np.ndarray:
@@ -107,28 +112,55 @@ def nanite_fit() -> list[dict]:
     model, loads = models_available["hertz_para"], curves(BARE, {"E2": "5 kPa"}, 1, MANY)[0]
     params = model.get_parameter_defaults()
     params["R"].value, params["nu"].value = 5e-6, 0.45
-    seconds = least(lambda: lmfit.minimize(model.residual, params, args=(-MANY, loads)))
+    shortest = least(lambda: lmfit.minimize(model.residual, params, args=(-MANY, loads)))
     name = f"Hertz by nanite {version('nanite')}, E on a half-space, plain"
-    return [{"fit": name, "curves": 1, "points": len(MANY), "seconds_a_curve": seconds}]
+    return [{"fit": name, "curves": 1, "points": len(MANY), "seconds_a_curve": shortest}]
 
 
 def scans(points: int = 2048) -> list[dict]:
     """The time of reading a text over that of numpy, and the memory of reading a map, in arrays of its size."""
     z, rows = gaussian_filter(np.random.default_rng(1).standard_normal((points, points)), 2), []
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "map.txt"
-        for share in (0.0, 0.01):
-            heights = np.where(np.random.default_rng(2).random(z.shape) < share, np.nan, z)
-            np.savetxt(path, heights, fmt="%.6e")
-            ours = least(lambda: roughness.read(path, unit="um", height_unit="nm", dx=1.0, missing="skip"))
-            name = f"text of {points} × {points} points, 1 % of them nan" if share else f"text of {points} × {points}"
+        for name, text in TEXTS.items():
+            ratio = over_numpy(Path(folder), z, *text)
             rows.append(
-                {"scan": f"{name}, time over numpy.loadtxt", "measured": ours / least(lambda: np.loadtxt(path))}
+                {
+                    "scan": f"text of {points} × {points} {name}, time over numpy.loadtxt",
+                    "measured": ratio,
+                }
             )
         np.save(Path(folder) / "map.npy", z)
         most = max(most_memory(Path(folder) / "map.npy", *way) for way in WAYS)
     name = f"memory of {points} × {points} points and their statistics, in arrays of their size"
     return [*rows, {"scan": name, "measured": most / z.nbytes}]
+
+
+def over_numpy(folder: Path, z: np.ndarray, has_positions: bool, separator: str, share: float, word: str) -> float:
+    """The time of reading a text with missing points over that of numpy of the same text without: the median of turns.
+
+    has_positions : lines of x, y and z of a point; otherwise lines of z
+    share : of the points that are missing, with `word` in their place
+    """
+    whole, gaps = folder / "whole.txt", folder / "gaps.txt"
+    for path, part in ((whole, 0.0), (gaps, share)):
+        heights = np.where(np.random.default_rng(2).random(z.shape) < part, np.nan, z)
+        y, x = np.indices(z.shape) / 2
+        columns = np.column_stack([x.ravel(), y.ravel(), heights.ravel()]) if has_positions else heights
+        np.savetxt(path, columns, fmt="%.6e", delimiter=separator)
+        path.write_bytes(path.read_bytes().replace(b"nan", word.encode()))
+    how = {"unit": "um", "height_unit": "nm", "missing": "skip"} | ({} if has_positions else {"dx": 1.0})
+    turns = (
+        (seconds(lambda: roughness.read(gaps, **how)), seconds(lambda: np.loadtxt(whole, delimiter=separator)))
+        for _ in range(TIMES)
+    )
+    return float(np.median([ours / numpys for ours, numpys in turns]))
+
+
+def seconds(function) -> float:
+    """Processor seconds of a call."""
+    start = process_time()
+    function()
+    return process_time() - start
 
 
 def most_memory(path: Path, how: dict, what: dict) -> int:

@@ -10,9 +10,9 @@
 #     stress_Cartesian: largest von Mises, z = 0.48 a      0.620                   3.9e+13
 #     the same with 0.3 times the tangential one           0.657                   3.0e+27
 #
-# without a warning. The large numbers are seen at once; the first two look right, and with a shear strength the load at first
-# yield, as p0^3, comes out 0.49 of what it is. Points nearer to the axis than 1e-4 a may be set to 0, where all are right;
-# that changes the stresses by no more than 1e-4 p0.
+# without a warning of it (both grids alike warn of divisions by zero at z = 0). The large numbers are seen at once; the first
+# two look right, and with a shear strength the load at first yield, as p0^3, comes out 0.49 of what it is. Points nearer to
+# the axis than 1e-4 a may be set to 0, where all are right; that changes the stresses by no more than 1e-4 p0.
 # Exits 0 while this is so, 1 when it has changed.
 set -eu
 folder=$(mktemp -d)

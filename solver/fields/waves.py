@@ -32,8 +32,8 @@ _MOST = 1e6
 _FARTHEST = 1e9
 #: These replace _FIRST, _END, SHORTEST and _RADIANS if an error of some percent is allowed, in stresses alone. Panels
 #: twice as long change stresses by 1e-10 where the last wave is the same (tests/yields/test_largest_stresses.py).
-#: Elsewhere the rule ends at another wave, which changed those of 60 random bodies by up to 1e-3: less than their error,
-#: up to 5e-2.
+#: Elsewhere the rule ends at another wave, which changed those of 60 random bodies by up to 1e-3: less than their error
+#: of up to 5e-2.
 _ROUGH_FIRST, _ROUGH_END, _ROUGH_SHORTEST, _ROUGH_RADIANS = 0.1, 8.0, 2e3, 40.0
 THINNEST = _END / SHORTEST
 #: The ends of rules and the reach of their panels are rounded up to whole numbers of 1/_OF_OCTAVE octave.

@@ -46,7 +46,7 @@ def rules(h: float) -> tuple:
 def points_of(kind: StatePart, h: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Cases, radii and depths: the axis, the edge, and elsewhere."""
     random = np.random.default_rng(int(kind))
-    case = np.arange(count) % (3 if kind == StatePart.BODY else 4)
+    case = np.arange(count) % 4
     r = np.where(
         np.arange(count) % 7 == 0, 0.0, np.where(np.arange(count) % 5 == 0, 1.0, random.uniform(0.7, 3, count))
     )

@@ -46,7 +46,7 @@ def rules(h: float) -> tuple:
 def points_of(kind: StatePart, h: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Cases, radii and depths: the axis, the edge, and elsewhere."""
     random = np.random.default_rng(int(kind))
-    case = np.arange(count) % (3 if kind == StatePart.BODY else 4)
+    case = np.arange(count) % 4
     r = np.where(
         np.arange(count) % 7 == 0, 0.0, np.where(np.arange(count) % 5 == 0, 1.0, random.uniform(0.7, 3, count))
     )
@@ -115,12 +115,12 @@ def test_of_stacks(mu, variant, monkeypatch):
             assert_allclose(core / scale, numpy / scale, rtol=0, atol=SECOND)
 
 
-@pytest.mark.parametrize("mu", [0.0, 0.3])
-def test_largest_stresses(mu, monkeypatch):
-    """Of 20 contacts from films to thick layers: by whichever way the search goes up, it ends at the same maxima."""
+@pytest.mark.parametrize(("mu", "count"), [(0.0, 20), (0.3, 3)])
+def test_largest_stresses(mu, count, monkeypatch):
+    """Of contacts from films to thick layers: both paths of the search end at the same maxima."""
     random = np.random.default_rng(4)
-    h, n = (np.exp(random.uniform(np.log(low), np.log(high), 20)) for low, high in ((0.006, 3), (0.05, 100)))
-    bonding = np.where(np.arange(20) % 3, "bonded", "frictionless")
+    h, n = (np.exp(random.uniform(np.log(low), np.log(high), count)) for low, high in ((0.006, 3), (0.05, 100)))
+    bonding = np.where(np.arange(count) % 3, "bonded", "frictionless")
     problem = Problem.of(a=0.03, h=0.03 * h, n=n, nu1=0.25, bonding=bonding, Nbar=2.5e7, Ra=0.004)
     solution, largest = solve(problem), []
     for path in ("numpy", available()[0]):

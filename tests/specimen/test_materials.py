@@ -21,7 +21,7 @@ CLASSES = {
     ("glass soda-lime", "glass borosilicate", "silica"): (60e9, 76e9, 0.15, 0.25),
     ("silicon", "zirconia", "silicon nitride", "alumina", "sapphire"): (150e9, 470e9, 0.2, 0.32),
     ("WC-Co", "diamond"): (550e9, 1200e9, 0.05, 0.25),
-    ("DLC ta-C", "DLC a-C:H", "TiN", "CrN"): (100e9, 800e9, 0.1, 0.32),
+    ("DLC ta-C", "DLC a-C:H", "TiN", "CrN", "chromium"): (100e9, 800e9, 0.1, 0.32),
     ("PTFE", "PEEK", "PMMA", "polycarbonate", "polyimide"): (0.3e9, 5e9, 0.3, 0.49),
     ("polyurethane", "PDMS", "natural rubber"): (0.5e6, 30e6, 0.49, 0.5),
     ("polyacrylamide gel", "agarose gel", "gelatin gel"): (1e3, 300e3, 0.46, 0.5),
@@ -103,6 +103,7 @@ def test_incompressible_is_allowed(mine):
 @pytest.mark.parametrize(
     ("name", "message"),
     [
+        ("zir", '"zir" is not a material; did you mean "zirconia"?'),
         ("stel 52100", '"stel 52100" is not a material; did you mean "steel 52100"'),
         ("DLC", 'did you mean "DLC ta-C" or "DLC a-C:H"?'),
         ("teflonn", 'did you mean "PTFE"?'),

@@ -210,3 +210,23 @@ def test_maxima_of_films_next_to_the_edge():
     largest = study.extremes(contact).tresca_layer[0].item()
     beside = study.stresses(contact, [1.0234], [0.0]).tresca_above[0, 0].item()
     assert largest >= beside * (1 - 1e-9) > 0.4 * contact.p0.item()
+
+
+def test_weak_tension_far_from_the_edge():
+    """A layer on springs bends over a length of its own, at the end of which the interface is pulled."""
+    contact = on([{"h": 0.025, "n": 0.061, "nu": 0.38, "bonding": {"cn": 0.41, "ct": 0.41}}], a=0.01, nu2=0.014)
+    largest = study.extremes(contact).sz_interface_max.item()
+    assert largest >= study.stresses(contact, [8.1], [0.0]).sz_above.item() > 0
+
+
+def test_the_larger_of_two_ridges_far_from_the_edge():
+    """Behind the contact the third layer is pulled along its upper side, and farther out off it, by more: the search
+    had no radius there."""
+    layers = [
+        {"h": 0.002515, "n": 0.0475, "nu": 0.25, "bonding": "bonded"},
+        {"h": 0.021213, "n": 0.3136, "nu": 0.1236, "bonding": "frictionless"},
+        {"h": 0.016352, "n": 0.0563, "nu": 0.2245, "bonding": "bonded"},
+    ]
+    contact = on(layers, a=0.01, nu2=0.2376)
+    largest = study.extremes(contact, mu=0.3).s1_layer[2].item()
+    assert largest >= study.stresses(contact, [-7.8], [0.0], mu=0.3).s1_below[1].item() > 0

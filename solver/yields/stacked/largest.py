@@ -42,15 +42,15 @@ _MAY_LACK, _NOTHING = ("s1_surface", "s1_layer", "sr_interface", "tau_interface"
 _RIVAL, _ROUGH = 0.85, 3e-4
 #: Cases whose largest stresses are looked for together.
 _TOGETHER = 32
-#: The coarse grid: radii in a; distances beyond the edge, in each length; depths below the top of a layer, in its
-#: thickness and in each length; depths below the last interface, in each length.
-_RADII = np.array([0, 0.2, 0.4, 0.6, 0.75, 0.85, 0.93, 0.98, 1, 1.04, 1.12, 1.25, 1.5])
-_PAST_EDGE = np.array([0.15, 0.3, 0.6, 1, 1.6, 2.5, 4, 6])
+#: The coarse grid: radii in a, up to the edge; distances beyond the edge, from _PAST_EDGE in the shortest and the
+#: longest length, and at least from _NEAREST, by the ratio _FARTHER; depths below the top of a layer, in its thickness
+#: and in each length; depths below the last interface, in each length.
+_RADII = np.array([0, 0.2, 0.4, 0.6, 0.75, 0.85, 0.93, 0.98, 1])
+_PAST_EDGE, _NEAREST, _FARTHER = (0.15, 7.0), 0.04, 1.35
 _OF_LAYER, _OF_LENGTH = np.array([0, 0.12, 0.3, 0.5, 0.7, 0.88, 1]), np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1])
 _BELOW = np.array([0, 0.08, 0.2, 0.35, 0.5, 0.7, 1, 1.4])
-#: A radius beyond the edge is dropped unless its distance from the edge exceeds that of the one before by this part.
-#: Those of films, nearer to the edge than _THIN, inside too.
-_NEAR, _THIN = 0.1, 1.3
+#: Distances from the edge of films that are less than this are those of radii inside of it too.
+_THIN = 0.3
 #: A length is dropped unless it exceeds the last one kept by the factor _ALIKE. The regions end at _FARTHEST (a + the
 #: longest length).
 _ALIKE, _FARTHEST = 2.0, 10.0
@@ -166,13 +166,18 @@ def _on_coarse_grids(case, names, only):
 
 def lengths_of(case):
     """Lengths over which stresses change, ascending: a, the thickness h of each layer, the depths of interfaces, and
-    the length h (E/E_below)^(1/3) over which a stiff layer spreads the pressure."""
+    those over which a stiff layer spreads its load: h (E/E_below)^(1/3), and on springs of the compliance c
+    (E h³ c)^(1/4) for pressure and sqrt(E h c) for shear."""
     ends, G = case.ends, case.stack.shear[0]
     of_layers = np.append(case.last, -1)
     below = np.inf if case.rigid else G[-1]
     stiff = np.array([np.cbrt(max(G[of_layers[j]] / min(below, G[case.last].min()), 1.0)) for j in range(len(ends))])
     thickness = np.diff(np.append(0.0, ends))
-    wanted = np.sort(np.concatenate([[1.0], thickness, ends, thickness * stiff]))
+    E, unit = case.stack.n[0, case.last], case.h / case.stack.n[0, 0]
+    cn, ct = unit * case.stack.cn[0, case.last], unit * case.stack.ct[0, case.last]
+    springs = (E * thickness**3 * cn) ** (1 / 4), np.sqrt(E * thickness * ct)
+    wanted = np.sort(np.concatenate([[1.0], thickness, ends, thickness * stiff, *springs]))
+    wanted = wanted[wanted > 0]
     chosen = [wanted[0]]
     for length in wanted[1:]:
         if length > _ALIKE * chosen[-1]:
@@ -187,9 +192,10 @@ def farthest_of(lengths):
 def _grids(case, place, j, lengths):
     """The coarse grids of a place, by their regions."""
     far, tops = farthest_of(lengths), np.append(0.0, case.ends)
-    past_edge = 1 + _unlike(np.append(_RADII[_RADII > 1] - 1, np.outer(lengths, _PAST_EDGE).ravel()), _NEAR)
-    within = 2 - past_edge[past_edge < _THIN]
-    radii = np.unique(np.concatenate([_RADII[_RADII <= 1], within, past_edge[past_edge < far]]))
+    least, most = min(_NEAREST, _PAST_EDGE[0] * lengths[0]), _PAST_EDGE[1] * lengths[-1]
+    distances = least * _FARTHER ** np.arange(np.log(most / least) / np.log(_FARTHER))
+    films = distances[(distances < _THIN) & (lengths[0] < 1)]
+    radii = np.unique(np.concatenate([_RADII, 1 - films, 1 + distances]))
 
     def grid(u, v, low, high, ends=(0.0, far), root=False):
         return SearchGrid(u, np.array([v]), np.array([ends]), np.array([[low, high]]), False, root)

@@ -24,6 +24,10 @@ from .works import Pair, pairs, work_of_adhesion
 __all__ = ["Material", "Pair", "get", "names", "pairs", "read", "table", "work_of_adhesion"]
 
 
+#: Parts of names with at most this many letters match only the beginning of a name.
+_SHORT = 3
+
+
 def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
     """The material that has this name or is also called so; capitals, hyphens and spaces do not matter.
 
@@ -51,7 +55,8 @@ def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
     plain = plainly(name)
     if plain in spelled:
         return spelled[plain]
-    near = [word for word in spelled if plain and plain in word] or difflib.get_close_matches(plain, spelled, n=3)
+    within = [word for word in spelled if word.startswith(plain) or (len(plain) > _SHORT and plain in word)]
+    near = (within if plain else []) or difflib.get_close_matches(plain, spelled, n=3)
     meant = [f'"{name}"' for name in materials if name in {spelled[word].name for word in near}]
     hint = f"did you mean {' or '.join(meant[:6])}?" if meant else f"known: {', '.join(materials)}"
     raise LookupError(f"{written(name)} is not a material; {hint}")

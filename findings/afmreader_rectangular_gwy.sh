@@ -1,5 +1,5 @@
 #!/bin/sh
-# AFMReader 0.0.7, by which TopoStats reads scans: a Gwyddion file (.gwy) of a rectangular scan comes as another picture. A
+# AFMReader 0.0.7, by which TopoStats 2.4.2 reads scans: a Gwyddion file (.gwy) of a rectangular scan comes as another picture. A
 # data field is stored row by row, yres rows of xres points, and the reader reshapes it to (xres, yres). Of a scan of 4 um by
 # 1 um, 64 rows of 256 points, with waves 2 um long along the rows, it gives (gwyfile 0.3.0 reads the same file rightly)
 #

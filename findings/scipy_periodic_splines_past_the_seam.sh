@@ -9,7 +9,7 @@
 # 2. PPoly.from_spline(make_interp_spline(t, h, bc_type="periodic")) says that it is periodic too. Its period is 2 pi + 1.178,
 #    since it counts the knots beyond both ends:
 #        at 7 rad -0.059, right is 0.073; at 9 rad -1.370, right is 0.444
-# 3. make_splrep(t, h, s=s, bc_type="periodic") is periodic for s = 0, and for any other s it is not:
+# 3. make_splrep(t, h, s=s, bc_type="periodic") is periodic for s = 0, and for s = 1e-6, 1e-4 and 0.01 it is not:
 #        at 7 rad 0.073 (s = 0), -1.396 (s = 1e-6)
 #
 # all without a warning, and all of them agree with the data. Pass extrapolate=False to roots and solve; take CubicSpline in

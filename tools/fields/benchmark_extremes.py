@@ -1,7 +1,8 @@
 """The time of extremes and first yield: `python tools/fields/benchmark_extremes.py [CHECKOUT | --json]`.
 
 It prints processor times of one process: the first call, and the shortest of the next ones. With another checkout of
-this repository the two take turns, and it prints ratios as well. With --json it prints the rows of docs/speed.md.
+this repository the two take turns, and it prints ratios as well; a checkout that has no extremes of stacks has no line for
+them. With --json it prints the rows of docs/speed.md.
 """
 
 import json
@@ -20,7 +21,10 @@ import numpy as np
 from solver import Problem, solve
 from solver.yields.contact import of_contacts
 from solver.yields.first import first_yield
-from solver.yields.stacked.largest import of_contacts as of_stacks
+try:
+    from solver.yields.stacked.largest import of_contacts as of_stacks
+except ImportError:  # a checkout of before there were any
+    of_stacks = None
 
 E1, E2 = 450e9 / (1 - 0.25**2), 210e9 / (1 - 0.3**2)  # TiN on steel, 3 um below a ball of alumina of 5 mm
 film = {"h": 6e-4, "n": E1 / E2, "nu1": 0.25, "nu2": 0.3, "bonding": "bonded", "micro": "smooth", "m": 0.6}
@@ -48,7 +52,8 @@ told("100_rough_layers", extremes(a=a, h=a * np.exp(random.uniform(np.log(0.05),
 stack = [{"h": 4e-4, "n": 200 / 230, "nu": 0.25}, {"h": 2e-4, "n": 290 / 230, "nu": 0.21}]  # DLC on chromium
 on_stack = {"layers": [layer | {"bonding": "bonded"} for layer in stack], "nu2": 0.3, "micro": "smooth"}
 problem = Problem.of(P=np.geomspace(1e-7, 1e-5, 5), **on_stack)
-told("5_on_two_layers", lambda solution=solve(problem): of_stacks(problem, solution))
+if of_stacks:
+    told("5_on_two_layers", lambda solution=solve(problem): of_stacks(problem, solution))
 
 def loads(body, strength, **other):
     problem = Problem.of(P=1e-6, **film | other)
@@ -99,7 +104,7 @@ def main() -> None:
         return
     checkouts = [ROOT, *(Path(path).resolve() for path in sys.argv[1:])]
     rounds = [[times_of(checkout) for checkout in checkouts] for _ in range(ROUNDS if len(checkouts) > 1 else 1)]
-    for name in rounds[0][0]:
+    for name in [name for name in rounds[0][0] if all(name in times for times in rounds[0])]:
         least = [[min(turn[i][name][j] for turn in rounds) for j in (0, 1)] for i in range(len(checkouts))]
         words = ", ".join(f"first {first:.3f} s, then {later:.3f} s" for first, later in least)
         ratios = [f"{b / a:.1f}" for a, b in zip(*least, strict=True)] if len(least) > 1 else []

@@ -11,7 +11,8 @@ WRONG = {
     "a number": (TIN | {"h": "-2 um"}, "layers.1.h = -2 um: must be in"),
     "a Poisson ratio": ({"h": "2 um", "E1": "1 GPa", "nu": 0.7}, "layers.1.nu = 0.7: must be in (-1, 0.5]"),
     "a word": (TIN | {"bonding": "glued"}, 'layers.1.bonding = "glued": must be one of'),
-    "a material": (TIN | {"material": "tinn"}, '"tinn" is not a material; did you mean "TiN"? (or give layers.1.E1 and layers.1.nu)'),
+    "a material": (TIN | {"material": "tinn"}, 'layers.1.material: "tinn" is not a material; did you mean "TiN"?'),
+    "another way": (TIN | {"material": "tinn"}, "(or give layers.1.E1 and layers.1.nu)"),
     "its place": (
         {"h": "2 um", "E1": "TiN"},
         "a material is given as layers.1.material, in place of layers.1.E1",

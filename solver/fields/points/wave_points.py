@@ -36,7 +36,7 @@ END = 32.0
 #: A panel of 20 Gauss points spans at most _RADIANS radians of phase: the error is 1e-12 of the integral.
 _RADIANS = 32.0
 #: The first panel ends at FIRST times the shortest length of waves, 1/a, 1/h, or 1/n of these. With 1e-5, as with 1, no
-#: stress and no first derivative of 500 random layers and 120 stacks changes by more than 5e-15 of the largest.
+#: stress and no first derivative of 520 random layers and 60 stacks changes by more than 5e-15 of the largest.
 FIRST = 0.1
 #: A panel of short waves at k is at most _SHARE k wide: at the points that they serve, their phase turns by at most
 #: 260/k for each unit of k.

@@ -34,7 +34,7 @@ _OF_CELLS = "asperities far apart on a layer, 2"
 #: Stresses depend on these even where the contact does not, as on nu2 of a body on which the layer slides.
 RATIOS = ("nu1", "nu2")
 #: In the keys and digests of stored stresses: raised when the search for the largest ones finds others.
-_OF_STRESSES = "4"
+_OF_STRESSES = "5"
 #: In the keys of cases that stick, or whose shape is not the paraboloid, beside NUMERICS_VERSION: raised when only
 #: their numbers change.
 _OF_SHAPES = "4"

@@ -8,9 +8,10 @@
 #                                          inf   nan   inf   nan     every second one is lost, and stands for "missing"
 #     BitRound (12 significant bits)       inf  -inf   inf  -inf     right
 #
-# NaN stays NaN, and the usual finite numbers keep their digits (in single precision 3.4e38, next to the largest one, rounds up
-# to infinity). In a study whose largest load without yield, or life, is infinite where there is no limit, GranularBitRound turns the safest case into one that bears nothing, and `min`, `isfinite` and `isnull` see
-# a usual number. Write such variables without quantization or by BitRound, or store the reciprocal.
+# NaN stays NaN, and the usual finite numbers keep their digits (in single precision 3.4e38, next to the largest one, may round
+# up to infinity). In a study whose largest load without yield, or life, is infinite where there is no limit, GranularBitRound
+# turns the safest case into one that bears nothing, and `min`, `isfinite` and `isnull` see a usual number. Write such variables
+# without quantization or by BitRound.
 # Exits 0 while this is so, 1 when it has changed.
 set -eu
 folder=$(mktemp -d)

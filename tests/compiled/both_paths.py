@@ -6,6 +6,7 @@ import subprocess
 import sys
 import sysconfig
 from ctypes import CDLL
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -73,17 +74,21 @@ def built(folder: Path, **environment: str) -> list[str]:
     return [path.name for path in (folder / "lib").rglob("*") if path.is_file()]
 
 
+@cache
+def fresh_core(folder: Path) -> CDLL:
+    """The core of the sources as they are now. Built once for each process of pytest, in some seconds."""
+    (name,) = built(folder)
+    (path,) = Path(folder, "lib").rglob(name)
+    return CDLL(str(path))
+
+
 @pytest.fixture(scope="session", autouse=True)
 def of_the_sources(tmp_path_factory):
-    """The core of these tests is that of the sources as they are now, if there is a compiler: also of a mutant's. Built
-    once for each process of pytest, in some seconds."""
+    """The core of these tests is that of the sources as they are now, if there is a compiler: also of a mutant's."""
     if not compiler():
         yield
         return
-    folder = tmp_path_factory.mktemp("core")
-    (name,) = built(folder)
-    (path,) = Path(folder, "lib").rglob(name)
-    fresh = CDLL(str(path))
+    fresh = fresh_core(tmp_path_factory.getbasetemp() / "core")
     with pytest.MonkeyPatch.context() as patched:
         library._variant.cache_clear()
         patched.setattr(library, "_library", lambda: fresh)

@@ -233,7 +233,7 @@ FIGURES = {
     "predicted": lambda: table(predicted()),
     "fits": lambda: printed("fit/benchmark_fits.py"),
     "extremes": lambda: table(rows_of("fields/benchmark_extremes.py")),
-    "stress_peers": lambda: table(rows_of("fields/stress_peers.py")),
+    "stress_peers": lambda: "\n\n".join(table(rows) for rows in by_columns(rows_of("fields/stress_peers.py"))),
     "smooth_peers": lambda: "\n\n".join(table(rows) for rows in by_columns(peers(seconds))),
     "peers": lambda: "\n\n".join(table(rows) for rows in by_columns(rough_peers())),
 }

@@ -107,12 +107,14 @@ def least(action) -> tuple[float, float]:
 
 
 def stress_peers() -> list[dict]:
-    """A row for each code and grid: seconds, the largest Mises stress over p0, and its relative error."""
+    """A row for each code and grid: seconds and the relative error of the largest Mises stress; or that it is not
+    installed."""
     rows = []
     for name, code in CODES.items():
         try:
             title = f"{name} {version(name)}"
         except PackageNotFoundError:
+            rows.append({"code": name, "skipped": "not installed"})
             continue
         for points in GRIDS:
             value, seconds = least(lambda: code(points))  # noqa: B023

@@ -230,3 +230,15 @@ def test_the_larger_of_two_ridges_far_from_the_edge():
     contact = on(layers, a=0.01, nu2=0.2376)
     largest = study.extremes(contact, mu=0.3).s1_layer[2].item()
     assert largest >= study.stresses(contact, [-7.8], [0.0], mu=0.3).s1_below[1].item() > 0
+
+
+def test_two_maxima_that_are_close():
+    """On the axis and at r = 0.31 the stresses along the lower side of the first layer differ by 2e-5."""
+    layers = [
+        {"h": 0.0024931574502, "n": 61.7299404983, "nu": 0.327598127239, "bonding": "frictionless"},
+        {"h": 0.0004745194438, "n": 0.168291128597, "nu": 0.409331717022, "bonding": "bonded"},
+    ]
+    contact = on(layers, a=0.01, nu2=0.202295112129)
+    along = study.stresses(contact, np.linspace(0, 0.4, 9), [0.0]).mises_above[0]
+    largest = study.extremes(contact).mises_layer[0].item()
+    assert largest >= along.max().item() > along[0].item() * (1 + 5e-6)

@@ -38,8 +38,9 @@ DIMENSION = {"layer": "layer", "lower": "interface", "surface": None, "body": No
 #: Names of extremes that need not exist: a value below _NOTHING of the largest pressure is rounding and becomes 0.
 _MAY_LACK, _NOTHING = ("s1_surface", "s1_layer", "sr_interface", "tau_interface", "sz_interface_max"), 1e-11
 #: A further place of the coarse grid is looked at too where it has this part of the best, or misses it by less than
-#: _ROUGH of the largest pressure, as rough stresses may.
-_RIVAL, _ROUGH = 0.85, 3e-4
+#: _ROUGH of the largest pressure, as rough stresses may. All places that have _FLAT of the best are looked at, peaks of
+#: the grid or not: two maxima may be between three of its points.
+_RIVAL, _ROUGH, _FLAT = 0.85, 3e-4, 0.997
 #: Cases whose largest stresses are looked for together.
 _TOGETHER = 32
 #: The coarse grid: radii in a, up to the edge; distances beyond the edge, from _PAST_EDGE in the shortest and the
@@ -131,7 +132,8 @@ def _of_sections(cases, names, coarse, only):
                 answers[-1][name][0, j] = top
             least = top - (1 - _RIVAL) * abs(top) - _ROUGH * np.abs(case.pressure.values).max()
             for region in values if not coarse else ():
-                for at in np.argwhere(are_peaks(values[region]) & (values[region] >= least)).tolist():
+                flat = values[region] >= top - (1 - _FLAT) * abs(top)
+                for at in np.argwhere(are_peaks(values[region]) & (values[region] >= least) | flat).tolist():
                     start = Climb(EXTREMES[name][0], number, 0, region, *at)
                     climbs.add(start, grids[region], answers[-1][name][:, j])
     scales = [np.abs(case.pressure.values).max(axis=1) for case in cases]

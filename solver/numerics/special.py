@@ -54,8 +54,8 @@ def _scipy_special() -> ModuleType:
         return import_module("scipy.special")
     finally:
         for name in hidden:
-            if names[name] is None:  # otherwise another thread has imported it
-                del names[name]
+            if names.get(name, np) is None:  # otherwise another thread has imported it, or ended this already
+                names.pop(name, None)
 
 
 def ellipkm1(x: np.ndarray, many: bool = False) -> np.ndarray:

@@ -16,7 +16,7 @@ from solver.kernels.two_layers import TwoLayers
 from solver.numerics.mesh import mesh_of
 from solver.yields import contact
 from solver.yields.contact import of_contacts
-from solver.yields.extremes import extremes, regions
+from solver.yields.extremes import are_starts, extremes, regions
 from solver.yields.loaded import Loaded
 
 FOLDER = Path(__file__).parents[1] / "fields" / "references"
@@ -121,3 +121,11 @@ def test_coarse_grids_take_half_of_the_waves(h, n, region, monkeypatch):
     monkeypatch.setattr(waves.edge_waves, "transform", Pressure.transform)
     whole = loaded.stresses(grid.radius(grid.u), grid.v, grid.body, roughly=True)
     assert_allclose(half, whole, rtol=0, atol=1e-9)
+
+
+def test_where_climbs_begin():
+    """At peaks of the grid that may be the largest, at places that are nearly as high as the best, and nowhere if the
+    pressure is not known."""
+    values = np.array([[[0.998, 1.0, 0.996, 0.3, 0.9, 0.2, 0.8]]])
+    assert are_starts(values, 1.0, 0.1).ravel().tolist() == [True, True, False, False, True, False, False]
+    assert not are_starts(values, 1.0, np.nan).any()

@@ -78,7 +78,7 @@ the netCDF file. The last rows have the time of the solver alone for these cases
 
 Largest stresses stream in blocks too: a study of smooth contacts on a half-space with `[output] stresses = true` takes
 167 MB for 5,000 of them and 310 MB for 1,000,000, which are computed in 19 minutes of one processor
-(`python tools/fields/study_memory.py 1000000`).
+(2026-11-30, `python tools/fields/study_memory.py 1000000`).
 """,
     "paths": """A load axis is no path
 

@@ -1,8 +1,8 @@
 """The time of extremes and first yield: `python tools/fields/benchmark_extremes.py [CHECKOUT | --json]`.
 
 It prints processor times of one process: the first call, and the shortest of the next ones. With another checkout of
-this repository the two take turns, and it prints ratios as well; stacks are left out
-if that checkout has no extremes of them. With --json it prints the rows of docs/speed.md.
+this repository the two take turns, and it prints ratios as well, without stacks if that
+checkout has no extremes of them. With --json it prints the rows of docs/speed.md.
 """
 
 import json

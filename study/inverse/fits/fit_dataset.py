@@ -87,11 +87,9 @@ def fit_dataset(
         variables[model.y] = (("curve", "point"), Y, about)
     attributes = {"level": question.level, "x": model.x, "y": model.y, "free": " ".join(question.free)}
     fitted = xr.Dataset(variables, coordinates, attributes)
-    return (
-        fitted
-        if not judged
-        else fitted.merge(_validity(question, fitted, numbers.value, X, there, _radii(fits, len(X))))
-    )
+    if not judged:
+        return fitted
+    return fitted.merge(_validity(question, fitted, numbers.value, X, there, _radii(fits, len(X))))
 
 
 def _in_si(question: Question, names: tuple, fits: dict, X: np.ndarray, there: np.ndarray) -> _Numbers:

@@ -139,11 +139,11 @@ class RingTable:
             G = gap + s * opening
             return np.clip((wanted - np.log(G)) * G / (of_gap + s * of_opening), -_LONGEST, _LONGEST)
 
-        for parts, near in ((_Closed(read.x).parts, _CLOSE), (read.parts, _NEAR)):
+        for parts, last_step in ((_Closed(read.x).parts, _CLOSE), (read.parts, _NEAR)):
             left = np.ones(y.shape, bool)
             for _ in range(_STEPS):
                 by = np.where(left, step(parts(y, left)), 0.0)
-                y, left = y + by, left & (np.abs(by) >= near)
+                y, left = y + by, left & (np.abs(by) >= last_step)
                 if not left.any():
                     break
         return y
